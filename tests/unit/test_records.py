@@ -17,9 +17,8 @@ from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
 from slippulse.data.records import Origin, digest_of, file_digest, read_record, write_record
 from slippulse.data.tree import Tree
-from slippulse.data.versions import unlike
 from slippulse.steps.origins import Job, jobs_of, origins_of
-from slippulse.steps.targets import Plan
+from slippulse.steps.targets import Plan, unlike
 
 DATA, TABLE = "data/a.nc", "measurements/a.csv"
 PAGE, OTHER = "index.html", "scenes/other.html"
@@ -62,7 +61,7 @@ def test_a_record_says_what_was_made_by_what_from_what(results):
     record = read_record(results / f"records/{TABLE}.json")
     assert record.step == "measure" and [*record.inputs] == [DATA] and [*record.outputs] == [TABLE]
     assert faults(results) == {} and problems(results) == ([], len(JOBS), [])
-    write_record(Origin((PAGE,), "measure", "", "", frozenset()), {}, {"seconds": 0.25}, results)
+    write_record(Origin((PAGE,), "measure", "", "", {}), {}, {"seconds": 0.25}, results)
     assert job_times(results) == {"simulate": 1.5, "measure": 1.75, "animate_scene": 1.5}
 
 

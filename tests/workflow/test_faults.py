@@ -137,7 +137,7 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
 
 
 def test_a_job_that_fails_says_why(tmp_path, capfd):
-    jobs, origin = Jobs(), Origin(("one",), "no_such_step", "", "", frozenset())
+    jobs, origin = Jobs(), Origin(("one",), "no_such_step", "", "", {})
     # Its process ends; the next job has another.
     for _ in range(2):
         with pytest.raises(JobFailed, match=r"\A[^\n]+No module named[^\n]+one.traceback\)\Z"):
@@ -150,7 +150,7 @@ def test_a_job_that_fails_says_why(tmp_path, capfd):
 
 def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", frozenset())
+    jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", {})
     outputs, settings = {"html": "results/scenes.html"}, {"scenes": {}}
     job = (origin, "a job", {}, outputs, settings, "results/logs/one.log")
     before = set(multiprocessing.active_children())

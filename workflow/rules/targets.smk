@@ -8,9 +8,8 @@ from snakemake.logging import logger
 from slippulse.configuration.refusals import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.tree import Tree
-from slippulse.data.versions import unlike
 from slippulse.steps.origins import LOCK, jobs_of
-from slippulse.steps.targets import Plan, write_faulty
+from slippulse.steps.targets import Plan, unlike, write_faulty
 
 GIVEN = {
     "--configfile": [*map(os.path.relpath, workflow.overwrite_configfiles)],

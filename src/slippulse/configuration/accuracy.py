@@ -54,25 +54,15 @@ cached_front_speed = lru_cache(maxsize=4096)(front_speed)
 
 
 class Demand(NamedTuple):
-    """A largest relative error, and the scene whose numbers must keep it."""
+    """A largest relative error, and what it takes of a scene; its narrowest Gaussian."""
 
     error: float
-    prestress: Prestress
+    levels: list[float]
+    peak_width: float
     gamma: float
     damping_ratio: float
     release: str
     fields: bool
-
-    @property
-    def levels(self) -> list[float]:
-        """Every level of the pre-stress."""
-        steps = [level for _, level in self.prestress.steps]
-        return [self.prestress.left, self.prestress.right, *steps]
-
-    @property
-    def peak_width(self) -> float:
-        """The width of the narrowest Gaussian."""
-        return min([self.prestress.width, *(width for *_, width in self.prestress.bumps)])
 
 
 def settings_for(
@@ -132,13 +122,18 @@ def settings_for(
         raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
+    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
+    peak_width = min([prestress.width, *(width for *_, width in prestress.bumps)])
     error = SPACING_FRACTION * accuracy
-    demand = Demand(error, prestress, gamma, damping_ratio, release, fields)
-    spacings = _spacings_with_springs(demand) if gamma else _spacings_without_springs(demand)
+    demand = Demand(error, levels, peak_width, gamma, damping_ratio, release, fields)
+    if gamma:
+        spacings = _spacings_with_springs(demand)
+    else:
+        spacings = _spacings_without_springs(demand, prestress)
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = chosen_step("localised", ORDER, damping_ratio, gamma * dx**2, enough=STEP)
-    settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx}
-    settings |= {"max_step": step, "order": ORDER}
+    settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
+    settings["order"] = ORDER
     # The scene refuses a wrong boundary, and a gamma that does not go with it.
     Scene(boundary, prestress, duration=1.0, gamma=gamma, release=release, **settings)
     return settings
@@ -188,16 +183,13 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     return spacings
 
 
-def _spacings_without_springs(demand: Demand) -> list[float]:
+def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
     """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
     error, ratio = demand.error, demand.damping_ratio
-    prestress = demand.prestress
+    width, peak = prestress.width, prestress.peak
     # Distances to where the Gaussian falls to 0, towards each negative level.
-    distances = [
-        prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level))
-        for level in demand.levels
-        if level < 0.0 < prestress.peak
-    ]
+    negative = [level for level in demand.levels if level < 0.0 < peak]
+    distances = [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative]
     spacings = [length / BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED)

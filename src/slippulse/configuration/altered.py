@@ -36,10 +36,10 @@ class Alterations:
         given, used = changes(self.shipped.given(), self.here.given()), tuple(keys)
         altered = [change for change in given if change["key"].startswith(used)]
         of_runs = chain.from_iterable(self.simulations.get(name, ()) for name in simulations)
-        differences = [*dict.fromkeys(map(_equation, [*of_runs, *altered]))]
-        named = differences[:MOST]
-        if len(differences) > MOST:
-            named.append(f"{len(differences) - MOST} more")
+        different = [*dict.fromkeys(map(_equation, [*of_runs, *altered]))]
+        named = different[:MOST]
+        if different[MOST:]:
+            named.append(f"{len(different) - MOST} more")
         return f"altered: {', '.join(named)}" if named else ""
 
     def untaken(self) -> list[str]:
@@ -58,8 +58,7 @@ class Alterations:
 
 
 def _equation(change: Mapping[str, Any]) -> str:
-    name = change["key"].rpartition(".")[2]
-    value = change["here"]
+    name, value = change["key"].rpartition(".")[2], change["here"]
     if isinstance(value, list) and value and not isinstance(value[0], list | dict):
         value = ", ".join(map(str, value))
     elif isinstance(value, list | dict):

@@ -39,7 +39,13 @@ def promise_of(simulation: Mapping) -> float | None:
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     """Scenes of a resolved simulation, or of a chunk, and what each samples; or ValueError."""
     scenes = [_scene(simulation, run, index) for index, run in enumerate(runs(simulation))]
-    return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
+    rule = simulation.get("samples")
+    if rule is None:
+        return scenes, [None] * len(scenes)
+    extent, count = rule["extent"], rule["positions"]
+    positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
+    times = [np.linspace(0.0, scene.duration, rule["times"]) for scene in scenes]
+    return scenes, [Samples(instants, positions) for instants in times]
 
 
 def runs(simulation: Mapping) -> Iterator[Run]:
@@ -82,8 +88,26 @@ def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
 
 
 def _scene(simulation: Mapping, run: Run, index: int) -> Scene:
-    dx = _spacing(simulation, run, index)
+    accuracy, rule = simulation["accuracy"], simulation["spacing"]
+    if "fixed" in rule:
+        dx = float(rule["fixed"])
+    else:
+        spacing = simulation["spacings"][index] if "spacings" in simulation else run.dx
+        if spacing is None:
+            powers = run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
+            spacing = accuracy["dx"] * rule["scale"] * powers
+        # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.
+        dx = float(f"{simulation['coarser'] * spacing:.12g}")
     beta = run.damping if "beta" in simulation else run.damping * dx
+    # The simulation's own step, or the preset's, cut where it is not stable or accurate.
+    traits, largest = run.friction.traits, accuracy["max_step"]
+    ratios = beta / dx, run.gamma * dx**2, traits.steepest * dx
+    step = chosen_step(simulation["scheme"], accuracy["order"], *ratios, enough=largest)
+    step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / dx))
+    if "promise" in accuracy:
+        step = min(step, largest)
+    if "fixed" in rule:
+        step *= simulation["coarser"]
     common = ("boundary", "scheme", "friction_ratio", "resolved_blocks")
     return Scene(
         prestress=run.profile,
@@ -92,37 +116,11 @@ def _scene(simulation: Mapping, run: Run, index: int) -> Scene:
         gamma=run.gamma,
         beta=beta,
         release=run.release,
-        max_step=_max_step(simulation, run, dx, beta),
-        order=simulation["accuracy"]["order"],
+        max_step=step,
+        order=accuracy["order"],
         friction=run.friction,
         **{key: simulation[key] for key in common},
     )
-
-
-def _spacing(simulation: Mapping, run: Run, index: int) -> float:
-    """Spacing of twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label."""
-    rule = simulation["spacing"]
-    if "fixed" in rule:
-        return float(rule["fixed"])
-    dx = simulation["spacings"][index] if "spacings" in simulation else run.dx
-    if dx is None:
-        dx = simulation["accuracy"]["dx"] * rule["scale"]
-        dx *= run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
-    return float(f"{simulation['coarser'] * dx:.12g}")
-
-
-def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
-    """The simulation's own step, or the preset's, cut where it is not stable or accurate."""
-    accuracy, scheme = simulation["accuracy"], simulation["scheme"]
-    ratios = beta / dx, run.gamma * dx**2, run.friction.traits.steepest * dx
-    largest = accuracy["max_step"]
-    step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
-    step = simulation.get("max_step", min(step, MARGIN * run.friction.traits.longest_step / dx))
-    if "promise" in accuracy:
-        step = min(step, largest)
-    if "fixed" in simulation["spacing"]:
-        step *= simulation["coarser"]
-    return step
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
@@ -137,11 +135,3 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
             reason = f"{value} times |x_minus|, but {str(error).removeprefix('prestress.')}"
             raise ValueError(f"duration.balance_distances: {reason}") from None
     return float(value)
-
-
-def _samples(rule: Mapping | None, duration: float) -> Samples | None:
-    if rule is None:
-        return None
-    extent, count = rule["extent"], rule["positions"]
-    positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
-    return Samples(np.linspace(0.0, duration, rule["times"]), positions)

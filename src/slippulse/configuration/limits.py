@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..model.cost import Bound, bound_of
-from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
@@ -39,9 +38,8 @@ def simulation_problems(config: Configuration) -> list[str]:
             lattice = f" (on the lattice {coarsest:g} times coarser of the grid study)"
             expand(promised(corners(sweep | {"coarser": coarsest})))
         except ArithmeticError:
-            allowed = "numbers near 1"
-            problem = "a number too large or small to compute with"
-            problems.append(f"{key}: {problem}; allowed: {allowed}")
+            problem = "a number too large or small to compute with; allowed: numbers near 1"
+            problems.append(f"{key}: {problem}")
         except ValueError as error:
             problems.append(f"{key}.{error}{lattice}")
     return problems
@@ -50,21 +48,19 @@ def simulation_problems(config: Configuration) -> list[str]:
 def _check_profiles(scenes: Sequence[Scene]) -> None:
     """Refuse a pre-stress with which nothing ever moves."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
-        largest = _largest(profile, dx)
+        if profile.bumps:
+            # The largest pre-stress is at the peak and the bumps, or around them.
+            centres, _, widths = np.array([(0.0, 1.0, profile.width), *profile.bumps]).T
+            near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
+            blocks = np.round(np.append(near, centres) / dx) * dx
+            largest = float(np.max(profile(blocks)))
+        else:
+            largest = max([profile.peak, *(level for *_, level in profile.intervals)])
         if not largest >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
                 f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, or nothing moves"
             )
-
-
-def _largest(profile: Prestress, dx: float) -> float:
-    """The largest pre-stress of a block, at the peak and the bumps and around them."""
-    if not profile.bumps:
-        return max([profile.peak, *(level for *_, level in profile.intervals)])
-    centres, _, widths = np.array([(0.0, 1.0, profile.width), *profile.bumps]).T
-    near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
-    return float(np.max(profile(np.round(np.append(near, centres) / dx) * dx)))
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:

@@ -17,7 +17,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.composer import Composer
 from ruamel.yaml.constructor import DuplicateKeyError
 from ruamel.yaml.error import YAMLError
-from ruamel.yaml.events import AliasEvent, ScalarEvent
+from ruamel.yaml.events import ScalarEvent
 from ruamel.yaml.nodes import MappingNode
 
 from ..model.checks import short_repr
@@ -70,13 +70,11 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
             merged[key] = _merge(inner if isinstance(inner, Mapping) else {}, value, (*path, key))
         elif value is not None:
             merged[key] = value
-        elif key in merged:
-            del merged[key]
+        elif key not in merged and nearest(key, merged):
+            problem = f"{dotted((*path, key))}: null{nearest(key, merged)}"
+            raise ConfigError(f"{problem}; allowed: null for a key that there is")
         else:
-            hint = nearest(key, merged)
-            if hint:
-                allowed = "null for a key that there is"
-                raise ConfigError(f"{dotted((*path, key))}: null{hint}; allowed: {allowed}")
+            merged.pop(key, None)
     return merged
 
 
@@ -97,8 +95,16 @@ def _typed(value: Any, path: str = "") -> Any:
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
     """Read an overlay, a YAML or JSON file with a mapping; ConfigError names the file."""
+    path = Path(path)
     try:
-        overlay = _load(_text(Path(path)))
+        if path.exists() and not path.is_file():
+            raise ConfigError("not a regular file; allowed: a readable YAML file")
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE + 1)
+        if len(data) > LARGEST_FILE:
+            allowed = "what differs from config/config.yaml"
+            raise ConfigError(f"more than {LARGEST_FILE} bytes; allowed: {allowed}")
+        overlay = _load(data.decode("utf-8-sig"))
         if not isinstance(overlay, dict) or "__use_yte__" in overlay:
             given = "a template" if isinstance(overlay, dict) else short_repr(overlay)
             raise ConfigError(f"{given}; allowed: a mapping of keys, as in config/config.yaml")
@@ -106,17 +112,6 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
         return json.loads(json.dumps(overlay, default=str))
     except (OSError, ValueError, RecursionError, YAMLError) as error:
         raise ConfigError(f"{path}: {_reason(error)}") from None
-
-
-def _text(path: Path) -> str:
-    if path.exists() and not path.is_file():
-        raise ConfigError("not a regular file; allowed: a readable YAML file")
-    with path.open("rb") as file:
-        data = file.read(LARGEST_FILE + 1)
-    if len(data) > LARGEST_FILE:
-        allowed = "what differs from config/config.yaml"
-        raise ConfigError(f"more than {LARGEST_FILE} bytes; allowed: {allowed}")
-    return data.decode("utf-8-sig")
 
 
 def _reason(error: Exception) -> str:
@@ -141,25 +136,20 @@ class _PlainComposer(Composer):
     """Composer that refuses what is not plain data before anything is built from it."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        event = self.parser.peek_event()
-        is_key = isinstance(parent, MappingNode) and index is None
-        refusal = _refusal(event, is_key, at_top=parent is None)
+        event, refusal = self.parser.peek_event(), ""
+        if event.anchor:
+            refusal = "an anchor or alias; allowed: values written out"
+        elif event.tag:
+            refusal = f"tag {short_repr(str(event.tag))}; allowed: no tags"
+        elif not isinstance(event, ScalarEvent):
+            # The key of a mapping has no index.
+            if isinstance(parent, MappingNode) and index is None:
+                refusal = "a collection as a key; allowed: text"
+        elif event.implicit[0] and not event.value and parent is not None:
+            refusal = "no value; allowed: a value, or null, which removes the key"
         if refusal:
             raise ConfigError(f"line {event.start_mark.line + 1}: {refusal}")
         return super().compose_node(parent, index)
-
-
-def _refusal(event: Any, is_key: bool, at_top: bool) -> str:
-    """Why one node of a file is not plain data; empty where it is."""
-    if isinstance(event, AliasEvent) or event.anchor:
-        return "an anchor or alias; allowed: values written out"
-    if event.tag:
-        return f"tag {short_repr(str(event.tag))}; allowed: no tags"
-    if not isinstance(event, ScalarEvent):
-        return "a collection as a key; allowed: text" if is_key else ""
-    if event.implicit[0] and not event.value and not at_top:
-        return "no value; allowed: a value, or null, which removes the key"
-    return ""
 
 
 def _load(text: str) -> Any:

@@ -57,12 +57,8 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
 
 def _elsewhere(key: str | int) -> str:
     """Hint at the blocks of named entries that have a key, such as gamma."""
-    blocks: dict[str, type[BaseModel]] = {
-        "simulations.NAME": Simulation,
-        "scenes.NAME": NamedScene,
-        "model": Model,
-        "measure": Measure,
-    }
+    blocks: dict[str, type[BaseModel]] = {"simulations.NAME": Simulation, "scenes.NAME": NamedScene}
+    blocks |= {"model": Model, "measure": Measure}
     places = [f"{block}.{key}" for block, keys in blocks.items() if key in keys.model_fields]
     return f" (it is set by {' and '.join(places)})" if places else ""
 
@@ -85,9 +81,8 @@ def _deepest(path: Path, config: Any) -> tuple[Path, dict[str, Any], Any]:
     for depth, part in enumerate(path):
         if isinstance(part, int):
             # A row of numbers is named with the list that it is in, which says what a row is.
-            inner = (
-                None if "prefixItems" in resolved(schema.get("items", {})) else schema.get("items")
-            )
+            items = schema.get("items")
+            inner = None if "prefixItems" in resolved(items or {}) else items
         else:
             patterns = [*schema.get("patternProperties", {}).values()]
             any_name = patterns[0] if patterns else schema.get("additionalProperties")

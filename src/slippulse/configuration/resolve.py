@@ -47,7 +47,16 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """A scene as a simulation of one run that records everything, up to where its fronts may go."""
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
-    extent = farthest_bump + _speed_bound(scene, model) * scene.duration + 3.0 * scene.width
+    level = min(max(scene.left, scene.right, *[level for _, level in scene.steps]), 1.0 - 1e-6)
+    if level <= 0.0:
+        speed = 1.0
+    elif scene.beta is not None:
+        # The rule "total" gives this speed at beta/dx = 1.
+        speed = 1.0 / (1.0 - level)
+    else:
+        ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
+        speed = float(front_speed(level, min(ratio, LARGEST_RATIO), "total"))
+    extent = farthest_bump + speed * scene.duration + 3.0 * scene.width
     given = scene.plain()
     del given["title"]
     profile = {key: given.pop(key) for key in Profile.model_fields}
@@ -57,19 +66,6 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
     given["record"] = ["fronts", "fields", "samples"]
     return Simulation.model_validate(given)
-
-
-def _speed_bound(scene: NamedScene, model: Model) -> float:
-    """The speed that the highest level drives a front at."""
-    levels = [scene.left, scene.right, *(level for _, level in scene.steps)]
-    level = min(max(levels), 1.0 - 1e-6)
-    if level <= 0.0:
-        return 1.0
-    if scene.beta is not None:
-        # The rule "total" gives this speed at beta/dx = 1.
-        return 1.0 / (1.0 - level)
-    ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
-    return float(front_speed(level, min(ratio, LARGEST_RATIO), "total"))
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:

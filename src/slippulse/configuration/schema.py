@@ -334,26 +334,21 @@ class Configuration(Block):
             allowed = "'localised' where accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
-            self._check_scene_name(name)
+            problem = f"scenes.{name}: also the name of a simulation"
+            require(name not in self.simulations, problem, "another name")
+            others = {*self.scenes} - {name}
+            taken = name == "index" or name.removesuffix("_numbers") in others
+            problem = f"scenes.{name}: another file of that name is there"
+            require(not taken, problem, "neither index nor SCENE_numbers")
+        known = dict(RECORD_FOR)
+        for time in self.measure.trailing_times:
+            known[f"trailing_edge_{time:g}"] = "fronts"
         for name, reading in self.published.items():
-            self._check_reading(f"published.{name}", reading)
+            quantity, sweep = reading.quantity, reading.simulation
+            key = f"published.{name}"
+            check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
+            check_name(f"{key}.quantity", quantity, known, "a column of the measured table")
+            needed, recorded = known[quantity], self.simulations[sweep].record
+            allowed = f"what simulations.{sweep} records; this takes record: [fronts, {needed}]"
+            require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
         return self
-
-    def _check_scene_name(self, name: str) -> None:
-        problem = f"scenes.{name}: also the name of a simulation"
-        require(name not in self.simulations, problem, "another name")
-        others = {*self.scenes} - {name}
-        taken = name == "index" or name.removesuffix("_numbers") in others
-        problem = f"scenes.{name}: another file of that name is there"
-        require(not taken, problem, "neither index nor SCENE_numbers")
-
-    def _check_reading(self, key: str, reading: Reading) -> None:
-        trailing = {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
-        known = RECORD_FOR | trailing
-        quantity, sweep = reading.quantity, reading.simulation
-        check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
-        check_name(f"{key}.quantity", quantity, known, "a column of the measured table")
-        needed = known[quantity]
-        allowed = f"what simulations.{sweep} records; this takes record: [fronts, {needed}]"
-        recorded = needed in self.simulations[sweep].record
-        require(recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)

@@ -12,11 +12,8 @@ from collections.abc import Iterator
 def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
     """Yield the numbers of the runs, from 0, in a chunk of a sweep, numbered from 1."""
     for turn, start in enumerate(range(0, runs, chunks)):
-        run = start + (chunk - 1 - _first(turn, chunks)) % chunks
+        # Python promises that `random` draws the same numbers in every version, and no more.
+        first = int(chunks * random.Random(turn).random())
+        run = start + (chunk - 1 - first) % chunks
         if run < runs:
             yield run
-
-
-def _first(turn: int, chunks: int) -> int:
-    # Python promises that `random` draws the same numbers in every version; it promises no more.
-    return int(chunks * random.Random(turn).random())

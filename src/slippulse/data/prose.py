@@ -38,12 +38,8 @@ def fill(text: str, names: Mapping[str, object]) -> str:
     try:
         return PROSE.from_string(text).render(names)
     except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:
-        raise ValueError(f"{_line(text, error)}: {type(error).__name__}: {error}") from None
-
-
-def _line(text: str, error: Exception) -> str:
-    """Find the line of a template at which rendering failed."""
-    frames = extract_tb(error.__traceback__)
-    numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
-    last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
-    return " ".join(text.splitlines()[last - 1].split())[:100]
+        frames = extract_tb(error.__traceback__)
+        numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
+        last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
+        line = " ".join(text.splitlines()[last - 1].split())[:100]
+        raise ValueError(f"{line}: {type(error).__name__}: {error}") from None

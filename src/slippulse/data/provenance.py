@@ -36,15 +36,13 @@ def source_files(root: str | Path) -> list[Path]:
 
 def git_state(root: str | Path) -> dict | None:
     """Commit, and files that differ from it; None outside a repository or without git."""
-    git = partial(
-        subprocess.check_output, stderr=subprocess.DEVNULL, text=True, timeout=30, cwd=root
-    )
+    git = partial(subprocess.check_output, stderr=subprocess.DEVNULL, timeout=30, cwd=root)
     try:
-        commit = git(["git", "rev-parse", "HEAD"]).strip()
-        changed = git(["git", "status", "--porcelain", "--untracked-files=no"]).splitlines()
+        commit = git(["git", "rev-parse", "HEAD"], text=True).strip()
+        status = git(["git", "status", "--porcelain", "--untracked-files=no"], text=True)
     except (OSError, subprocess.SubprocessError):
         return None
-    return {"commit": commit, "changed_files": sorted(line[3:] for line in changed)}
+    return {"commit": commit, "changed_files": sorted(line[3:] for line in status.splitlines())}
 
 
 def machine_class() -> dict:
@@ -99,7 +97,7 @@ def checksums(files: Sequence[str], base: str | Path) -> str:
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
     """Write a CODECHECK manifest that lists every output with a comment."""
     entries = []
-    for path in sorted((Path(file).relative_to(base) for file in files), key=str):
+    for path in sorted([Path(file).relative_to(base) for file in files], key=str):
         comment = COMMENTS.get(path.parts[0], "result")
         if path.stem in comments:
             comment = f"{comments[path.stem]} ({path.suffix[1:].upper()})"

@@ -14,14 +14,14 @@ FOLDER = "records"
 class Origin(NamedTuple):
     """A job as planned: paths below results/, and digests of its configuration and sources.
 
-    files : SHA-256 of all that it may read, by path; options : those of the run
+    inputs : the record of the maker of each; files : SHA-256 of all other files that it may read
     """
 
     outputs: tuple[str, ...]
     step: str
     configuration: str
     sources: str
-    inputs: frozenset[str]
+    inputs: Mapping[str, str]
     files: Mapping[str, str] = {}
     options: str = ""
 
@@ -59,8 +59,8 @@ def write_record(
 ) -> None:
     """Write the record of a job that has ended; inputs are the digests of what it has read."""
     outputs = {name: file_digest(Path(results, name)) for name in origin.outputs}
-    inputs = {name: inputs[name] for name in sorted(origin.inputs)}
-    record = Record(origin.step, origin.configuration, origin.sources, outputs, inputs, dict(used))
+    made_by = origin.step, origin.configuration, origin.sources
+    record = Record(*made_by, outputs, dict(inputs), dict(used))
     write_json(record._asdict(), Path(results, record_path(origin)))
 
 

@@ -71,13 +71,10 @@ def load_dataset(path: str | Path) -> xr.Dataset:
 
 def _attributes(item: h5py.h5d.DatasetID) -> dict[str, Any]:
     """Attributes of a variable, as builtins."""
-    attributes = {}
-    for number in range(h5py.h5a.get_num_attrs(item)):
-        attribute = h5py.h5a.open(item, index=number)
-        name = attribute.name.decode()
-        if name not in PLUMBING:
-            attributes[name] = _values(attribute).tolist()
-    return attributes
+    count = h5py.h5a.get_num_attrs(item)
+    opened = [h5py.h5a.open(item, index=number) for number in range(count)]
+    named = {attribute.name.decode(): attribute for attribute in opened}
+    return {name: _values(named[name]).tolist() for name in named if name not in PLUMBING}
 
 
 def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceID) -> np.ndarray:

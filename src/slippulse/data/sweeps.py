@@ -27,25 +27,19 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     fields = [*FRONTS] if "fronts" in record else []
     fields += FIELDS if "fields" in record else []
     if fields:
-        variables |= _profiles(runs, fields)
+        # Profiles over x, one run after the other: CF's contiguous ragged array.
         attributes["featureType"] = "profile"
+        sizes = np.array([run["x"].size for run in runs])
+        variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
+        for name in ("x", "prestress", *fields):
+            variables[name] = "block", np.concatenate([run[name] for run in runs])
     if "samples" in record:
         variables |= _samples(runs)
     # A variable that is added to a Dataset is aligned with those that are there: all go in at once.
     return xr.Dataset(variables, attrs=attributes)
 
 
-def _profiles(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[str, tuple]:
-    """Profiles of the runs over x, one after the other: CF's contiguous ragged array."""
-    sizes = np.array([run["x"].size for run in runs])
-    profiles: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
-    for name in ("x", "prestress", *fields):
-        profiles[name] = "block", np.concatenate([run[name] for run in runs])
-    return profiles
-
-
 def _samples(runs: Sequence[Recorded]) -> dict[str, tuple]:
-    """Samples of the runs over time and position."""
     samples: dict[str, tuple] = {}
     for name, dimensions in DIMENSIONS.items():
         axes = [dimension.removeprefix("sample_") for dimension in dimensions]

@@ -9,19 +9,11 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
 
-from .records import FOLDER, Origin, file_digest, read_record, record_path
+from .records import FOLDER, Origin, Record, file_digest, read_record, record_path
 
 # Folders of results in which no rule makes the files.
 BESIDE = ("logs", "benchmarks", "reference")
-
-
-class Comparison(NamedTuple):
-    """A record against its origin: why the result is outdated, else the digest of its content."""
-
-    reason: str = ""
-    digest: str = ""
 
 
 class Tree:
@@ -29,7 +21,7 @@ class Tree:
 
     def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
         self.results, self.origins = Path(results), origins
-        self._read, self._compared = cache(read_record), cache(self._compare)
+        self._read, self._outdated = cache(read_record), cache(self._find_outdated)
 
     def behind(self, names: Iterable[str]) -> list[str]:
         """List some results after all that they are made from, with all files of the same jobs."""
@@ -49,20 +41,19 @@ class Tree:
         """Find which of some results are not as a run would make them, each with the reason."""
         reasons = {}
         for name in names:
-            path, compared = self.results / name, self._compared(name)
+            path, reason = self.results / name, self._outdated(name)
             if not path.is_file():
-                reasons[name] = "missing"
-            elif compared.reason:
-                reasons[name] = compared.reason
-            elif file_digest(path) != compared.digest:
-                reasons[name] = "not what its job wrote"
+                reason = "missing"
+            elif not reason and file_digest(path) != self._record(name).outputs[name]:
+                reason = "not what its job wrote"
+            if reason:
+                reasons[name] = reason
         return reasons
 
     def outdated(self) -> dict[str, str]:
         """Find the results that would be made anew, whatever their content, the last one first."""
         present = [name for name in reversed([*self.origins]) if (self.results / name).is_file()]
-        reasons = {name: self._compared(name).reason for name in present}
-        return {name: reason for name, reason in reasons.items() if reason}
+        return {name: self._outdated(name) for name in present if self._outdated(name)}
 
     def to_renew(self, names: Iterable[str]) -> dict[str, str]:
         """Find files that a run for some results would make anew, with the reason."""
@@ -81,8 +72,7 @@ class Tree:
         files = [path for path in self.results.rglob("*") if path.is_file() and path.name[0] != "."]
         paths = [path.relative_to(self.results) for path in files]
         present = {path.as_posix() for path in paths if path.parts[0] not in BESIDE}
-        wanted = present.union(complete)
-        compared = [name for name in self.origins if name in wanted]
+        compared = [name for name in self.origins if name in present.union(complete)]
         records = {record_path(origin) for origin in self.origins.values()}
         unknown = sorted(present - self.origins.keys() - records)
         others = self._made_by_others(unknown)
@@ -105,23 +95,26 @@ class Tree:
                     made |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
         return {name: made[name] for name in unknown if name in made}
 
-    def _compare(self, name: str) -> Comparison:
-        """Compare the record of a result with its origin, and so with those of its inputs."""
+    def _record(self, name: str) -> Record:
+        return self._read(self.results / record_path(self.origins[name]))
+
+    def _find_outdated(self, name: str) -> str:
+        """Reason why the record of a result is not that of its origin; empty where it is."""
         origin = self.origins[name]
         try:
-            record = self._read(self.results / record_path(origin))
+            record = self._record(name)
         except FileNotFoundError:
-            return Comparison("no record")
+            return "no record"
         except (OSError, ValueError):
-            return Comparison("its record cannot be read")
-        known = name in record.outputs and record.inputs.keys() == origin.inputs
-        if record.step != origin.step or not known:
-            return Comparison("made by another rule")
+            return "its record cannot be read"
+        made_by = record.step, record.inputs.keys(), name in record.outputs
+        if made_by != (origin.step, origin.inputs.keys(), True):
+            return "made by another rule"
         if record.configuration != origin.configuration:
-            return Comparison("made by another configuration")
+            return "made by another configuration"
         if record.sources != origin.sources:
-            return Comparison("made by other sources")
+            return "made by other sources"
         for source, digest in record.inputs.items():
-            if self._compared(source) != Comparison(digest=digest):
-                return Comparison(f"older than {source}, which it is made from")
-        return Comparison(digest=record.outputs[name])
+            if self._outdated(source) or self._record(source).outputs[source] != digest:
+                return f"older than {source}, which it is made from"
+        return ""

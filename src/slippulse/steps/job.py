@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..data.files import CONFIGURATION
-from ..data.records import Origin, write_record
+from ..data.records import Origin, read_record, write_record
 from . import reading
 
 # Seconds between two lines of progress.
@@ -26,11 +26,14 @@ def run_job(
     began, processor_began = time.monotonic(), time.process_time()
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log) as progress:
-        reading.watch([*origin.files, *(f"results/{name}" for name in origin.inputs)])
+        inputs = {}
+        for result, record in origin.inputs.items():
+            inputs[result] = read_record(Path("results", record)).outputs[result]
+        expected = {**origin.files, **{f"results/{key}": inputs[key] for key in inputs}}
+        reading.watch(expected)
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
-        reading.check(origin.files)
-        inputs = {name: reading.digest_of_read(f"results/{name}") for name in origin.inputs}
+        reading.check(expected)
         seconds = time.monotonic() - began
         used = {
             "seconds": round(seconds, 2),

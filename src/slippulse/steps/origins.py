@@ -6,7 +6,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
 
-from ..data.records import Origin, digest_of
+from ..data.records import Origin, digest_of, record_path
 from .reach import content_digest, sources
 
 RESULTS = Path("results")
@@ -59,8 +59,9 @@ def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
         if name not in origins:
             job = makers[name]
             texts = sorted(path for path in job.inputs if below(path) == path)
-            inputs = frozenset(map(below, {*job.inputs}.difference(texts)))
-            earlier = sorted({origin(source).configuration for source in inputs})
+            names = sorted(map(below, {*job.inputs}.difference(texts)))
+            inputs = {name: record_path(origin(name)) for name in names}
+            earlier = sorted({origin(name).configuration for name in names})
             configuration = digest_of([job.settings, *earlier])
             files = _digests(tuple(modules_of(job.step, job.settings)), tuple(texts))
             outputs, digest = tuple(map(below, job.outputs)), digest_of(files)

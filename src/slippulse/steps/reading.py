@@ -19,7 +19,7 @@ _watched: set[str] = set()
 
 
 class FileChanged(RuntimeError):
-    """A file that is not as it was when the run was planned."""
+    """A file that is not as the run was planned with, or as its job wrote it."""
 
 
 class _FromSource(SourceFileLoader):
@@ -57,24 +57,12 @@ def watch(paths: Iterable[str]) -> None:
 def check(planned: Mapping[str, str]) -> None:
     """Raise FileChanged unless all that was read is as planned, by path and SHA-256."""
     for path, digest in planned.items():
-        if _digests(path) - {digest}:
-            raise FileChanged(f"{path}: changed since this run was planned; run again")
-
-
-def digest_of_read(path: str) -> str:
-    """SHA-256 of a file as this job has read it. Raises FileChanged if it read two versions."""
-    digests = _digests(path)
-    if len(digests) != 1:
-        raise FileChanged(f"{path}: changed while a job read it; run again")
-    return min(digests)
-
-
-def _digests(path: str) -> set[str]:
-    """Digests of a file at each time when it was read; as it is now, if another program read it."""
-    real = _real(path)
-    if real in _watched - _read.keys():
-        _add_now(real)
-    return _read.get(real, set())
+        real = _real(path)
+        # Another program may have read it.
+        if real in _watched - _read.keys():
+            _add_now(real)
+        if _read.get(real, set()) - {digest}:
+            raise FileChanged(f"{path}: changed while this run was at work; run again")
 
 
 def _real(path: str) -> str:

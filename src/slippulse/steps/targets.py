@@ -1,11 +1,13 @@
 """Targets of a run, obstacles to it, and the summary that it leaves."""
 
 import os
+import re
 import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TextIO
 
@@ -134,6 +136,20 @@ def _remove_unfinished() -> None:
         for path in [*left, *RESULTS.rglob(".*-????????.*")]:
             path.unlink(missing_ok=True)
         sys.stderr.write("The last run was killed: what it left unfinished is made anew.\n")
+
+
+def unlike(lock: str | Path) -> str:
+    """First package whose installed version is not in a lock, in one line; or an empty text."""
+    pins = re.findall(r"^([\w.-]+)==([^\s;\\]+)", Path(lock).read_text(encoding="utf-8"), re.M)
+    for name in dict.fromkeys(name for name, _ in pins):
+        # Another system, or another Python, needs other packages: the lock names those of all.
+        with suppress(PackageNotFoundError):
+            wanted = sorted({pinned for pinned_name, pinned in pins if pinned_name == name})
+            if version(name) not in wanted:
+                allowed = f"{' or '.join(wanted)}, as in requirements.lock"
+                remedy = "(rm -r .venv; make setup)"
+                return f"{name}: {version(name)} is installed; allowed: {allowed} {remedy}"
+    return ""
 
 
 def write_faulty(reasons: Mapping[str, str], outcome: str) -> None:
