@@ -13,7 +13,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterable
 from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
@@ -59,25 +58,22 @@ def full_target(target: str) -> str:
     return target
 
 
-def changed_verdicts(ledger: Iterable) -> str:
-    """A line for each verdict that an altered configuration changed, with a headline."""
-    from ruamel.yaml import YAML
-
-    shipped = YAML(typ="safe").load(Path("manuscript/shipped_verdicts.yaml"))
-    pairs = [(claim, shipped.get(claim.id, "absent")) for claim in ledger]
-    lines = [f"  {c.id}: {before} -> {c.verdict}\n" for c, before in pairs if before != c.verdict]
-    return "Verdicts that differ from the shipped ones:\n" + "".join(lines) if lines else ""
-
-
 def answer() -> str:
     """Say what to open when a run has ended, with the verdicts if it made or kept them."""
     called = json.loads(CALL.read_text(encoding="utf-8"))
     text = ""
     if called["judged"]:
         from slippulse.claims.ledger import Ledger
+        from slippulse.claims.reading import read_text
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        text = f"{ledger.summary()}\n{changed_verdicts(ledger) if called['altered'] else ''}"
+        shipped, changed = read_text("manuscript/shipped_verdicts.yaml"), ""
+        for claim in ledger if called["altered"] else ():
+            before = shipped.get(claim.id, "absent")
+            if before != claim.verdict:
+                changed += f"  {claim.id}: {before} -> {claim.verdict}\n"
+        headline = "Verdicts that differ from the shipped ones:\n" if changed else ""
+        text = f"{ledger.summary()}\n{headline}{changed}"
     if called["page"]:
         return f"{text}Open results/index.html"
     if called["targets"] == ["all"]:

@@ -12,9 +12,15 @@ import pytest
 import yaml
 
 from slippulse.configuration.problems import ConfigError
-from slippulse.data.alterations import changes
 from slippulse.data.files import write_text
-from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
+from slippulse.data.provenance import (
+    changes,
+    job_times,
+    machine_class,
+    manifest,
+    provenance,
+    source_files,
+)
 from slippulse.data.records import Origin, digest_of, file_digest, read_record, write_record
 from slippulse.data.tree import Tree
 from slippulse.steps.origins import Job, jobs_of, origins_of

@@ -31,15 +31,12 @@ try:
     SHIPPED = read_overlay(f"{workflow.basedir}/config/config.yaml")
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     # A job on another node starts Snakemake again; its scenes were checked here.
-    CONFIG = read_config(
-        SHIPPED, OVERLAYS, workflow.config_settings.config, workflow.is_main_process
-    )
+    said = workflow.config_settings.config
+    CONFIG = read_config(SHIPPED, OVERLAYS, said, workflow.is_main_process)
     if CONFIG.claims:
         read_entries("manuscript/claims.yaml", CONFIG.given()["claims"])
-    if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
-        raise ConfigError(
-            f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(STUDY_NEEDS)}"
-        )
+    if unknown := sorted({*(CONFIG.studies or ())} - {*STUDY_NEEDS}):
+        raise ConfigError(f"studies: {', '.join(unknown)}; allowed: {', '.join(STUDY_NEEDS)}")
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
@@ -123,7 +120,7 @@ def made(kind, names):
 
 # Changes by an overlay or the command line; None where nothing can have changed.
 ALTERED = None
-if OVERLAYS or workflow.config_settings.config:
+if OVERLAYS or said:
     ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
 
 

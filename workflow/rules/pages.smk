@@ -1,7 +1,6 @@
 # Files to read: claims, explorer, report, provenance, and the page that leads to all.
 
-from slippulse.data.alterations import changes
-from slippulse.data.provenance import source_files
+from slippulse.data.provenance import changes, source_files
 
 CLAIM_STUDIES = (
     "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"
@@ -9,9 +8,8 @@ CLAIM_STUDIES = (
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
     # The claims are first here, and so in Snakemake's report.
-    *expand(
-        "results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")
-    ),
+    *[f"results/{name}" for name in ("claims.html", "claims.json", "findings.json")],
+    "results/explorer.html",
     *made("figures", [*NEEDS, *SWEEPS]),
     *made("data", SIMULATIONS),
     *made("measured", SIMULATIONS),
@@ -22,11 +20,8 @@ RESULTS = [
 ]
 EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
 # By default, a draft makes the figures of the paper and what an overlay adds.
-DRAFT = (
-    made("figures", [*FIGURES, *SWEEPS])
-    + made("measured", OWN_SIMULATIONS)
-    + made("scenes", OWN_SCENES)
-)
+DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS)
+DRAFT += made("scenes", OWN_SCENES)
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from itertools import chain
 from typing import Any
 
-from ..data.alterations import changes
+from ..data.provenance import changes
 from .resolve import all_simulations, resolve
 from .schema import Configuration
 

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import yaml
 
-from .alterations import changes
 from .records import FOLDER, digest_of, file_digest, read_record
 from .versions import PACKAGES
 
@@ -23,6 +22,17 @@ PAPER = {
     "journal": "Physical Review E 103, 052802 (2021)",
     "doi": "https://doi.org/10.1103/PhysRevE.103.052802",
 }
+
+
+def changes(shipped: object, config: object, key: str = "") -> list[dict]:
+    """List the values that differ below a key, as shipped and as here; an absent one is None."""
+    if not (isinstance(shipped, Mapping) and isinstance(config, Mapping)):
+        return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
+    changed = []
+    for name in dict.fromkeys([*shipped, *config]):
+        dotted = f"{key}.{name}" if key else str(name)
+        changed += changes(shipped.get(name), config.get(name), dotted)
+    return changed
 
 
 def source_files(root: str | Path) -> list[Path]:

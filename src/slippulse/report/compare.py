@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..data.alterations import changes
 from ..data.files import UnreadableFile
+from ..data.provenance import changes
 from ..data.tables import load_table
 
 # These columns make a run the same run in another tree, whatever its lattice.

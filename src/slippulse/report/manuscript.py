@@ -13,9 +13,9 @@ from PIL import Image
 
 from ..claims.ledger import Ledger
 from ..claims.reading import coverage, read_text
-from ..data.alterations import changes
 from ..data.numerals import FILTERS, percent
 from ..data.prose import fill
+from ..data.provenance import changes
 from .tables import alteration_note, errata, verdicts
 from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata
 

@@ -23,7 +23,7 @@ def run_job(
     origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
 ) -> None:
     """Run the step of a job; files and outputs are paths, or lists of them, by name."""
-    began, processor_began = time.monotonic(), time.process_time()
+    began = time.monotonic()
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log) as progress:
         inputs = {}
@@ -35,12 +35,7 @@ def run_job(
         step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
         reading.check(expected)
         seconds = time.monotonic() - began
-        used = {
-            "seconds": round(seconds, 2),
-            "processor_seconds": round(time.process_time() - processor_began, 2),
-            "options": origin.options,
-        }
-        write_record(origin, inputs, used)
+        write_record(origin, inputs, {"seconds": round(seconds, 2), "options": origin.options})
     if not sys.stderr.isatty():
         sys.stderr.write(f"{Path(log).read_text(encoding='utf-8')}  {name}: {seconds:.1f} s\n")
 

@@ -1,7 +1,6 @@
 """Jobs of the rules, and by which job, configuration and sources each result is made."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -63,7 +62,8 @@ def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
             inputs = {name: record_path(origin(name)) for name in names}
             earlier = sorted({origin(name).configuration for name in names})
             configuration = digest_of([job.settings, *earlier])
-            files = _digests(tuple(modules_of(job.step, job.settings)), tuple(texts))
+            read = [*sources(*modules_of(job.step, job.settings)), *texts, LOCK]
+            files = {path: content_digest(path) for path in read}
             outputs, digest = tuple(map(below, job.outputs)), digest_of(files)
             made = Origin(outputs, job.step, configuration, digest, inputs, files, options)
             origins.update(dict.fromkeys(outputs, made))
@@ -81,9 +81,3 @@ def modules_of(step: str, settings: Mapping) -> list[str]:
         if key in settings:
             modules.append(room + settings[key].removeprefix("slippulse.").partition(":")[0])
     return modules
-
-
-@cache
-def _digests(modules: tuple[str, ...], texts: tuple[str, ...]) -> dict[str, str]:
-    """SHA-256 of all that some modules reach, of texts that their step reads, and of the lock."""
-    return {path: content_digest(path) for path in [*sources(*modules), *texts, LOCK]}

@@ -49,7 +49,6 @@ class Jobs:
         """Run a job, given by the arguments of `run_job`. Raises JobFailed."""
         with self._turn:
             process, jobs = self._idle.pop() if self._idle else self._start()
-        reason = None
         try:
             jobs.send(job)
             reason = jobs.recv()

@@ -13,6 +13,7 @@ ROOT = PACKAGE.parents[1]
 IMPORT = re.compile(r"^ *from (\.+)([\w.]*) import (?:\(([^)]*)\)|(.*))", re.M)
 
 
+@cache
 def sources(*modules: str) -> list[str]:
     """List the files that modules, dotted below slippulse, reach by imports; and their FILES."""
     reached: set[Path] = set()
@@ -23,14 +24,14 @@ def sources(*modules: str) -> list[str]:
             reached.add(path)
             pending += _imported(path)
     for path in [*reached]:
-        for pattern in _constant(path, "FILES", ()):
+        for pattern in _constant(path, "FILES") or ():
             reached.update(PACKAGE.glob(pattern))
     return sorted(path.relative_to(ROOT).as_posix() for path in reached)
 
 
-def declared(module: str, name: str, default=None):
+def declared(module: str, name: str):
     """Read a constant that is written out in a module, without importing the module."""
-    return _constant(_module_file(PACKAGE.joinpath(*module.split("."))), name, default)
+    return _constant(_module_file(PACKAGE.joinpath(*module.split("."))), name)
 
 
 def needs_of(room: str) -> dict[str, dict]:
@@ -47,20 +48,14 @@ def content_digest(path: str | Path) -> str:
 
 
 @cache
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8")
-
-
-def _constant(path: Path, name: str, default):
-    """Value of a constant at the top of a module; the default where it has none."""
-    text = _text(path)
+def _constant(path: Path, name: str):
+    """Value of a constant at the top of a module; None where it has none."""
+    text = path.read_text(encoding="utf-8")
     # Few modules have the constant: only these are parsed.
-    if f"\n{name} = " not in text:
-        return default
-    for node in ast.parse(text).body:
+    for node in ast.parse(text).body if f"\n{name} = " in text else ():
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
             return ast.literal_eval(node.value)
-    return default
+    return None
 
 
 def _module_file(path: Path) -> Path:
@@ -73,7 +68,9 @@ def _imported(path: Path) -> list[Path]:
     """List the files of the package that a module imports, with the packages that it is in."""
     parents = path.relative_to(PACKAGE).parents
     files = [PACKAGE / parent / "__init__.py" for parent in parents]
-    for dots, module, in_parentheses, on_the_line in IMPORT.findall(_text(path)):
+    for dots, module, in_parentheses, on_the_line in IMPORT.findall(
+        path.read_text(encoding="utf-8")
+    ):
         # One dot is the folder of the module, two are the folder above.
         home = path.parents[len(dots) - 1].joinpath(*module.split("."))
         files.append(_module_file(home))

@@ -13,11 +13,7 @@ from ..report.document import write_html, write_pdf
 from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
 from .inputs import given
 
-FILES = (
-    "report/templates/report.html",
-    "report/templates/report.css",
-    "report/templates/report.typ",
-)
+FILES = ("report/templates/report.*",)
 # Tables that the report quotes.
 NEEDS = {
     "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
