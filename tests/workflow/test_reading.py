@@ -48,7 +48,7 @@ def test_a_file_that_was_edited_while_it_was_read_is_told(tmp_path, way):
     (tmp_path / "results").mkdir()
     command = [sys.executable, "-c", PROGRAM.format(read=WAYS[way])]
     said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
-    changed = "results/text: changed while this run was at work; run again"
+    changed = "results/text: changed since its job wrote it; run again"
     assert said.splitlines() == ["read as planned", changed]
 
 
@@ -68,7 +68,9 @@ def test_a_result_that_was_altered_since_its_job_wrote_it_fails_the_job_that_rea
     assert read_record(record).inputs == {"a.csv": file_digest(table)}
     record.unlink()
     table.write_text("a\n2\n")
-    with pytest.raises(JobFailed, match=r"\AFileChanged: results/a.csv: changed while .*\Z"):
+    with pytest.raises(
+        JobFailed, match=r"\AFileChanged: results/a.csv: changed since its job wrote it"
+    ):
         jobs.run(*job)
     assert not record.exists()
 
@@ -86,7 +88,7 @@ def test_a_source_that_was_edited_while_a_run_was_at_work_fails_its_job(project,
     libraries.write_text(started + edit, encoding="utf-8")
     result = snakemake(folder, "--", FIGURE)
     said = (result.stdout + result.stderr).strip().splitlines()
-    reason = f"FileChanged: src/slippulse/{source}: changed while this run was at work; run again"
+    reason = f"FileChanged: src/slippulse/{source}: changed since this run was planned; run again"
     assert result.returncode != 0 and said[-1].startswith(reason)
     assert path.read_text(encoding="utf-8") == text
     assert not Path(folder, f"results/records/{FIGURE.removeprefix('results/')}.json").exists()

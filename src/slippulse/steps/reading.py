@@ -19,7 +19,7 @@ _watched: set[str] = set()
 
 
 class FileChanged(RuntimeError):
-    """A file that is not as the run was planned with, or as its job wrote it."""
+    """A file that is not as it was when the run was planned, or as its job wrote it."""
 
 
 class _FromSource(SourceFileLoader):
@@ -62,7 +62,8 @@ def check(planned: Mapping[str, str]) -> None:
         if real in _watched - _read.keys():
             _add_now(real)
         if _read.get(real, set()) - {digest}:
-            raise FileChanged(f"{path}: changed while this run was at work; run again")
+            since = "its job wrote it" if path.startswith("results/") else "this run was planned"
+            raise FileChanged(f"{path}: changed since {since}; run again")
 
 
 def _real(path: str) -> str:
