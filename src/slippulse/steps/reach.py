@@ -68,16 +68,13 @@ def _imported(path: Path) -> list[Path]:
     """List the files of the package that a module imports, with the packages that it is in."""
     parents = path.relative_to(PACKAGE).parents
     files = [PACKAGE / parent / "__init__.py" for parent in parents]
-    for dots, module, in_parentheses, on_the_line in IMPORT.findall(
-        path.read_text(encoding="utf-8")
-    ):
+    text = path.read_text(encoding="utf-8")
+    for dots, module, in_parentheses, on_the_line in IMPORT.findall(text):
         # One dot is the folder of the module, two are the folder above.
         home = path.parents[len(dots) - 1].joinpath(*module.split("."))
         files.append(_module_file(home))
         names = re.sub(r"#.*| as \w+", "", in_parentheses or on_the_line)
         for name in re.findall(r"\w+", names):
             # The text does not tell which modules of an imported package are used: all count.
-            files += (home / name).rglob("*.py")
-            if (home / f"{name}.py").exists():
-                files.append(home / f"{name}.py")
+            files += [*(home / name).rglob("*.py"), *home.glob(f"{name}.py")]
     return files
