@@ -9,7 +9,7 @@ from collections.abc import Callable
 from ..model.samples import Samples
 from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
-from .friction import resist
+from .friction import law_of_friction
 from .jit import entry, inner
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
@@ -43,29 +43,40 @@ def forces(medium, motion, sliding, history, t):
 
 @inner()
 def move(medium, motion, sliding, history, dt, end):
-    """Advance velocity, then slip, never backwards. Returns the largest velocity, or inf."""
+    """Advance velocity, then slip, never backwards.
+
+    Returns: the largest velocity, or inf; the work against friction, except alpha v.
+    """
     slip, velocity = motion.w[0], motion.w[1]
     force, tally = motion.w[2], history.tally
-    fastest = 0.0
+    fastest, friction, work = 0.0, 0.0, 0.0
     for i in range(1, slip.shape[0] - 1):
         if not sliding[i]:
             continue
         before = velocity[i]
+        if medium.law > 0:
+            since = slip[i] - motion.released[i]
+            value = law_of_friction(medium.law, since, before, medium.first, medium.second)
+            friction = motion.resists[i] * value
+            force[i] -= friction
         after = before + dt * force[i]
+        weight = 2.0 if medium.mirror and i > 1 else 1.0
         if after <= 0.0:
-            weight = 2.0 if medium.mirror and i > 1 else 1.0
+            # A block that stops works against nothing: its kinetic energy is a loss of its own.
             tally.stick_loss += weight * 0.5 * before * before * medium.dx
             tally.min_velocity = min(tally.min_velocity, after)
             after = 0.0
             sliding[i] = False
             motion.released[i] = slip[i]
             note_stick(history, i, end)
+        else:
+            work += weight * friction * 0.5 * (before + after)
         velocity[i] = after
         slip[i] += dt * after
         if not after < math.inf:
-            return math.inf
+            return math.inf, 0.0
         fastest = max(fastest, after)
-    return fastest
+    return fastest, medium.dx * dt * work
 
 
 @inner()
@@ -113,10 +124,10 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         moving = forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
-        tally.friction_loss += resist(medium, motion, sliding, dt)
-        fastest = move(medium, motion, sliding, history, dt, end)
+        fastest, work = move(medium, motion, sliding, history, dt, end)
         if fastest == math.inf:
             return UNSTABLE
+        tally.friction_loss += work
         if medium.mirror:
             velocity[0] = velocity[2]
         if medium.beta > 0.0 or medium.alpha != 0.0:

@@ -64,32 +64,6 @@ def turning_point(coefficients, slopes, degree, lower, upper):
 
 
 @inner()
-def highest_possible(coefficients, degree, h):
-    """An upper bound of a polynomial between 0 and h."""
-    value = 0.0
-    for k in range(degree, 0, -1):
-        value = h * (max(coefficients[k], 0.0) + value)
-    return coefficients[0] + value
-
-
-@inner(inline=True)
-def stress_polynomial(out, medium, motion, block, top):
-    """Coefficients of the stress of a stuck block minus 1, in powers of the time of the step."""
-    w, offset = motion.w, motion.offset
-    strain = motion.strain
-    ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
-    slip = w[0, block] + offset[block]
-    elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.per_dx2 * ahead
-    out[0] = elastic - medium.leaf * slip + motion.tau[block] - 1.0
-    scale, damping = 1.0, medium.damping if medium.total and medium.beta > 0.0 else 0.0
-    for k in range(1, top + 1):
-        neighbours = w[k, block - 1] + w[k, block + 1]
-        out[k - 1] += scale * damping * neighbours
-        scale *= RECIPROCAL[k]
-        out[k] = scale * medium.per_dx2 * neighbours
-
-
-@inner()
 def first_reach_of_threshold(coefficients, slopes, degree, lower, upper):
     """First time from ``lower`` to ``upper`` at which a stress, minus 1, reaches 0; inf if none."""
     # Between blocks that slow down, a stress can pass the threshold and fall again within a step.
@@ -106,12 +80,26 @@ def first_reach_of_threshold(coefficients, slopes, degree, lower, upper):
 @inner(inline=True)
 def foresee_release(medium, motion, forecast, block, now, h, top):
     """Time at which a stuck block is released until h, or inf, and its stress at ``now``."""
+    w, strain, offset = motion.w, motion.strain, motion.offset
+    ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
+    slip = w[0, block] + offset[block]
+    elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.per_dx2 * ahead
+    # The stress minus 1 is a polynomial of the time since the step began.
     coefficients = forecast.coefficients
-    stress_polynomial(coefficients, medium, motion, block, top)
+    coefficients[0] = elastic - medium.leaf * slip + motion.tau[block] - 1.0
+    scale, damping = 1.0, medium.damping if medium.total and medium.beta > 0.0 else 0.0
+    for k in range(1, top + 1):
+        neighbours = w[k, block - 1] + w[k, block + 1]
+        coefficients[k - 1] += scale * damping * neighbours
+        scale *= RECIPROCAL[k]
+        coefficients[k] = scale * medium.per_dx2 * neighbours
     below = polynomial(coefficients, top, now)
     if below >= 0.0:
         return now, below + 1.0
-    if highest_possible(coefficients, top, h) < 0.0:
+    rise = 0.0
+    for k in range(top, 0, -1):
+        rise = h * (max(coefficients[k], 0.0) + rise)
+    if coefficients[0] + rise < 0.0:
         return math.inf, below + 1.0
     return first_reach_of_threshold(coefficients, forecast.slopes, top, now, h), below + 1.0
 
@@ -161,19 +149,6 @@ def simultaneous(segments, forecast, mirror, block, latest):
         distance = abs(forecast.stick_block[q] - block)
         others += 0 < distance <= near and forecast.stick_time[q] <= latest
     return others > 0
-
-
-@inner()
-def due_releases(segments, forecast, latest, due):
-    """Fill ``due`` with the blocks that are released until ``latest``. Returns their number."""
-    count = 0
-    for r in range(segments.count.n):
-        for edge in (segments.starts[r] - 1, segments.ends[r]):
-            joined = count > 0 and due[count - 1] == edge
-            if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
-                due[count] = edge
-                count += 1
-    return count
 
 
 @inner()

@@ -27,9 +27,9 @@ def constants_of(
 
 def choose(laws: Sequence[type[Friction]]):
     """Compiled function of the number of a law among ``laws`` and of what the law depends on."""
-    first, rest = register_jitable(laws[0].friction), choose(laws[1:]) if laws[1:] else None
-    if rest is None:
-        return inner()(lambda law, slip, velocity, one, two: first(slip, velocity, one, two))
+    if not laws:
+        return inner()(lambda law, slip, velocity, one, two: 0.0)
+    first, rest = register_jitable(laws[0].friction), choose(laws[1:])
 
     @inner()
     def chosen(law, slip, velocity, one, two):
@@ -41,28 +41,6 @@ def choose(laws: Sequence[type[Friction]]):
 
 
 law_of_friction = choose(LAWS)
-
-
-@inner()
-def resist(medium, motion, sliding, dt):
-    """Subtract friction, except alpha v, from the force of blocks. Returns the work against it."""
-    if medium.law == 0:
-        return 0.0
-    slip, velocity = motion.w[0], motion.w[1]
-    force, work = motion.w[2], 0.0
-    for i in range(1, slip.shape[0] - 1):
-        if not sliding[i]:
-            continue
-        since, before = slip[i] - motion.released[i], velocity[i]
-        value = law_of_friction(medium.law, since, before, medium.first, medium.second)
-        friction = motion.resists[i] * value
-        force[i] -= friction
-        after = before + dt * force[i]
-        # A block that stops works against nothing: its kinetic energy is a loss of its own.
-        if after > 0.0:
-            weight = 2.0 if medium.mirror and i > 1 else 1.0
-            work += weight * friction * 0.5 * (before + after)
-    return medium.dx * dt * work
 
 
 @inner()
@@ -119,17 +97,3 @@ def sums_of_motion(w, first, last):
         square += w[1, i] * w[1, i]
         product += w[1, i] * w[2, i]
     return square, product
-
-
-@inner()
-def dissipation_by_rate(medium, w, segments):
-    """Dissipation D = alpha dx sum of v_i^2 over all segments, and dD/dt."""
-    square, product = 0.0, 0.0
-    for r in range(segments.count.n):
-        s, p = sums_of_motion(w, segments.starts[r], segments.ends[r])
-        # The block at x = 0 has no mirror image.
-        once = 0.5 if medium.mirror and segments.starts[r] == 1 else 0.0
-        square += s - once * w[1, 1] * w[1, 1]
-        product += p - once * w[1, 1] * w[2, 1]
-    scale = (2.0 if medium.mirror else 1.0) * medium.alpha * medium.dx
-    return scale * square, 2.0 * scale * product

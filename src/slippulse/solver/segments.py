@@ -5,12 +5,14 @@ from .jit import inner
 
 @inner()
 def release_block(segments, block):
-    """Add a stuck block to the segments: extend, join or begin one."""
+    """Add a block to the segments, unless it is in one: extend, join or begin one."""
     starts, ends = segments.starts, segments.ends
     n = segments.count.n
     r = 0
     while r < n and ends[r] < block:
         r += 1
+    if r < n and starts[r] <= block < ends[r]:
+        return
     if r < n and ends[r] == block:
         ends[r] = block + 1
         if r + 1 < n and starts[r + 1] == block + 1:
@@ -59,15 +61,6 @@ def remove(segments, r):
     for q in range(r, segments.count.n - 1):
         starts[q], ends[q] = starts[q + 1], ends[q + 1]
     segments.count.n -= 1
-
-
-@inner(inline=True)
-def holds(segments, block):
-    """True if a block is in one of the segments."""
-    r = 0
-    while r < segments.count.n and segments.ends[r] <= block:
-        r += 1
-    return r < segments.count.n and segments.starts[r] <= block
 
 
 @inner(inline=True)

@@ -42,13 +42,6 @@ def derivative(w, k, i, per_dx2, leaf, damping):
 
 
 @inner(inline=True)
-def next_derivative(w, k, first, last, per_dx2, leaf, damping):
-    """Time derivative k of slip from the two before it."""
-    for i in blocks(first, last):
-        w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
-
-
-@inner(inline=True)
 def nest(inner, w, k, weight, lower_weight, first, last):
     """Two levels of a Taylor polynomial, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
     for i in blocks(first, last):
@@ -97,13 +90,6 @@ def advance_slip(w, velocity, first, last, step, order):
         w[2, i] = increment
         w[0, i] += increment
         w[1, i] = velocity[i]
-
-
-@inner(inline=True)
-def advance_strain(strain, w, first, last, per_dx):
-    """Strain between each block and the next from the slip increments in w[2]."""
-    for i in blocks(first, last):
-        strain[i] += per_dx * (w[2, i + ONE] - w[2, i])
 
 
 @inner(reorder=True)

@@ -12,34 +12,11 @@ import math
 
 import numpy as np
 
+from . import foresight, friction, stencils
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
-from .foresight import (
-    due_releases,
-    find_sticks,
-    find_weak,
-    foresee_releases,
-    next_event,
-    simultaneous,
-)
-from .friction import (
-    begin_weakening,
-    dissipation_by_rate,
-    end_weakening,
-    resist_weakening,
-    strengthen,
-    weaken,
-)
 from .jit import entry, inner, once
-from .segments import holds, release_block, stick_block
-from .stencils import (
-    advance_slip,
-    advance_strain,
-    first_acceleration,
-    next_derivative,
-    stretching,
-    velocity_after,
-)
+from .segments import release_block, stick_block
 
 # Events closer than this fraction of the largest step are one, as where the fronts of a symmetric
 # scene meet.
@@ -97,15 +74,20 @@ def dissipation(medium, motion, segments):
     square, product = 0.0, 0.0
     rate, change = 0.0, 0.0
     for r in range(segments.count.n):
-        start = segments.starts[r]
-        left = 1 if medium.mirror and start == 1 else start - 1
-        s, p = stretching(motion.w, left, segments.ends[r])
+        start, end = segments.starts[r], segments.ends[r]
+        at_axis = medium.mirror and start == 1
+        s, p = stencils.stretching(motion.w, start if at_axis else start - 1, end)
         square += s
         product += p
-    if medium.alpha != 0.0:
-        rate, change = dissipation_by_rate(medium, motion.w, segments)
-    scale = (2.0 if medium.mirror else 1.0) * medium.beta / medium.dx
-    return scale * square + rate, 2.0 * scale * product + change
+        if medium.alpha != 0.0:
+            # The block at x = 0 has no mirror image.
+            half, w = 0.5 if at_axis else 0.0, motion.w
+            s, p = friction.sums_of_motion(w, start, end)
+            rate += s - half * w[1, 1] * w[1, 1]
+            change += p - half * w[1, 1] * w[2, 1]
+    sides = 2.0 if medium.mirror else 1.0
+    viscous, drag = sides * medium.beta / medium.dx, sides * medium.alpha * medium.dx
+    return viscous * square + drag * rate, 2.0 * (viscous * product + drag * change)
 
 
 @inner()
@@ -132,17 +114,19 @@ def derivatives(medium, motion, segments, alpha, top):
         a, b = segments.starts[r], segments.ends[r]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
-        first_acceleration(w, motion.strain, motion.tau, a, b, medium.per_dx, leaf, damping)
+        strain, tau = motion.strain, motion.tau
+        stencils.first_acceleration(w, strain, tau, a, b, medium.per_dx, leaf, damping)
         if alpha != 0.0:
-            strengthen(w, 2, a, b, alpha)
-        resist_weakening(motion, a, b, medium.d_c)
+            friction.strengthen(w, 2, a, b, alpha)
+        friction.resist_weakening(motion, a, b, medium.d_c)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            next_derivative(w, k, a, b, medium.per_dx2, leaf, damping)
+            for i in stencils.blocks(a, b):
+                w[k, i] = stencils.derivative(w, k, i, medium.per_dx2, leaf, damping)
             if alpha != 0.0:
-                strengthen(w, k, a, b, alpha)
-            weaken(w, k, a, b, np.uint64(0), motion, medium.d_c)
+                friction.strengthen(w, k, a, b, alpha)
+            friction.weaken(w, k, a, b, np.uint64(0), motion, medium.d_c)
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
@@ -160,12 +144,14 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
     forecast.sticks.n = 0
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
-        suspects = velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
-        if suspects > 0 and not find_sticks(motion, forecast, a, b, suspects, 0.0, h, top):
+        suspects = stencils.velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
+        if suspects > 0 and not foresight.find_sticks(
+            motion, forecast, a, b, suspects, 0.0, h, top
+        ):
             return False
-        find_weak(motion, medium.d_c, forecast, a, b, 0.0, h, top)
-    size = motion.tau.shape[0]
-    lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h)
+        foresight.find_weak(motion, medium.d_c, forecast, a, b, 0.0, h, top)
+    first, last = np.int64(0), motion.tau.shape[0]
+    lowest = foresight.foresee_releases(medium, motion, segments, forecast, first, last, 0.0, h)
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     return True
 
@@ -175,7 +161,8 @@ def end_early(motion, scratch, h, order):
     """Velocities of all blocks that moved, where the step ends early at h."""
     moved, changed = scratch.moved, scratch.changed
     for r in range(moved.count.n):
-        velocity_after(motion.velocity, motion.w, moved.starts[r], moved.ends[r], h, order)
+        a, b = moved.starts[r], moved.ends[r]
+        stencils.velocity_after(motion.velocity, motion.w, a, b, h, order)
     for q in range(changed.count.n):
         # A block that was released a moment ago is below 0 only by rounding.
         for i in range(changed.first[q], changed.last[q]):
@@ -189,14 +176,13 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     changed, tally = scratch.changed, history.tally
     block, stick = event.block, event.stick
     if event.weak:
-        end_weakening(medium, medium.d_c, motion, block, True, tally)
+        friction.end_weakening(medium, medium.d_c, motion, block, True, tally)
     elif stick:
         stick_block(segments, block)
         note_stick(history, block, instant)
     else:
         release_block(segments, block)
-        if not holds(scratch.moved, block):
-            release_block(scratch.moved, block)
+        release_block(scratch.moved, block)
         note_release(history, block, instant)
     finite, first, last, speed, lowest, kink = change_course(
         medium, motion, segments, scratch.forecast, scratch.difference, event, h, top
@@ -205,7 +191,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
         return False
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     if stick:
-        end_weakening(medium, medium.d_c, motion, block, False, tally)
+        friction.end_weakening(medium, medium.d_c, motion, block, False, tally)
         tally.min_velocity = min(tally.min_velocity, speed)
     k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
     s = event.time
@@ -228,7 +214,7 @@ def take_over(medium, motion, scratch, order, h):
     fastest = 0.0
     for r in range(moved.count.n):
         a, b = moved.starts[r], moved.ends[r]
-        advance_slip(w, motion.velocity, a, b, h, order)
+        stencils.advance_slip(w, motion.velocity, a, b, h, order)
         fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
     for q in range(changed.count.n):
         for i in range(changed.first[q], changed.last[q]):
@@ -237,7 +223,8 @@ def take_over(medium, motion, scratch, order, h):
             offset[i] = 0.0
     for r in range(moved.count.n):
         a, b = moved.starts[r], moved.ends[r]
-        advance_strain(motion.strain, w, 1 if medium.mirror and a == 1 else a - 1, b, medium.per_dx)
+        for i in stencils.blocks(1 if medium.mirror and a == 1 else a - 1, b):
+            motion.strain[i] += medium.per_dx * (w[2, i + stencils.ONE] - w[2, i])
     if medium.mirror:
         motion.strain[0] = -motion.strain[1]
     for q in range(changed.count.n):
@@ -250,12 +237,17 @@ def take_over(medium, motion, scratch, order, h):
 def take_events_at_once(medium, motion, segments, scratch, history, end, latest, top):
     """Release and hold all blocks that are due until ``latest``, after a step that ended early."""
     forecast, tally = scratch.forecast, history.tally
-    due = scratch.changed.first
-    n_due = due_releases(segments, forecast, latest, due)
+    due, count = scratch.changed.first, 0
+    for r in range(segments.count.n):
+        for edge in (segments.starts[r] - 1, segments.ends[r]):
+            joined = count > 0 and due[count - 1] == edge
+            if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
+                due[count] = edge
+                count += 1
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] <= latest:
             block = forecast.stick_block[q]
-            end_weakening(medium, medium.d_c, motion, block, forecast.weak[q], tally)
+            friction.end_weakening(medium, medium.d_c, motion, block, forecast.weak[q], tally)
             if forecast.weak[q]:
                 continue
             tally.min_velocity = min(tally.min_velocity, motion.w[1, block])
@@ -263,9 +255,9 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
                 motion.w[k, block] = 0.0
             stick_block(segments, block)
             note_stick(history, block, end)
-    for q in range(n_due):
+    for q in range(count):
         release_block(segments, due[q])
-        begin_weakening(motion, medium.d_c, due[q])
+        friction.begin_weakening(motion, medium.d_c, due[q])
         note_release(history, due[q], end)
 
 
@@ -313,10 +305,10 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 
         early = False
         while True:
-            event = next_event(segments, forecast)
+            event = foresight.next_event(segments, forecast)
             if event.time == math.inf:
                 break
-            early = changed.count.n == MOST_EVENTS or simultaneous(
+            early = changed.count.n == MOST_EVENTS or foresight.simultaneous(
                 segments, forecast, medium.mirror, event.block, event.time + instantly
             )
             if early:
