@@ -44,7 +44,7 @@ def test_crossing_finds_a_root_of_zero_slope_and_one_at_the_end():
 def stop(coefficients, h: float, now: float = 0.0):
     """Time at which a block of this velocity sticks, () if never; None if it is not finite."""
     top = len(coefficients)
-    motion, forecast = arrays.make_motion(top + 1, 3), arrays.make_forecast(3, top - 1)
+    motion, forecast = arrays.make_motion(top + 1, 3), arrays.make_scratch(3, top - 1).forecast
     motion.w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
     from_python(stencils.velocity_after)(motion.velocity, motion.w, 1, 2, h, top - 1)
     finite = from_python(foresight.find_sticks)(motion, forecast, 1, 2, 1, now, h, top)
@@ -106,7 +106,7 @@ RELEASES = [
 @pytest.mark.parametrize("case", RELEASES)
 def test_a_block_is_released_when_its_stress_passes_the_threshold(case):
     (height, speed, slowing), (h, now, release) = case[:3], case[3:]
-    motion, forecast = arrays.make_motion(6, 5), arrays.make_forecast(5, 4)
+    motion, forecast = arrays.make_motion(6, 5), arrays.make_scratch(5, 4).forecast
     motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
     medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)
     time, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
@@ -141,7 +141,6 @@ def test_segments_after_random_events_agree_with_a_mask(seed):
         edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
         n = kept.count.n
         assert np.array_equal(np.column_stack([kept.starts[:n], kept.ends[:n]]).ravel(), edges)
-        assert segments.holds(kept, inside) == mask[inside]
         left, right = segments.sliding_beside(kept, inside)
         assert mask[inside - left : inside].all()
         assert left == inside or not mask[inside - left - 1]

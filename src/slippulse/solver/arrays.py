@@ -38,9 +38,8 @@ _FLOATS = (
 _COUNTS = (
     "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
 )
-_FIELDS: list[tuple[str, type]] = [(name, np.float64) for name in _FLOATS.split()]
-_FIELDS += [(name, np.int64) for name in _COUNTS.split()]
-TALLY = np.dtype((np.record, _FIELDS))
+_TYPES = dict.fromkeys(_FLOATS.split(), "f8") | dict.fromkeys(_COUNTS.split(), "i8")
+TALLY = np.dtype((np.record, [*_TYPES.items()]))
 COUNT = np.dtype((np.record, [("n", np.int64)]))
 # The event at time s of a step changes dD/dt, where D is the dissipation, by k. These are the sums
 # over the events of k, k s and k s^2.
@@ -181,23 +180,16 @@ def make_segments(size: int) -> Segments:
     return Segments(starts, ends, record(COUNT))
 
 
-def make_forecast(size: int, order: int) -> Forecast:
-    """No events, on a lattice of ``size`` blocks."""
+def make_scratch(size: int, order: int) -> Scratch:
+    """Scratch arrays of a lattice of ``size`` blocks, without events."""
     release, stick_time = np.full(size, np.inf), np.zeros(size)
     stick_block, weak = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=bool)
-    polynomials = np.zeros((2, order + 2))
-    return Forecast(release, stick_block, stick_time, weak, record(COUNT), *polynomials)
-
-
-def make_scratch(size: int, order: int) -> Scratch:
-    """Scratch arrays of a lattice of ``size`` blocks."""
+    polynomials, values = np.zeros((2, order + 2)), np.zeros(COLUMNS)
+    forecast = Forecast(release, stick_block, stick_time, weak, record(COUNT), *polynomials)
+    difference = Difference(np.zeros((order + 2, COLUMNS)), np.zeros(order + 4), values)
     first, last, stuck = np.zeros((3, MOST_EVENTS), dtype=np.int64)
-    return Scratch(
-        make_segments(size),
-        make_forecast(size, order),
-        Difference(np.zeros((order + 2, COLUMNS)), np.zeros(order + 4), np.zeros(COLUMNS)),
-        Changed(first, last, stuck, record(COUNT), record(KINKS)),
-    )
+    changed = Changed(first, last, stuck, record(COUNT), record(KINKS))
+    return Scratch(make_segments(size), forecast, difference, changed)
 
 
 def make_medium(

@@ -58,10 +58,15 @@ class Lattice:
         self.motion = arrays.make_motion(scene.order + 2 if self.localised else 3, 0)
         self.segments = arrays.make_segments(0)
         self.sliding = np.zeros(0, dtype=bool)
-        self.history = arrays.History(np.zeros(0), np.zeros(0), arrays.record(arrays.TALLY))
+        self.tally = arrays.record(arrays.TALLY)
+        self.history = arrays.History(np.zeros(0), np.zeros(0), self.tally)
         given = samples or Samples(np.zeros(0), np.zeros(0))
         recorded = np.zeros((2, given.times.size, given.positions.size))
-        self.recorder = arrays.Recorder(given.times, np.zeros(0, dtype=np.int64), *recorded)
+        # Halves are rounded away from zero, so that mirrored positions stay mirrored.
+        scaled = given.positions / scene.dx
+        number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
+        self.sampled = np.abs(number) if self.mirror else number
+        self.recorder = arrays.Recorder(given.times, number, *recorded)
         self._extend(0, size)
         self.sliding[1:-1] = self.motion.tau[1:-1] >= 1.0
         self.history.release_time[self.sliding] = 0.0
@@ -78,31 +83,10 @@ class Lattice:
         """Length of a row."""
         return self.motion.tau.size
 
-    @property
-    def tally(self) -> np.record:
-        """Counters and totals."""
-        return self.history.tally
-
-    def _sampled_blocks(self, size: int) -> np.ndarray:
-        """Index of the block nearest to each sampled position; -1 outside the lattice."""
-        if not self.samples:
-            return np.zeros(0, dtype=np.int64)
-        # Halves are rounded away from zero, so that mirrored positions stay mirrored.
-        scaled = self.samples.positions / self.scene.dx
-        number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
-        blocks = (np.abs(number) if self.mirror else number) - self.first_block
-        return np.where((blocks < 1) | (blocks > size - 2), -1, blocks)
-
     def _extension(self, size: int) -> tuple[int, int]:
         """Blocks to add on the left and on the right to double the lattice or a little more."""
         left = 0 if self.mirror else size
         return left, _row_length(left + 2 * size) - left - size
-
-    def _grow(self) -> None:
-        """Double the lattice or a little more, on both sides unless it is a mirrored half."""
-        left, right = self._extension(self.size)
-        self.first_block -= left
-        self._extend(left, right)
 
     def _extend(self, left: int, right: int) -> None:
         """Add blocks at rest: these numbers on the left and on the right."""
@@ -130,7 +114,9 @@ class Lattice:
         self.segments.ends[:n] = segments.ends[:n] + left
         self.segments.count.n = n
         self.tally.first_stuck_block += left
-        self.recorder = self.recorder._replace(blocks=self._sampled_blocks(size))
+        sampled = self.sampled - self.first_block
+        outside = (sampled < 1) | (sampled > size - 2)
+        self.recorder = self.recorder._replace(blocks=np.where(outside, -1, sampled))
         self.scratch = arrays.make_scratch(size, self.scene.order)
 
     def _advance(self, limits: arrays.Limits) -> int:
@@ -156,7 +142,9 @@ class Lattice:
             largest = self.largest_force * self.growth
             status = self._advance(arrays.Limits(scene.order, step, scene.duration, largest, steps))
             if status == arrays.GROW:
-                self._grow()
+                left, right = self._extension(self.size)
+                self.first_block -= left
+                self._extend(left, right)
             elif status == arrays.UNSTABLE:
                 reason = "slip velocity is not finite or beyond anything the pre-stress can drive"
                 raise self._unstable(self.tally.time, reason)

@@ -77,8 +77,15 @@ def energies(lattice: Lattice, totals: dict) -> dict:
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a simulation that ended with a status of the kernel."""
     totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
-    lowest = _lowest_stuck_stress(lattice, totals["min_stuck_stress"])
-    first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
+    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
+    slip, velocity = motion.w[0], motion.w[1]
+    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
+    stress = (motion.tau - medium.leaf * slip)[1:-1] + elastic
+    if medium.total:
+        stress += medium.beta * np.diff(velocity, 2) / dx**2
+    stuck = ~lattice.sliding[1:-1]
+    lowest = float(np.min(stress[stuck], initial=totals["min_stuck_stress"]))
+    first_stuck = (totals["first_stuck_block"] + lattice.first_block) * dx
     return energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
@@ -89,29 +96,6 @@ def numbers_of(lattice: Lattice, status: int) -> dict:
         "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.mirror),
     }
-
-
-def _lowest_stuck_stress(lattice: Lattice, lowest: float) -> float:
-    """Lowest stress of a stuck block until the end, with the damping force if the rule has it."""
-    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
-    slip, velocity = motion.w[0], motion.w[1]
-    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
-    stress = (motion.tau - medium.leaf * slip)[1:-1] + elastic
-    if medium.total:
-        stress += medium.beta * np.diff(velocity, 2) / dx**2
-    return float(np.min(stress[~lattice.sliding[1:-1]], initial=lowest))
-
-
-def kept_blocks(lattice: Lattice) -> np.ndarray:
-    """Mask of the blocks that are kept: those released and a margin, without ghosts."""
-    blocks = np.arange(lattice.size) + lattice.first_block
-    released = blocks[np.isfinite(lattice.history.release_time)]
-    first, last = (released.min(), released.max()) if released.size else (0, 0)
-    keep = (blocks >= first - MARGIN) & (blocks <= last + MARGIN)
-    if lattice.mirror:
-        keep &= blocks >= 0
-    keep[0] = keep[-1] = False
-    return keep
 
 
 def solution_of(lattice: Lattice, status: int) -> Solution:
@@ -127,14 +111,21 @@ def solution_of(lattice: Lattice, status: int) -> Solution:
     rest = slice(lattice.tally.samples_taken, None)
     recorder.slip[rest, inside] = motion.w[0, recorder.blocks[inside]]
     recorder.velocity[rest, inside] = motion.w[1, recorder.blocks[inside]]
-    keep = kept_blocks(lattice)
+    blocks = np.arange(lattice.size) + lattice.first_block
+    released = blocks[np.isfinite(history.release_time)]
+    first, last = (released.min(), released.max()) if released.size else (0, 0)
+    keep = (blocks >= first - MARGIN) & (blocks <= last + MARGIN)
+    if lattice.mirror:
+        keep &= blocks >= 0
+    # The ghosts.
+    keep[0] = keep[-1] = False
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
         kept = values[keep]
         return np.concatenate([sign * kept[:0:-1], kept]) if lattice.mirror else kept.copy()
 
     return Solution(
-        x=unfold(np.arange(lattice.size) + lattice.first_block, -1) * lattice.scene.dx,
+        x=unfold(blocks, -1) * lattice.scene.dx,
         prestress=unfold(motion.tau),
         release_time=unfold(history.release_time),
         stick_time=unfold(history.stick_time),
