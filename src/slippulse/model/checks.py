@@ -36,22 +36,16 @@ def check_number(
         ("<", operator.lt, below),
     )
     given = [(sign, holds, limit) for sign, holds, limit in bounds if limit is not None]
-    known = _is_finite(value, Integral if integer else Real)
+    known = isinstance(value, Integral if integer else Real)
+    try:
+        known = known and not isinstance(value, bool | np.bool_) and math.isfinite(value)
+    except OverflowError:
+        known = False
     if known and all(holds(value, limit) for _, holds, limit in given):
         return
     limits = "".join(f" and {sign} {limit:.10g}" for sign, _, limit in given)
     kind = "whole" if integer else "finite"
     raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind} number{limits}")
-
-
-def _is_finite(value: Any, kind: type) -> bool:
-    is_number = isinstance(value, kind) and not isinstance(value, bool | np.bool_)
-    if not is_number:
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:
-        return False
 
 
 def check_runaway(gamma: float, alpha: float, key: str = "rate_strengthening") -> None:

@@ -5,13 +5,9 @@ from dataclasses import fields
 from typing import Any
 
 from .checks import check_choice, short_repr
-from .friction_laws.bounded_rate import BoundedRate
-from .friction_laws.coulomb import Coulomb
-from .friction_laws.exponential_weakening import ExponentialWeakening
-from .friction_laws.law import Friction
-from .friction_laws.linear_rate import LinearRate
-from .friction_laws.rate_weakening import RateWeakening
-from .friction_laws.slip_weakening import SlipWeakening
+from .friction_laws.law import Coulomb, Friction
+from .friction_laws.rate import BoundedRate, LinearRate, RateWeakening
+from .friction_laws.weakening import ExponentialWeakening, SlipWeakening
 from .recorded_law import law_of
 
 # A new law is one more line here.

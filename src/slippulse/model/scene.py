@@ -200,7 +200,7 @@ class Scene:
     def _stable_step(self, enough: float) -> float:
         stiffness, drag = self.gamma * self.dx**2, self.friction.traits.steepest * self.dx
         ratios = self.damping_ratio, stiffness, drag
-        bound = largest_step(self.scheme, self.order, *ratios, enough)
+        bound = largest_step(self.scheme, self.order, *ratios, enough=enough)
         return min(bound, self.friction.traits.longest_step / self.dx)
 
     def attributes(self) -> dict:

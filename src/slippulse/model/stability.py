@@ -19,63 +19,54 @@ STEP_ERROR = 1e-2
 ROUNDS, PARTS = 4, 32
 
 
-def largest_step(
-    scheme: str,
-    order: int,
-    damping_ratio: float,
-    gamma_dx2: float,
-    alpha_dx: float = 0.0,
-    enough: float = math.inf,
-) -> float:
+def _of_modes(
+    damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
+) -> tuple[float, float, float]:
+    # Slip that grows physically may grow.
+    return damping_ratio, gamma_dx2, max(alpha_dx, 0.0)
+
+
+def largest_step(scheme: str, order: int, *ratios: float, enough: float = math.inf) -> float:
     """Largest stable time step in units of dx, or any number between it and ``enough``.
 
-    A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, where s is
-    in [0, 4] and b = beta/dx, in units of dx. Symplectic Euler is stable for
-    dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4. A
-    Taylor step is stable where it amplifies no mode; it expands slip to one order more than
-    velocity. The bound is 0 where the polynomials cannot be computed.
+    The ratios are b = beta/dx, gamma dx^2 and, if not 0, alpha dx. A mode of the lattice has
+    stiffness s + gamma dx^2 and damping rate b s + alpha dx, where s is in [0, 4], in units of dx.
+    Symplectic Euler is stable for dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2)
+    and c = b + alpha dx/4. A Taylor step is stable where it amplifies no mode; it expands slip to
+    one order more than velocity. The bound is 0 where the polynomials cannot be computed.
     """
     if scheme == "continuum":
         return math.inf
-    # Slip that grows physically may grow.
-    drag = max(alpha_dx, 0.0)
+    damping_ratio, gamma_dx2, drag = _of_modes(*ratios)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # sqrt(dt_c^2 + c^2) - c cancels at large damping; this form of it does not.
         damping = damping_ratio + 0.25 * drag
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
-    if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2) and math.isfinite(drag)):
+    parameters = damping_ratio, gamma_dx2, drag
+    if not all(map(math.isfinite, parameters)):
         return 0.0
-    rounded = [float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)]
+    rounded = [float(f"{value:.6g}") for value in parameters]
     return _taylor_bound(order, *rounded, enough)
 
 
-def accurate_step(
-    error: float, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
-) -> float:
+def accurate_step(error: float, order: int, *ratios: float) -> float:
     """Largest Taylor step, in units of dx, that errs by a fraction of any mode at most.
 
     The error is the remainder (r dt)^(order + 1)/(order + 1)!, where r is the largest rate of a
     mode: sqrt(k), or c + sqrt(c^2 - k) where damping c^2 > k, with its stiffness k and c of half
     its damping rate.
     """
+    damping_ratio, gamma_dx2, drag = _of_modes(*ratios)
     stiffness = math.sqrt(4.0 + gamma_dx2)
-    half = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
+    half = 2.0 * damping_ratio + 0.5 * drag
     over = math.sqrt(max(half - stiffness, 0.0)) * math.sqrt(half + stiffness)
     rate = max(half, stiffness) + over
     return (error * math.factorial(order + 1)) ** (1.0 / (order + 1)) / rate
 
 
-def chosen_step(
-    scheme: str,
-    order: int,
-    damping_ratio: float,
-    gamma_dx2: float,
-    alpha_dx: float = 0.0,
-    enough: float = math.inf,
-) -> float:
+def chosen_step(scheme: str, order: int, *ratios: float, enough: float = math.inf) -> float:
     """Step in units of dx, ``enough`` at most, that is stable by a margin and accurate."""
-    ratios = damping_ratio, gamma_dx2, alpha_dx
     step = min(enough, MARGIN * largest_step(scheme, order, *ratios, enough=enough / MARGIN))
     return min(step, accurate_step(STEP_ERROR, order, *ratios)) if scheme == "localised" else step
 

@@ -9,11 +9,9 @@ import pandas as pd
 import xarray as xr
 
 from ..measurement.regime import is_pulse
-from ..model.friction_laws.bounded_rate import BoundedRate
-from ..model.friction_laws.exponential_weakening import ExponentialWeakening
 from ..model.friction_laws.law import Friction
-from ..model.friction_laws.rate_weakening import RateWeakening
-from ..model.friction_laws.slip_weakening import SlipWeakening
+from ..model.friction_laws.rate import BoundedRate, RateWeakening
+from ..model.friction_laws.weakening import ExponentialWeakening, SlipWeakening
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.sweep import recorded

@@ -10,7 +10,7 @@ import xarray as xr
 
 from ..measurement.regime import is_pulse
 from ..model.balance import prestress_balance_position
-from ..model.friction_laws.linear_rate import LinearRate
+from ..model.friction_laws.rate import LinearRate
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene

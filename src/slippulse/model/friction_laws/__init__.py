@@ -1,1 +1,1 @@
-"""Laws of friction: one module each. `slippulse.model.friction` lists them."""
+"""Laws of friction, which `slippulse.model.friction` lists."""

@@ -1,4 +1,4 @@
-"""The type that all laws of friction have."""
+"""The type that all laws of friction have, and the law of the paper."""
 
 import math
 from abc import ABC, abstractmethod
@@ -48,3 +48,15 @@ class Friction(ABC):
     def mapping(self) -> dict[str, Any]:
         """The law and its parameters by name, as the configuration spells them."""
         return {"law": self.law, **asdict(self)}
+
+
+class Coulomb(Friction):
+    """Amontons-Coulomb friction: kinetic from the release on, which is 0 here."""
+
+    law: ClassVar = "coulomb"
+    schemes: ClassVar = ("localised", "fixed_step", "continuum")
+
+    @staticmethod
+    def friction(slip, velocity, first, second):
+        """Return 0, the kinetic friction."""
+        return 0.0

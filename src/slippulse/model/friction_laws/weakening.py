@@ -1,4 +1,4 @@
-"""Friction that falls linearly with the slip since the release."""
+"""Friction that falls with the slip since the release, and is healed at a stick."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ RESOLVED = 0.5
 
 @dataclass(frozen=True)
 class SlipWeakening(Friction):
-    """Friction 1 - slip/d_c until it is 0, healed at a stick. Within |x| < ``nucleation`` it is 0.
+    """Friction 1 - slip/d_c until it is 0. Within |x| < ``nucleation`` it is 0.
 
     A pre-stress of 1 at x = 0 alone starts nothing, since friction is 1 there too at first.
     """
@@ -38,3 +38,20 @@ class SlipWeakening(Friction):
         """Beyond a fraction of sqrt(d_c), a step makes the speed of the front wrong."""
         step = RESOLVED * math.sqrt(self.d_c)
         return Traits(linear_weakening=self.d_c, zone=self.nucleation, longest_step=step)
+
+
+class ExponentialWeakening(SlipWeakening):
+    """Friction exp(-slip/d_c). Within |x| < ``nucleation`` it is 0."""
+
+    law: ClassVar = "exponential_weakening"
+    schemes: ClassVar = ("fixed_step",)
+
+    @staticmethod
+    def friction(slip, velocity, d_c, nucleation):
+        """Return exp(-slip/d_c)."""
+        return math.exp(-slip / d_c)
+
+    @property
+    def traits(self) -> Traits:
+        """The traits of slip weakening that is not linear."""
+        return super().traits._replace(linear_weakening=None)
