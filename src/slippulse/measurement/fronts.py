@@ -52,19 +52,14 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, f
         return np.nan, np.nan, np.nan
     times, distances = times[chosen], distances[chosen]
     # A front that outruns the waves after a pause is measured after it.
-    start = end_of_last_pause(times)
+    waits = np.diff(np.maximum.accumulate(times))
+    longest = max(PAUSE, PAUSE_BLOCKS / times.size) * np.sum(waits)
+    start = int(np.max(np.flatnonzero(waits > longest) + 1, initial=0))
     if 0 < start <= times.size - 4:
         line = straight_line(times[start:], distances[start:])
         if line[0] > 1.0:
             return line
     return straight_line(times, distances)
-
-
-def end_of_last_pause(times: np.ndarray) -> int:
-    """Index of the first block after the last pause of a front; 0 if it did not pause."""
-    waits = np.diff(np.maximum.accumulate(times))
-    longest = max(PAUSE, PAUSE_BLOCKS / times.size) * np.sum(waits)
-    return int(np.max(np.flatnonzero(waits > longest) + 1, initial=0))
 
 
 def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:

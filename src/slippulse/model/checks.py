@@ -36,7 +36,8 @@ def check_number(
         ("<", operator.lt, below),
     )
     given = [(sign, holds, limit) for sign, holds, limit in bounds if limit is not None]
-    known = isinstance(value, Integral if integer else Real)
+    kind, word = (Integral, "whole") if integer else (Real, "finite")
+    known = isinstance(value, kind)
     try:
         known = known and not isinstance(value, bool | np.bool_) and math.isfinite(value)
     except OverflowError:
@@ -44,8 +45,7 @@ def check_number(
     if known and all(holds(value, limit) for _, holds, limit in given):
         return
     limits = "".join(f" and {sign} {limit:.10g}" for sign, _, limit in given)
-    kind = "whole" if integer else "finite"
-    raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind} number{limits}")
+    raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{limits}")
 
 
 def check_runaway(gamma: float, alpha: float, key: str = "rate_strengthening") -> None:

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from numbers import Real
 from typing import Any
 
@@ -14,7 +14,14 @@ import numpy as np
 
 from .checks import check_number, short_repr
 
-PARTS = {"steps": ("position", "level"), "bumps": ("centre", "amplitude", "width")}
+# Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
+# without end.
+LEVEL: dict[str, Any] = {"below": 1.0}
+NUMBERS = {"left": LEVEL, "right": LEVEL, "width": {"above": 0.0}, "peak": {}}
+PARTS = {
+    "steps": {"position": {}, "level": LEVEL},
+    "bumps": {"centre": {}, "amplitude": {}, "width": {"above": 0.0}},
+}
 
 
 @dataclass(frozen=True)
@@ -59,26 +66,20 @@ class Prestress:
     bumps: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("left", "right"):
-            # A level at the threshold would release block after block at t = 0, without end.
-            check_number(f"prestress.{name}", getattr(self, name), below=1.0)
-        check_number("prestress.peak", self.peak)
-        check_number("prestress.width", self.width, above=0.0)
-        for name in ("left", "right", "width", "peak"):
+        for name, bounds in NUMBERS.items():
+            check_number(f"prestress.{name}", getattr(self, name), **bounds)
             object.__setattr__(self, name, float(getattr(self, name)))
         for name, parts in PARTS.items():
-            object.__setattr__(self, name, _number_tuples(name, getattr(self, name), parts))
+            rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
+            object.__setattr__(self, name, rows)
         positions = [position for position, _ in self.steps]
-        for position, level in self.steps:
-            check_number("prestress.steps level", level, below=1.0)
+        for position in positions:
             if position == 0.0:
                 allowed = "any other number (see left, right)"
                 raise ValueError(f"prestress.steps: position is 0.0; allowed: {allowed}")
             if positions.count(position) > 1:
                 allowed = "different positions"
                 raise ValueError(f"prestress.steps: position {position} twice; allowed: {allowed}")
-        for *_, width in self.bumps:
-            check_number("prestress.bumps width", width, above=0.0)
 
     @property
     def symmetric(self) -> bool:
@@ -120,17 +121,15 @@ class Prestress:
         tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps:
             return tau
+
         # Bumps at equal distances are first added to each other, so that a mirrored profile is
         # mirrored to the last bit.
-        sums: dict[tuple, np.ndarray] = {}
-        for centre, amplitude, width in sorted(
-            self.bumps, key=lambda bump: (abs(bump[0]), *bump[1:])
-        ):
-            group = abs(centre), amplitude, width
-            bump = amplitude * np.exp(-0.5 * ((x - centre) / width) ** 2)
-            sums[group] = sums.get(group, 0.0) + bump
-        for added in sums.values():
-            tau = tau + added
+        def distance(bump: tuple[float, float, float]) -> tuple[float, float, float]:
+            centre, amplitude, width = bump
+            return abs(centre), amplitude, width
+
+        for _, equal in groupby(sorted(self.bumps, key=distance), key=distance):
+            tau = tau + sum(a * np.exp(-0.5 * ((x - centre) / b) ** 2) for centre, a, b in equal)
         # The tail of a distant bump leaves the peak within rounding of the threshold, which it is
         # meant to meet.
         return np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau)
@@ -163,7 +162,7 @@ class Prestress:
 
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
-    numbers = {name: attributes[name] for name in ("left", "right", "width", "peak")}
+    numbers = {name: attributes[name] for name in NUMBERS}
     text = attributes["steps_and_bumps"]
     try:
         parts = json.loads(text)
@@ -186,18 +185,17 @@ def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> f
     return scale * (math.erf(b) - math.erf(a))
 
 
-def _number_tuples(name: str, rows: Any, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
-    key = f"prestress.{name}"
-    allowed = f"a list of [{', '.join(names)}]"
+def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:
+    allowed = f"a list of [{', '.join(parts)}]"
     iterable = hasattr(rows, "__iter__") and getattr(rows, "ndim", 1) != 0
     if isinstance(rows, str | bytes | Mapping) or not iterable:
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     tuples = []
     for row in rows:
-        complete = hasattr(row, "__len__") and len(row) == len(names)
+        complete = hasattr(row, "__len__") and len(row) == len(parts)
         if not complete or not all(isinstance(value, Real) for value in row):
             raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
-        for part, value in zip(names, row, strict=True):
-            check_number(f"{key} {part}", value)
+        for (part, bounds), value in zip(parts.items(), row, strict=True):
+            check_number(f"{key} {part}", value, **bounds)
         tuples.append(tuple(map(float, row)))
     return tuple(tuples)

@@ -42,10 +42,3 @@ class Samples:
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             allowed = "increasing times >= 0"
             raise ValueError(f"samples.times: not increasing or negative; allowed: {allowed}")
-
-
-def check_within(samples: Samples | None, duration: float) -> None:
-    """Refuse samples after the end of a scene."""
-    if samples is not None and np.any(samples.times > duration):
-        allowed = f"up to the duration of the scene, {duration:g}"
-        raise ValueError(f"samples.times: {samples.times[-1]:g}; allowed: {allowed}")

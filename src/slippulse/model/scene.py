@@ -5,7 +5,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
-from numbers import Real
 from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
@@ -29,7 +28,16 @@ ATTRIBUTES = """
 """
 # Parameters that are not floats. A data file has number types of its own for them.
 KINDS = {"half_lattice": bool, "order": int, "resolved_blocks": int}
-FLOATS = ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio")
+CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "order": ORDERS}
+# Bounds of the floats, for `check_number`. The square of the least spacing is still a number.
+FLOATS: dict[str, dict[str, Any]] = {
+    "duration": {"above": 0.0},
+    "dx": {"above": 0.0, "at_least": 1e-100},
+    "beta": {"at_least": 0.0},
+    "friction_ratio": {"at_least": 0.0},
+    "gamma": {},
+    "max_step": {},
+}
 
 
 @dataclass(frozen=True)
@@ -107,42 +115,29 @@ class Scene:
     friction: Friction = COULOMB
 
     def __post_init__(self) -> None:
-        self._check_kinds()
-        self._check_numbers()
-        # Single-precision or integer parameters would be computed with as such, and compiled for.
-        for name in FLOATS:
-            object.__setattr__(self, name, float(getattr(self, name)))
-        self._check_friction()
-        self._check_resolution()
-        self._check_step()
-
-    def _check_kinds(self) -> None:
-        check_choice("boundary", self.boundary, BOUNDARIES)
-        check_choice("release", self.release, RELEASES)
-        check_choice("scheme", self.scheme, SCHEMES)
-        check_choice("order", self.order, ORDERS)
+        for name, choices in CHOICES.items():
+            check_choice(name, getattr(self, name), choices)
         for name, kind in KINDS.items():
             if type(getattr(self, name)) is not kind:
                 allowed = "true or false" if kind is bool else "a whole number >= 1"
                 raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
-        check_kind("prestress", self.prestress, Prestress)
-
-    def _check_numbers(self) -> None:
-        check_number("duration", self.duration, above=0.0)
-        # The square of this least spacing is still a number.
-        check_number("dx", self.dx, above=0.0, at_least=1e-100)
-        check_number("beta", self.beta, at_least=0.0)
-        check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        check_kind("prestress", self.prestress, Prestress)
+        check_kind("friction", self.friction, Friction)
+        for name, bounds in FLOATS.items():
+            check_number(name, getattr(self, name), **bounds)
+            # Single-precision or integer numbers would be computed with as such, and compiled for.
+            object.__setattr__(self, name, float(getattr(self, name)))
+        self._check_physics()
+        self._check_resolution()
+        self._check_step()
+
+    def _check_physics(self) -> None:
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
-        elif not isinstance(self.gamma, Real) or isinstance(self.gamma, bool) or self.gamma != 0.0:
+        elif self.gamma != 0.0:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
-            raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
-        check_number("max_step", self.max_step)
-
-    def _check_friction(self) -> None:
-        check_kind("friction", self.friction, Friction)
+            raise ValueError(f"gamma: {self.gamma!r}; allowed: {allowed}")
         check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
         if self.scheme not in self.friction.schemes:
             schemes = " or ".join(self.friction.schemes)
@@ -251,12 +246,3 @@ class Scene:
         except KeyError as error:
             allowed = "every attribute of a run"
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
-
-
-def scene_of(run: Any) -> Scene:
-    """The scene of a Dataset, of its attributes, or of a row of a measured table.
-
-    A row comes from itertuples or is a Series. Raises as `Scene.from_attributes` does.
-    """
-    attributes = run._asdict() if hasattr(run, "_asdict") else getattr(run, "attrs", None)
-    return Scene.from_attributes(attributes or run)

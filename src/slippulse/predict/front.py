@@ -24,7 +24,10 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
         paper[supersonic] = front_speed_undamped(levels[supersonic])
         table[f"paper_front_speed_{side}"] = paper
         table[f"exact_front_speed_{side}"] = exact_speeds(scenes, side)
-        on_lattices = [_lattice_speed(scene, side) for scene in scenes]
+        on_lattices = [
+            _lattice_speed(stress, scene.gamma, scene.dx, ratio(scene), scene.release)
+            for scene, stress in zip(scenes, levels.tolist(), strict=True)
+        ]
         table[f"lattice_front_speed_{side}"] = np.array(on_lattices)
     return pd.DataFrame(table)
 
@@ -45,15 +48,10 @@ def exact_speeds(scenes: list[Scene], side: str) -> np.ndarray:
     return speeds
 
 
-def _lattice_speed(scene: Scene, side: str) -> float:
-    stress, damping = level(scene, side), ratio(scene)
-    fine = damping > 0.0 and scene.gamma * scene.dx**2 < COARSE
-    if scene.gamma == 0.0 or fine or not 0.0 < stress < 1.0:
-        return NAN
-    return _cached_speed(stress, scene.gamma, scene.dx, damping, scene.release)
-
-
 @cache
-def _cached_speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
+def _lattice_speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
+    fine = ratio > 0.0 and gamma * dx**2 < COARSE
+    if gamma == 0.0 or fine or not 0.0 < level < 1.0:
+        return NAN
     # Under strong springs no front is supersonic.
     return or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))

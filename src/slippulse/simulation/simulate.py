@@ -3,12 +3,13 @@
 import sys
 from collections.abc import Callable, Sequence
 
+import numpy as np
 import xarray as xr
 
 from ..data.variables import described
 from ..model.checks import check_number, short_repr
 from ..model.cost import bound_of
-from ..model.samples import RECORDS, Samples, check_within
+from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from ..solver.fixed_step import solve_by_scheme
 from ..solver.solution import Solution
@@ -65,7 +66,7 @@ def simulate(
     allowed = "a function of the fraction done, True, or None"
     _require(known, "progress", progress, allowed, TypeError)
     _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
-    check_within(samples, scene.duration)
+    _check_within(samples, scene.duration)
     exceeded = bound_of(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
     # The exact solution refuses what it cannot solve, by the key that is too large.
     if exceeded and scene.scheme != "continuum":
@@ -125,7 +126,12 @@ def run_sweep(
     >>> profile = sp.Prestress(0.6, 0.6)
     >>> sweep = sp.run_sweep([sp.Scene("stress", profile, 5.0, dx) for dx in (0.1, 0.05)])
     """
-    _check_scenes(scenes)
+    listed = isinstance(scenes, Sequence) and len(scenes) > 0
+    known = listed and all(isinstance(scene, Scene) for scene in scenes)
+    _require(known, "scenes", scenes, "a list of Scenes, at least one")
+    schemes = sorted({scene.scheme for scene in scenes})
+    alike = "continuum" not in schemes or len(schemes) == 1
+    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
     samples = [None] * len(scenes) if samples is None else samples
     _check_samples(samples, scenes)
     _check_record(record, samples)
@@ -135,22 +141,19 @@ def run_sweep(
     return described(solve_sweep(_solve, scenes, samples, record, int(threads), progress))
 
 
-def _check_scenes(scenes: Sequence[Scene]) -> None:
-    listed = isinstance(scenes, Sequence) and len(scenes) > 0
-    known = listed and all(isinstance(scene, Scene) for scene in scenes)
-    _require(known, "scenes", scenes, "a list of Scenes, at least one")
-    schemes = sorted({scene.scheme for scene in scenes})
-    alike = "continuum" not in schemes or len(schemes) == 1
-    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
-
-
 def _check_samples(samples: Sequence[Samples | None], scenes: Sequence[Scene]) -> None:
     listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
     known = listed and all(isinstance(item, Samples | None) for item in samples)
     allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
     _require(known, "samples", samples, allowed)
     for scene, samples_of_scene in zip(scenes, samples, strict=True):
-        check_within(samples_of_scene, scene.duration)
+        _check_within(samples_of_scene, scene.duration)
+
+
+def _check_within(samples: Samples | None, duration: float) -> None:
+    if samples is not None and np.any(samples.times > duration):
+        allowed = f"up to the duration of the scene, {duration:g}"
+        raise ValueError(f"samples.times: {samples.times[-1]:g}; allowed: {allowed}")
 
 
 def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:

@@ -49,7 +49,8 @@ def move(medium, motion, sliding, history, dt, end):
     """
     slip, velocity = motion.w[0], motion.w[1]
     force, tally = motion.w[2], history.tally
-    fastest, friction, work = 0.0, 0.0, 0.0
+    fastest = 0.0
+    friction, work = 0.0, 0.0
     for i in range(1, slip.shape[0] - 1):
         if not sliding[i]:
             continue

@@ -80,7 +80,8 @@ def first_reach_of_threshold(coefficients, slopes, degree, lower, upper):
 @inner(inline=True)
 def foresee_release(medium, motion, forecast, block, now, h, top):
     """Time at which a stuck block is released until h, or inf, and its stress at ``now``."""
-    w, strain, offset = motion.w, motion.strain, motion.offset
+    w, offset = motion.w, motion.offset
+    strain = motion.strain
     ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     slip = w[0, block] + offset[block]
     elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.per_dx2 * ahead
@@ -149,6 +150,19 @@ def simultaneous(segments, forecast, mirror, block, latest):
         distance = abs(forecast.stick_block[q] - block)
         others += 0 < distance <= near and forecast.stick_time[q] <= latest
     return others > 0
+
+
+@inner()
+def due_releases(segments, forecast, latest, due):
+    """Fill ``due`` with the blocks that are released until ``latest``. Returns their number."""
+    count = 0
+    for r in range(segments.count.n):
+        for edge in (segments.starts[r] - 1, segments.ends[r]):
+            joined = count > 0 and due[count - 1] == edge
+            if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
+                due[count] = edge
+                count += 1
+    return count
 
 
 @inner()

@@ -11,17 +11,15 @@ def release_block(segments, block):
     r = 0
     while r < n and ends[r] < block:
         r += 1
-    if r < n and starts[r] <= block < ends[r]:
-        return
-    if r < n and ends[r] == block:
+    if r == n or block + 1 < starts[r]:
+        insert(segments, r, block, block + 1)
+    elif block + 1 == starts[r]:
+        starts[r] = block
+    elif block == ends[r]:
         ends[r] = block + 1
         if r + 1 < n and starts[r + 1] == block + 1:
             ends[r] = ends[r + 1]
             remove(segments, r + 1)
-    elif r < n and starts[r] == block + 1:
-        starts[r] = block
-    else:
-        insert(segments, r, block, block + 1)
 
 
 @inner()

@@ -211,7 +211,7 @@ def take_over(medium, motion, scratch, order, h):
     """Advance slip, velocity and strain of all that moved. Returns the largest of some speeds."""
     w, offset = motion.w, motion.offset
     moved, changed = scratch.moved, scratch.changed
-    fastest = 0.0
+    fastest, first = 0.0, 1 if medium.mirror else 0
     for r in range(moved.count.n):
         a, b = moved.starts[r], moved.ends[r]
         stencils.advance_slip(w, motion.velocity, a, b, h, order)
@@ -223,7 +223,7 @@ def take_over(medium, motion, scratch, order, h):
             offset[i] = 0.0
     for r in range(moved.count.n):
         a, b = moved.starts[r], moved.ends[r]
-        for i in stencils.blocks(1 if medium.mirror and a == 1 else a - 1, b):
+        for i in stencils.blocks(max(a - 1, first), b):
             motion.strain[i] += medium.per_dx * (w[2, i + stencils.ONE] - w[2, i])
     if medium.mirror:
         motion.strain[0] = -motion.strain[1]
@@ -237,13 +237,8 @@ def take_over(medium, motion, scratch, order, h):
 def take_events_at_once(medium, motion, segments, scratch, history, end, latest, top):
     """Release and hold all blocks that are due until ``latest``, after a step that ended early."""
     forecast, tally = scratch.forecast, history.tally
-    due, count = scratch.changed.first, 0
-    for r in range(segments.count.n):
-        for edge in (segments.starts[r] - 1, segments.ends[r]):
-            joined = count > 0 and due[count - 1] == edge
-            if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
-                due[count] = edge
-                count += 1
+    due = scratch.changed.first
+    count = foresight.due_releases(segments, forecast, latest, due)
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] <= latest:
             block = forecast.stick_block[q]

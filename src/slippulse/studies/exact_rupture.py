@@ -5,7 +5,7 @@ import pandas as pd
 import xarray as xr
 
 from ..data.points import point
-from ..model.scene import scene_of
+from ..model.scene import Scene
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.rupture import Rupture
 
@@ -30,7 +30,7 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
     parts = []
     for name in NEEDS["data"]:
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]
-        rupture = exact_rupture(scene_of(runs[0]))
+        rupture = exact_rupture(Scene.from_attributes(runs[0].attrs))
         shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN)))
         rows = [pd.DataFrame([shown.attrs])[PARAMETERS].assign(role="scene")]
         left, right = rupture.front_ends[0][0], rupture.front_ends[-1][1]
