@@ -5,6 +5,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
+from numbers import Real
 from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
@@ -124,20 +125,20 @@ class Scene:
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
         check_kind("prestress", self.prestress, Prestress)
         check_kind("friction", self.friction, Friction)
+        self._check_physics()
         for name, bounds in FLOATS.items():
             check_number(name, getattr(self, name), **bounds)
             # Single-precision or integer numbers would be computed with as such, and compiled for.
             object.__setattr__(self, name, float(getattr(self, name)))
-        self._check_physics()
         self._check_resolution()
         self._check_step()
 
     def _check_physics(self) -> None:
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
-        elif self.gamma != 0.0:
+        elif not isinstance(self.gamma, Real) or self.gamma != 0.0:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
-            raise ValueError(f"gamma: {self.gamma!r}; allowed: {allowed}")
+            raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
         check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
         if self.scheme not in self.friction.schemes:
             schemes = " or ".join(self.friction.schemes)
