@@ -177,6 +177,9 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     # Each line has theory, and markers full and open.
     assert len(speeds.lines) == 3 * lines
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
+    held = sweep["boundary"] == "displacement"
+    assert drawn.get_suptitle().startswith(rf"$\Gamma = {int(held)}$")
+    assert ("$b$ = " in drawn.get_suptitle()) is ("damping_ratio" not in varied)
     (legend,) = drawn.legends
     texts = [text.get_text() for text in legend.get_texts()]
     assert {"simulation", "exact theory"} <= {*texts}

@@ -6,7 +6,6 @@ from itertools import product
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..data.numerals import MOST, number, with_uncertainty
@@ -77,29 +76,25 @@ def draw(table: pd.DataFrame) -> Figure:
     spacing = roles["parameter"].set_index("series").loc["dx", "value"]
     parameters = rf"{space_time.description(roles)}, $\Delta x = {spacing:g}$"
     upper.suptitle(f"{title}\n{parameters}", fontsize=9.0)
-    for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
-        draw_end(axes, roles["profile"], steady, field)
+    panels = zip(lower.subplots(1, 2), "bc", FIELDS.items(), strict=True)
+    for axes, letter, (field, name) in panels:
+        ends = roles["profile"][roles["profile"]["series"] == field]
+        axes.axhline(0.0, color=GREY, linewidth=0.5)
+        axes.plot(ends["position"], ends["value"], color=BLUE, label="simulated")
+        look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": DASHES, "gid": "steady"}
+        look["label"] = "steady pulse of this side, exact"
+        for pulse in steady[steady["series"] == field].itertuples():
+            axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
+            # One entry of the legend stands for both sides.
+            look["label"] = None
+        # The velocity is 0 in the middle, and the legend is for both panels.
+        if len(axes.lines) > 2 and field == "slip_velocity":
+            axes.legend(loc="center")
+        axes.set(xlabel=r"position $x$", ylabel=f"{name} at the end")
+        axes.set_xlim(ends["position"].min(), ends["position"].max())
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):
         line = f"{with_symbols(row.label)}: {number_text(row.value, row.uncertainty, row.theory)}"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center", fontsize=8.0)
     return figure
-
-
-def draw_end(axes: Axes, profile: pd.DataFrame, steady: pd.DataFrame, field: str) -> None:
-    """Draw a field at the end, and on each side the largest value of its exact steady pulse."""
-    rows = profile[profile["series"] == field]
-    axes.axhline(0.0, color=GREY, linewidth=0.5)
-    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
-    look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": DASHES, "gid": "steady"}
-    look["label"] = "steady pulse of this side, exact"
-    for pulse in steady[steady["series"] == field].itertuples():
-        axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
-        # One entry of the legend stands for both sides.
-        look["label"] = None
-    # The velocity is 0 in the middle, and the legend is for both panels.
-    if len(axes.lines) > 2 and field == "slip_velocity":
-        axes.legend(loc="center")
-    axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")
-    axes.set_xlim(rows["position"].min(), rows["position"].max())

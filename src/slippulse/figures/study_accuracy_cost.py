@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, entry, new_panels
@@ -59,14 +58,8 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set(xscale="log", yscale="log", ylabel=f"relative error of {title}")
         axes.set_xlabel("stencil passes over a block")
         axes.set_title(r"$\Gamma = 1$", loc="right")
-    _draw_locking(speeds, table[table["part"] == "locking"])
-    handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)
-    return figure
-
-
-def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the front speeds of both schemes and theory, and dx/(n dt), on which fronts lock."""
+    # On dx/(n dt) fronts lock.
+    rows = table[table["part"] == "locking"]
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
@@ -74,13 +67,16 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
         locked = 1.0 / (n * steps)
         shown = np.where((locked > low) & (locked < high), locked, np.nan)
         label = r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$" if n == 1 else None
-        axes.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
-    axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
-    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
-    look: Look = {"label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
-    axes.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
+        speeds.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
+    speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
+    speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
+    look = {"label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
+    speeds.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     # The legend stands above the marks.
-    axes.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
-    axes.set_ylabel("front speed")
-    axes.set_title(r"$\Gamma = 0$", loc="right")
-    axes.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)
+    speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
+    speeds.set_ylabel("front speed")
+    speeds.set_title(r"$\Gamma = 0$", loc="right")
+    speeds.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)
+    handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)
+    return figure

@@ -60,15 +60,27 @@ def _interpolated(
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above; below curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, convergence_axes) = style.new_panels(PAGE, 5.4, "ab;cd")
+    figure, (*maps, curve_axes, convergence) = style.new_panels(PAGE, 5.4, "ab;cd")
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
-    scale, bands = LogNorm(*ends), np.geomspace(*ends, BANDS)
     ratios = np.sort(runs["damping_ratio"].unique())
+    shades: Look = {"norm": LogNorm(*ends), "cmap": MAP}
+    filled = shades | {"levels": np.geomspace(*ends, BANDS), "extend": "both"}
     for axes, ratio in zip(maps, ratios, strict=True):
         drawn, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        image = _draw_map(axes, drawn, marked, scale, bands)
+        grid = drawn.pivot(index="barrier", columns="tau0", values="exact").sort_index()
+        image = axes.contourf(grid.columns, -grid.index, grid, **filled)
+        look: Look = {"levels": CONTOURS, "colors": _ink(CONTOURS), "linewidths": 0.5}
+        lines = axes.contour(grid.columns, -grid.index, grid, **look)
+        axes.clabel(lines, fmt="%g", fontsize=SMALL, zorder=2.5)
+        for marker, (gamma, group) in zip(MARKERS, marked.groupby("gamma"), strict=False):
+            depth = group["measured"] * np.sqrt(gamma)
+            look = {"c": depth, "edgecolors": _ink(depth), "s": 26.0, "linewidths": 0.9} | shades
+            axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
+        axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$")
+        axes.set_ylabel(r"barrier $-\tau_\text{b}$")
+        few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
         axes.set_title(conditions(True, damping_ratio=ratio), loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
@@ -77,43 +89,20 @@ def draw(table: pd.DataFrame) -> Figure:
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest)]
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
     curve_axes.set_title(conditions(True, damping_ratio=largest), loc="right")
-    _draw_convergence(convergence_axes, runs)
-    return figure
-
-
-def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
-    """Draw the depth on lattices over the exact one, a line a scene."""
+    # The depth on lattices over the exact one, a line a scene.
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look: Look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
+        look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
         look |= {"linewidth": 0.7, "markeredgewidth": 0.7} | OPEN
-        for _, line in rows.groupby(["tau0", "barrier", "gamma"]):
-            line = line.sort_values("dx")
-            axes.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
-        axes.lines[-1].set_label(rf"$b = {ratio:g}$")
-    axes.axhline(1.0, color=BLACK, linewidth=0.8)
-    axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
-    scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups
-    axes.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
-    axes.legend(loc="upper left")
-
-
-def _draw_map(
-    axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm, bands: np.ndarray
-):
-    grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
-    x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
-    image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
-    look: Look = {"levels": CONTOURS, "colors": _ink(CONTOURS), "linewidths": 0.5}
-    lines = axes.contour(x, y, grid.to_numpy(), **look)
-    axes.clabel(lines, fmt="%g", fontsize=SMALL, zorder=2.5)
-    look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
-    for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
-        depth = group["measured"] * np.sqrt(gamma)
-        look |= {"c": depth, "edgecolors": _ink(depth), "marker": marker}
-        axes.scatter(group["tau0"], -group["barrier"], **look)
-    axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\text{b}$")
-    few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
-    return image
+        scenes = rows.sort_values("dx").groupby(["tau0", "barrier", "gamma"])
+        for _, line in scenes:
+            convergence.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
+        convergence.lines[-1].set_label(rf"$b = {ratio:g}$")
+    convergence.axhline(1.0, color=BLACK, linewidth=0.8)
+    convergence.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth")
+    convergence.set_xlim(0.0, None)
+    convergence.set_title(rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio", loc="right")
+    convergence.legend(loc="upper left")
+    return figure
 
 
 def _ink(depths: Iterable[float]) -> list[str]:

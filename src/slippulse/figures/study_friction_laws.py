@@ -1,7 +1,6 @@
 """Other laws of friction: where pulses stick or creep, and the front speed at fixed damping."""
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
@@ -24,36 +23,32 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
     figure, (*planes, speeds) = style.new_panels(PAGE, 5.2, "ab;cd")
     roles = style.by_role(table)
-    runs = roles["plane"]
+    runs, fronts = roles["plane"], roles["selection"]
     for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title, loc="right")
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    _draw_speeds(speeds, roles["selection"])
+    # Front speeds on lattices, and exact ones at their distances as lines.
+    for colour, (level, rows) in zip(COLOURS, fronts.groupby("level"), strict=True):
+        for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
+            resolution = points["d_c"] / dx
+            speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
+            look: Look = {"color": colour, "markersize": 4.0} | OPEN
+            speeds.plot(resolution, points["speed"], marker, **look)
+        speeds.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
+    lines = speeds.get_legend_handles_labels()[0]
+    for marker, dx in zip(MARKERS, sorted(fronts["dx"].unique()), strict=False):
+        lines.append(entry(rf"lattice, $\Delta x = {dx:g}$", marker=marker, color=GREY, **OPEN))
+    speeds.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
+    speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
+    style.few_ticks(speeds.xaxis, (1, 2, 4, 8))
+    speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$", loc="right")
+    # The legend stands below the fast fronts, left of the slow ones.
+    low, high = speeds.get_ylim()
+    speeds.set_ylim(low - 0.15 * (high - low), high)
+    speeds.legend(handles=lines, loc="lower left", handlelength=1.4)
     shown = {name: REGIMES[name] for name in REGIMES if (runs["regime"] == name).any()}
     handles = [entry(name, color=colour, marker=mark) for name, (colour, mark) in shown.items()]
     style.legend_below(figure, handles, len(handles))
     return figure
-
-
-def _draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
-    """Draw front speeds on lattices, and exact ones at their distances as lines."""
-    for colour, (level, rows) in zip(COLOURS, runs.groupby("level"), strict=True):
-        for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
-            resolution = points["d_c"] / dx
-            axes.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            look: Look = {"color": colour, "markersize": 4.0} | OPEN
-            axes.plot(resolution, points["speed"], marker, **look)
-        axes.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
-    lines = axes.get_legend_handles_labels()[0]
-    for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
-        lines.append(entry(rf"lattice, $\Delta x = {dx:g}$", marker=marker, color=GREY, **OPEN))
-    axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
-    axes.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
-    style.few_ticks(axes.xaxis, (1, 2, 4, 8))
-    axes.set_title(rf"$1-u/d_c$, $\beta = {runs['beta'].iloc[0]:g}$", loc="right")
-    # The legend stands below the fast fronts, left of the slow ones.
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.15 * (high - low), high)
-    axes.legend(handles=lines, loc="lower left", handlelength=1.4)

@@ -71,8 +71,16 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
     figure, grid = style.new_panels(PAGE, 5.2, "ab;cd")
     panels = {str(panel): rows for panel, rows in table.groupby("panel")}
+    uniform = panels["prestress"]
+    uniform = uniform.assign(over=uniform["speed"] * np.sqrt(1.0 - uniform["left"] ** 2))
     for axes, rule in zip(grid, RULES, strict=False):
-        _draw_prestress(axes, panels["prestress"][panels["prestress"]["release"] == rule])
+        rows = uniform[uniform["release"] == rule]
+        for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
+            line = group[group["role"] == "theory"]
+            look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
+            axes.plot(line["left"], line["over"], **look)
+            _points(axes, group, "left", "over", marker, f"{ratio:g}")
+        axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress", loc="right")
     grid[0].set(yscale="log", ylim=(0.93, 30.0))
     few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
@@ -80,44 +88,29 @@ def draw(table: pd.DataFrame) -> Figure:
     left, label = np.linspace(0.0, 1.0, 101), r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
     limit = grid[1].plot(left, np.sqrt(1.0 + left), ":", color=BLACK, label=label)
     grid[1].legend(handles=limit, loc="upper left")
-    _draw_springs(grid[2], panels["springs"])
-    _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
-    style.legend_above(figure, grid[0], title="damping ratio $b$")
-    return figure
-
-
-def _draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
-    rows = rows.assign(over=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
-    for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
-        line = group[group["role"] == "theory"]
-        axes.plot(
-            line["left"],
-            line["over"],
-            color=colour("damping_ratio", ratio),
-            gid=f"theory {ratio:g}",
-        )
-        _points(axes, group, "left", "over", marker, f"{ratio:g}")
-    axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
-
-
-def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
+    springs, rows = grid[2], panels["springs"]
     looks = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
-    for (left, ratio), group in rows.groupby(["left", "damping_ratio"]):
+    for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
-        style, marker = looks[left]
-        axes.plot(line["springs"], line["speed"], style, color=colour("damping_ratio", ratio))
+        dashes, marker = looks[level]
+        springs.plot(line["springs"], line["speed"], dashes, color=colour("damping_ratio", ratio))
         known = line.dropna(subset="speed")
         if len(known) < len(line):
             last = known.iloc[-1:]
-            axes.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
-        _points(axes, group, "springs", "speed", marker)
-    for left, (style, marker) in looks.items():
-        axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
-    axes.plot([], [], "x", color=GREY, label="no front beyond")
-    axes.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN)
-    axes.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
-    _speed_axis(axes, r"leaf springs $\gamma\,\Delta x^2$", (1, 1.5, 2, 3, 4, 5))
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
+            springs.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
+        _points(springs, group, "springs", "speed", marker)
+    for level, (dashes, marker) in looks.items():
+        springs.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
+    springs.plot([], [], "x", color=GREY, label="no front beyond")
+    springs.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN)
+    springs.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
+    springs.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
+    few_ticks(springs.yaxis, (1, 1.5, 2, 3, 4, 5))
+    springs.set_ylabel("front speed $v$")
+    springs.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
+    _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
+    style.legend_above(figure, grid[0], title="damping ratio $b$")
+    return figure
 
 
 def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
@@ -136,15 +129,11 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=dashes)
         look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
-    _speed_axis(axes, r"spacing $\Delta x$", (1.2, 1.5, 2, 2.5, 3))
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
+    few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     axes.set_ylim(0.88 * undamped, None)
     axes.set_title(rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
     axes.legend(loc="upper right")
-
-
-def _speed_axis(axes: Axes, xlabel: str, ticks: tuple[float, ...]) -> None:
-    axes.set(xscale="log", yscale="log", xlabel=xlabel, ylabel="front speed $v$")
-    few_ticks(axes.yaxis, ticks)
 
 
 def _points(

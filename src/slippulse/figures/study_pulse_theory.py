@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
@@ -40,44 +39,35 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
-    figure, (*grid, refined_axes) = style.new_panels(PAGE, 4.6, "ab;cd")
+    figure, (*grid, refined) = style.new_panels(PAGE, 4.6, "ab;cd")
+    roles = style.by_role(table)
+    gamma = roles["simulation"]["gamma"].iloc[0]
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
-        _draw_quantity(axes, table[table["quantity"] == quantity])
-        gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
+        axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
+        for left, group in table[table["quantity"] == quantity].groupby("left"):
+            colour = style.colour("tau_0", left)
+            line, runs = group[group["role"] == "theory"], group[group["role"] == "simulation"]
+            name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
+            axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
+            for flagged, marks in runs.groupby(runs["run_flags"].notna()):
+                look: Look = {"color": colour} | (OPEN if flagged else {})
+                axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
         axes.set_title(conditions(True, gamma=gamma), loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set_xlim(-0.02, None)
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, grid[0], columnspacing=1.0)
-    _draw_refined(refined_axes, table[table["role"] == "refined"])
-    return figure
-
-
-def _draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
-    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
-    for left, group in rows.groupby("left"):
-        colour = style.colour("tau_0", left)
-        line, runs = group[group["role"] == "theory"], group[group["role"] == "simulation"]
-        name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
-        axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
-        for flagged, marks in runs.groupby(runs["run_flags"].notna()):
-            look: Look = {"color": colour} | (OPEN if flagged else {})
-            axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
-
-
-def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the relative distance of each quantity from its limit over the spacing."""
-    for quantity, colour, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
+    rows = roles["refined"]
+    # The relative distance of each quantity from its limit over the spacing.
+    for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
         label = QUANTITIES.get(quantity, "front speed")
-        axes.plot(line["dx"], error, marker=marker, color=colour, label=label)
-    ends = rows["dx"].agg(["min", "max"]).to_numpy()
-    axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
-    axes.set_ylabel(r"|simulation / limit $-$ 1|")
+        refined.plot(line["dx"], error, marker=marker, color=shade, label=label)
+    style.draw_first_order(refined, rows["dx"], 0.4, GREY)
+    refined.set(ylabel=r"|simulation / limit $-$ 1|", ylim=(1e-6, None))
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
     scene = conditions(True, gamma=gamma, tau_0=left, damping_ratio=ratio)
-    axes.set_title(scene, loc="right")
-    axes.legend(loc="lower right", fontsize=SMALL, labelspacing=0.1)
-    axes.set_ylim(1e-6, None)
+    refined.set_title(scene, loc="right")
+    refined.legend(loc="lower right", fontsize=SMALL, labelspacing=0.1)
+    return figure

@@ -22,33 +22,36 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (plane, pulses, maps, arrest) = style.new_panels(PAGE, 5.4, "ab;cd")
     table = table.assign(over=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     roles = style.by_role(table)
+    level, steady = roles["map"]["level"].iloc[0], roles["steady"]
+    runs = roles["lattice"][roles["lattice"]["level"] == level]
     _draw_plane(plane, roles["lattice"], roles["limit"])
-    shown = roles["lattice"]["level"] == roles["map"]["level"].iloc[0]
-    _draw_sizes(pulses, roles["lattice"][shown], roles["steady"])
-    draw_halves(figure, maps, roles["map"], "regime")
+    width, slip = r"width $W_\text{p}$", r"slip $u$"
+    sizes = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
+    for column, (colour, marker, label) in sizes.items():
+        pulses.plot(steady["over"], steady[column], color=colour, label=label)
+        pulses.plot(runs["over"], runs[column], marker, color=colour, markersize=4.0, **OPEN)
+    pulses.set(xlabel=RATE, ylabel=f"{width}, {slip}", yscale="log")
+    pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
+    pulses.legend(loc="upper center")
+    draw_halves(maps, roles["map"], "regime")
     for regime, half in roles["map"].groupby("regime"):
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         height = 0.92 if half["position"].max() > 0.0 else 0.04
         maps.text(0.04, height, name, transform=maps.transAxes)
-    maps.set_title(
-        rf"$\Gamma = 1$, $\tau_0 = {roles['map']['level'].iloc[0]:g}$, exact", loc="right"
-    )
-    _draw_arrest(arrest, roles["arrest"], roles["asymptote"])
+    maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact", loc="right")
+    rows = roles["arrest"][roles["arrest"]["dx"] == roles["arrest"]["dx"].min()]
+    groups = rows.groupby("rate_strengthening")
+    colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
+    for colour, marker, (alpha, line) in zip(colours, MARKERS, groups, strict=False):
+        look: Look = OPEN | {"markersize": 3.0, "label": rf"$\alpha = {alpha:g}$"}
+        arrest.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
+    theory = roles["asymptote"]
+    line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
+    arrest.plot(line["time"], line["largest_velocity"], "--", label="diffusion", **LINES)
+    arrest.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")
+    arrest.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$", loc="right")
+    arrest.legend(loc="lower left")
     return figure
-
-
-def _draw_sizes(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
-    """Draw width and slip of pulses against the rate dependence."""
-    width, slip = r"width $W_\text{p}$", r"slip $u$"
-    sizes = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
-    for column, (colour, marker, label) in sizes.items():
-        axes.plot(steady["over"], steady[column], color=colour, label=label)
-        axes.plot(runs["over"], runs[column], marker, color=colour, markersize=4.0, **OPEN)
-    axes.set(xlabel=RATE, ylabel=f"{width}, {slip}", yscale="log")
-    axes.set_title(
-        rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right"
-    )
-    axes.legend(loc="upper center")
 
 
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
@@ -71,17 +74,3 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.set_title(r"$\Gamma = 1$", loc="right")
     look = {"ncols": 2, "columnspacing": 0.8, "handletextpad": 0.4}
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.09), **look)
-
-
-def _draw_arrest(axes: Axes, rows: pd.DataFrame, theory: pd.DataFrame) -> None:
-    rows = rows[rows["dx"] == rows["dx"].min()]
-    groups = rows.groupby("rate_strengthening")
-    colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
-    for colour, marker, (alpha, line) in zip(colours, MARKERS, groups, strict=False):
-        look: Look = OPEN | {"markersize": 3.0, "label": rf"$\alpha = {alpha:g}$"}
-        axes.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
-    line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
-    axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", **LINES)
-    axes.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")
-    axes.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$", loc="right")
-    axes.legend(loc="lower left")

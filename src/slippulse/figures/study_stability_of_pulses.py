@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -27,35 +26,29 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     beyond the step), velocity (Gamma = 0, the largest right of the nucleation over time).
     """
     exact = tables["pulse_memory"]
-    across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]
     parts = [exact.assign(role="exact")]
-    parts += [slip_rows(point(across, i), exact) for i in range(across.sizes["point"])]
+    across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]
+    for run in (point(across, i) for i in range(across.sizes["point"])):
+        position, level = prestress_from(run.attrs).steps[-1]
+        x = run["x"].values - position
+        # The slip where the run has stuck, over the distances of the exact solution.
+        drawn = exact.loc[np.isclose(exact["level"], level), "x"]
+        inside = np.isfinite(run["stick_time"].values) & (x > drawn.min()) & (x < drawn.max())
+        kept = np.flatnonzero(inside)
+        kept = kept[:: max(1, kept.size // POINTS)]
+        rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
+        parts.append(rows.assign(role="lattice", level=level, dx=run.attrs["dx"]))
     # The runs with the lowest level on the left send the narrowest pulse.
     lowest = float(beyond_step["left"].min())
-    runs = [point(beyond_step, i) for i in range(beyond_step.sizes["point"])]
-    parts += [velocity_rows(run) for run in runs if run.attrs["left"] == lowest]
+    for run in (point(beyond_step, i) for i in range(beyond_step.sizes["point"])):
+        if run.attrs["left"] == lowest:
+            right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
+            largest = right.max("sample_position").values
+            position, level = prestress_from(run.attrs).steps[-1]
+            rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
+            before = {"before": run.attrs["right"], "step": position}
+            parts.append(rows.assign(role="velocity", level=level, **before))
     return pd.concat(parts, ignore_index=True)
-
-
-def slip_rows(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
-    """Slip of a run where it has stuck, over the distances of the exact solution."""
-    position, level = prestress_from(run.attrs).steps[-1]
-    x = run["x"].values - position
-    drawn = exact.loc[np.isclose(exact["level"], level), "x"]
-    inside = np.isfinite(run["stick_time"].values) & (x > drawn.min()) & (x < drawn.max())
-    kept = np.flatnonzero(inside)
-    kept = kept[:: max(1, kept.size // POINTS)]
-    rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
-    return rows.assign(role="lattice", level=level, dx=run.attrs["dx"])
-
-
-def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Largest slip velocity of a run right of the nucleation over time."""
-    right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
-    largest = right.max("sample_position").values
-    position, level = prestress_from(run.attrs).steps[-1]
-    rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
-    return rows.assign(role="velocity", level=level, before=run.attrs["right"], step=position)
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -63,11 +56,26 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
-        _draw_level(slip_axes, rest_axes, rows.sort_values("x"), level)
+        colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
+        exact, lattice = (rows[rows["role"] == role] for role in ("exact", "lattice"))
+        exact, lattice = exact.sort_values("x"), lattice.sort_values("x")
+        steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
+        slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
+        marks = lattice.iloc[::MARKED]
+        look: Look = {"color": colour} | OPEN
+        slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
+        slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
+        # The exact distance is 0 beyond the memory.
+        ahead = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
+        look |= {"linewidth": 1.0, "markersize": 2.2, "markeredgewidth": 0.6}
+        for part, line in ((exact[ahead], "-"), (marks, "o")):
+            part = part[part["x"] > 0.0]
+            rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
+            rest_axes.plot(part["x"] / memory, rest, line, **look)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
-    lattice: Look = {"color": GREY, "marker": "o", "markersize": 2.5} | OPEN
-    handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **lattice))
+    look = {"color": GREY, "marker": "o", "markersize": 2.5} | OPEN
+    handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **look))
     handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
@@ -84,24 +92,6 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, level: float) -> None:
-    colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
-    exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
-    steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
-    marks = lattice.iloc[::MARKED]
-    look: Look = {"color": colour} | OPEN
-    slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
-    slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
-    # The exact distance is 0 beyond the memory.
-    exact = exact[(exact["x"] > 0.0) & ((exact["x"] <= memory) | (exact["x"].shift() <= memory))]
-    marks = marks[marks["x"] > 0.0]
-    look |= {"linewidth": 1.0, "markersize": 2.2, "markeredgewidth": 0.6}
-    for part, line in ((exact, "-"), (marks, "o")):
-        rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
-        rest_axes.plot(part["x"] / memory, rest, line, **look)
-
-
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw a line a level, in the colour of what the pulse does, with the level at its end."""
     rows = rows[rows["largest_velocity"] > 0.0]
@@ -109,9 +99,14 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
     for level, line in rows.groupby("level"):
         colour = colours[float(np.sign(level))]
-        x, y = line["time"], line["largest_velocity"]
-        axes.plot(x, y, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        axes.annotate(setting(level), _end_in_panel(line), color=BLACK, fontsize=SMALL, **look)
+        time, velocity = line["time"], line["largest_velocity"]
+        axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
+        end = time.iloc[-1], velocity.iloc[-1]
+        if end[1] <= LEAST:
+            # Where the line leaves the panel; velocities fall with time.
+            last = time.iloc[::-1], np.log(velocity.iloc[::-1])
+            end = np.interp(np.log(LEAST), last[1], last[0]), 1.15 * LEAST
+        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     highest = rows["largest_velocity"].max()
@@ -119,14 +114,3 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
     look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 8.0}
     axes.text(0.97, 0.96, r"$\tau$ beyond", **look)
-
-
-def _end_in_panel(line: pd.DataFrame) -> tuple[float, float]:
-    """Point at which a line ends or leaves the panel, where velocities fall with time."""
-    visible = line["largest_velocity"] > LEAST
-    time, velocity = line.loc[visible, ["time", "largest_velocity"]].iloc[-1]
-    if visible.all():
-        return time, velocity
-    below = line[~visible].iloc[0]
-    velocities = np.log([below["largest_velocity"], velocity])
-    return float(np.interp(np.log(LEAST), velocities, [below["time"], time])), 1.15 * LEAST

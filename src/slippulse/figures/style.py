@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from textwrap import fill
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
 import matplotlib
 import matplotlib.rcsetup
@@ -68,32 +68,21 @@ REGIMES = {
 HALO = [withStroke(linewidth=2.2, foreground="white")]
 
 
-class Scale(NamedTuple):
-    """Colours of a quantity: a map, the part of it that is seen on white, ends and their norm."""
-
-    map: str
-    part: tuple[float, float]
-    ends: tuple[float, float]
-    norm: Callable[..., Normalize]
-
-
-# A quantity has the same colour for the same value in every figure. The scale of tau_l is stretched
-# towards 0, where most levels are.
-SCALES = {
-    "tau_0": Scale("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
-    "tau_l": Scale("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
-    "gamma": Scale("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
-    "damping_ratio": Scale("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
-    "width": Scale("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
+# A quantity has the same colour for the same value in every figure: a map, the part of it that is
+# seen on white, ends and their norm. That of tau_l is stretched towards 0, where most levels are.
+Ends: TypeAlias = tuple[float, float]
+SCALES: dict[str, tuple[str, Ends, Ends, Callable[..., Normalize]]] = {
+    "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
+    "tau_l": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
+    "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
+    "damping_ratio": ("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
+    "width": ("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
-
 # Each run has the colour of its level.
 LEVEL = {"displacement": "tau_0", "stress": "tau_l"}
-
 # A note below a figure: inches of a line and of the gap above, and characters an inch.
 NOTE_LINE, NOTE_GAP = 0.13, 0.08
 NOTE_DENSITY = 22
-
 # The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"
 RC: dict[Any, Any] = {
@@ -158,9 +147,9 @@ def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
 
 def colour_scale(quantity: str) -> ScalarMappable:
     """Colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar all."""
-    scale = SCALES[quantity]
-    colours = matplotlib.colormaps[scale.map](np.linspace(*scale.part, 256))
-    return ScalarMappable(scale.norm(*scale.ends, clip=True), ListedColormap(colours))
+    name, part, ends, norm = SCALES[quantity]
+    colours = matplotlib.colormaps[name](np.linspace(*part, 256))
+    return ScalarMappable(norm(*ends, clip=True), ListedColormap(colours))
 
 
 def colour(quantity: str, value: float) -> np.ndarray:
@@ -190,6 +179,14 @@ def conditions(held: bool, **numbers: float) -> str:
 def by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
     """Split a table by its column role."""
     return {str(role): rows for role, rows in table.groupby("role")}
+
+
+def draw_first_order(axes: Axes, spacings: pd.Series, slope: float, colour: str) -> None:
+    """Draw an error in proportion to the spacing, on logarithmic axes."""
+    ends = spacings.agg(["min", "max"]).to_numpy()
+    look: Look = {"color": colour, "linestyle": ":", "linewidth": 0.8, "label": "first order"}
+    axes.plot(ends, slope * ends, **look)
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
 
 
 def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
@@ -20,11 +19,10 @@ AXES = {
     "release": "release rule",
     "dx": r"$\Delta x$",
 }
-ROWS = "abc;def"
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """`main_numbers` of each run of a sweep with its flags, axis, x and series.
+    """`main_numbers` of each run of a sweep with its flags, axis, x, series and what is fixed.
 
     The axis is the column with most values; the series names what else varies. A quantity that
     equals another one in every run is left out.
@@ -33,6 +31,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     alike = (runs["left"] == runs["right"]).all()
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
     axis, *others = varying_columns(runs) or ["left"]
+    fixed = fixed_parameters(runs, ["tau_0"] if alike else ["left", "right"])
     parts = []
     for _, run in runs.iterrows():
         series = ", ".join(f"{AXES[name]} = {_text(run[name])}" for name in others)
@@ -42,7 +41,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for _, group in pd.concat(parts).groupby("quantity", sort=False):
         if not any(np.array_equal(group["value"], other["value"]) for other in different):
             different.append(group)
-    return pd.concat(different, ignore_index=True)
+    return pd.concat(different, ignore_index=True).assign(fixed=fixed)
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
@@ -56,6 +55,15 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
 
 
+def fixed_parameters(runs: pd.DataFrame, levels: list[str]) -> str:
+    """The boundary condition, and the main parameters that every run of a sweep has."""
+    held = runs["boundary"].iloc[0] == "displacement"
+    names = [*(["gamma"] if held else []), *levels, "damping_ratio", "width", "dx"]
+    shared = [name for name in names if runs[name].nunique() == 1]
+    values = [f"{AXES[name]} = {_text(runs[name].iloc[0])}" for name in shared]
+    return ", ".join([rf"$\Gamma = {int(held)}$", *values])
+
+
 def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
@@ -63,29 +71,25 @@ def _text(value: float | str) -> str:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel a quantity; markers are runs (open: flagged), lines exact theory."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
-    figure, panels = new_panels(PAGE, 4.2, ROWS)
-    quantities = list(dict.fromkeys(table["quantity"]))[: len(panels)]
-    for axes, quantity in zip(panels, quantities, strict=False):
-        draw_quantity(axes, table[table["quantity"] == quantity])
+    figure, panels = new_panels(PAGE, 4.2, "abc;def")
+    quantities = list(table.groupby("quantity", sort=False))[: len(panels)]
+    for axes, (_, rows) in zip(panels, quantities, strict=False):
+        groups = rows.groupby("series", sort=False)
+        colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
+        for colour, (series, group) in zip(colours, groups, strict=False):
+            group = group.sort_values("x")
+            flagged = group["run_flags"].notna()
+            axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
+            sound, hollow = group[~flagged], group[flagged]
+            axes.plot(sound["x"], sound["value"], "o", color=colour, label=series or None)
+            axes.plot(hollow["x"], hollow["value"], "o", color=colour, markerfacecolor="none")
+        axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in panels[len(quantities) :]:
         axes.set_visible(False)
+    figure.suptitle(table["fixed"].iloc[0], fontsize=9.0)
     handles = [entry("simulation", marker="o", color=GREY)]
     handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, markerfacecolor="none"))
     legend_below(figure, [*panels[0].get_legend_handles_labels()[0], *handles], 5)
     return figure
-
-
-def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw one quantity over the axis, each series in a colour."""
-    groups = rows.groupby("series", sort=False)
-    colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
-    for colour, (series, group) in zip(colours, groups, strict=False):
-        group = group.sort_values("x")
-        flagged = group["run_flags"].notna()
-        axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-        sound, hollow = group[~flagged], group[flagged]
-        axes.plot(sound["x"], sound["value"], "o", color=colour, label=series or None)
-        axes.plot(hollow["x"], hollow["value"], "o", color=colour, markerfacecolor="none")
-    axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
@@ -138,7 +137,7 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
     return image
 
 
-def draw_halves(figure: Figure, axes: Axes, rows: pd.DataFrame, half: str) -> None:
+def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw two maps, one above x = 0 and one below, of the values of a column."""
     look: Look = {"cmap": VELOCITY_MAP, "shading": "nearest", "rasterized": True}
     look |= {"vmin": 0.0, "vmax": rows["slip_velocity"].max()}
@@ -147,7 +146,7 @@ def draw_halves(figure: Figure, axes: Axes, rows: pd.DataFrame, half: str) -> No
         grid = part.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
-    figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
+    axes.figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
     axes.set(xlabel=r"time $t$", ylabel=r"position $x$")
 
 
