@@ -54,10 +54,8 @@ def equation(
     """
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     verdict = worst_tested(verdicts)
-    if verdict == NOT_TESTABLE:
-        return verdict, None
-    deciding = [run for run in range(len(verdicts)) if verdicts[run] == verdict]
-    return verdict, max(deciding, key=deviations.__getitem__)
+    deciding = [run for run, one in enumerate(verdicts) if one == verdict != NOT_TESTABLE]
+    return verdict, max(deciding, key=deviations.__getitem__, default=None)
 
 
 def verdict_over_choices(verdicts: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.prestress import Prestress
-from ..solver.layer import LayerRun, LayerScene, simulate_layer
+from ..solver.layer import LayerScene, simulate_layer
 from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
@@ -85,35 +85,27 @@ def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> Layer
 def on_grids(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
 ) -> list[dict[str, Any]]:
-    """Rows of one scene, for each grid, side and station."""
+    """Rows of one scene, for each grid, side and station, of what passes there and is left."""
     rows = []
     for cells in grids:
         run = simulate_layer(replace(scene, cells=cells))
         known: dict[str, Any] = {"part": part, "gamma": scene.gamma, "tau0": scene.prestress.right}
         known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": cells}
-        known["first_stick"] = first_stick(run, scene.nucleation)
+        # The first stick is that in the length without friction, infinite without any.
+        sticks = run.stick_time[np.abs(run.x) <= scene.nucleation]
+        known["first_stick"] = float(sticks[np.isfinite(sticks)].min(initial=math.inf))
         known["energy_residual"] = run.energy_residual
         half = scene.nucleation * HALF / NUCLEATION
         for side in sides:
             end = float((side * run.x[np.isfinite(run.release_time)]).max())
             for station in STATIONS:
-                row = {"side": side, "end": side * end, "station": station}
-                rows.append(known | row | passage(run, side * station * end, half))
+                near = np.abs(run.x - side * station * end) <= half
+                speed = 1.0 / abs(np.polyfit(run.x[near], run.release_time[near], 1)[0])
+                width = speed * float((run.stick_time - run.release_time)[near].mean())
+                row = {"side": side, "end": side * end, "station": station, "speed": speed}
+                row |= {"pulse_width": width, "pulse_slip": float(run.slip[near].mean())}
+                rows.append(known | row)
     return rows
-
-
-def passage(run: LayerRun, position: float, half: float) -> dict[str, float]:
-    """Speed and width of what passes a position, and the slip that is left there at the end."""
-    near = np.abs(run.x - position) <= half
-    speed = 1.0 / abs(np.polyfit(run.x[near], run.release_time[near], 1)[0])
-    width = speed * float((run.stick_time - run.release_time)[near].mean())
-    return {"speed": speed, "pulse_width": width, "pulse_slip": float(run.slip[near].mean())}
-
-
-def first_stick(run: LayerRun, nucleation: float) -> float:
-    """Time of the first stick in the length without friction, infinite without any."""
-    sticks = run.stick_time[np.abs(run.x) <= nucleation]
-    return float(sticks[np.isfinite(sticks)].min(initial=math.inf))
 
 
 def one_dimension(scene: LayerScene) -> dict[str, float]:
