@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,10 +13,6 @@ from . import layer, transition
 from .evidence import Evidence, evaluated, value_of
 
 
-class NoRuns(Exception):
-    """An altered configuration has left no runs to take a number from."""
-
-
 def findings(
     evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]
 ) -> list[dict]:
@@ -23,13 +20,14 @@ def findings(
     out = []
     for id, entry in entries.items():
         rows = entry.get("numbers", [])
-        values: dict = {}
-        try:
-            for row in rows:
-                values |= numbers(evidence, damping_ratio, **row)
-            values |= COMPUTED[id](evidence) if id in COMPUTED else {}
-        except NoRuns:
-            values = {}
+        parts = [numbers(evidence, damping_ratio, **row) for row in rows]
+        if id in COMPUTED:
+            parts.append(COMPUTED[id](evidence))
+        # An altered configuration may have left no runs to take some of them from.
+        values: dict[str, Any] = {}
+        if all(parts):
+            for part in parts:
+                values |= part
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
         source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
         out.append({"id": id, "numbers": values, "text": text, "source": source})
@@ -39,13 +37,12 @@ def findings(
 def numbers(
     evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = ""
 ) -> dict[str, float]:
-    """Expressions over columns of the chosen rows of one table; `NoRuns` without rows."""
+    """Expressions over columns of the chosen rows of one table; nothing without rows."""
     rows = evidence.finest(table) if table in evidence.swept else evidence.tables[table]
     rows = rows.assign(figures=ratio)
     rows = rows[evaluated(rows, where)]
-    if rows.empty:
-        raise NoRuns(table)
-    return {name: float(value_of(rows, expression)) for name, expression in take.items()}
+    expressions = take.items() if len(rows) else ()
+    return {name: float(value_of(rows, expression)) for name, expression in expressions}
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
@@ -56,7 +53,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
         table = table.set_index(["left", "width", "gamma", "damping_ratio"])
         lengths = table["transition_length"].unstack()
         if lengths.empty:
-            raise NoRuns(boundary)
+            return {}
         change = lengths.iloc[:, -1] / lengths.iloc[:, 0]
         out[f"{boundary}_change"] = float(change.median())
         out[f"{boundary}_runs"] = float(change.count())

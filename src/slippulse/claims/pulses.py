@@ -38,22 +38,15 @@ KEEPS_SLIP = f"slip_variation < {{tolerance}} and regime == {TWO_WAY!r}"
 STEADY_AT_ZERO = f"(beyond == 0 and abs({CHANGE}) <= {{steady}}) or (beyond != 0 and changed != 0)"
 
 
-class PulseEquation(NamedTuple):
-    """A measured quantity, the paper's expression for it, and conditions on runs by simulation."""
-
-    quantity: str
-    paper: str
-    runs: Mapping[str, str]
-
-
-EQUATIONS = {
-    "front_speed": PulseEquation("front_speed_right", "paper_front_speed_right", GAMMA_TO_ZERO),
-    "pulse_profile": PulseEquation("pulse_shape_deviation", "0", ALONE),
-    "pulse_peak_velocity": PulseEquation("pulse_peak_velocity", "paper_pulse_peak_velocity", ALONE),
-    "pulse_slip": PulseEquation("pulse_slip", "paper_pulse_slip", ALONE),
-    "pulse_width": PulseEquation("pulse_width", "paper_pulse_width", NARROW),
-    "pulse_acceleration": PulseEquation("pulse_acceleration", "paper_pulse_acceleration", NARROW),
-    "stress_drop": PulseEquation("pulse_stress_drop", "2 * left", ALONE),
+# A measured quantity, the paper's expression for it, and conditions on runs by simulation.
+EQUATIONS: dict[str, tuple[str, str, Mapping[str, str]]] = {
+    "front_speed": ("front_speed_right", "paper_front_speed_right", GAMMA_TO_ZERO),
+    "pulse_profile": ("pulse_shape_deviation", "0", ALONE),
+    "pulse_peak_velocity": ("pulse_peak_velocity", "paper_pulse_peak_velocity", ALONE),
+    "pulse_slip": ("pulse_slip", "paper_pulse_slip", ALONE),
+    "pulse_width": ("pulse_width", "paper_pulse_width", NARROW),
+    "pulse_acceleration": ("pulse_acceleration", "paper_pulse_acceleration", NARROW),
+    "stress_drop": ("pulse_stress_drop", "2 * left", ALONE),
 }
 
 

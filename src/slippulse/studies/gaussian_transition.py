@@ -13,10 +13,7 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans sqrt(gamma)/pi at Gamma = 1, over left and gamma.
-
-    There is no gamma where nucleation is at a point: the number does not depend on it.
-    """
+    """T_trans sqrt(gamma)/pi at Gamma = 1; without gamma where nucleation is at a point."""
     rows = []
     for left in LEVELS:
         rows += [(left, over_paper(left, gamma), gamma) for gamma in (None, *GAMMAS)]

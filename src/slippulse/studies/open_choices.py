@@ -28,11 +28,7 @@ PAPER = ["paper_transition_time", "paper_transition_length"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Exact transition_time and transition_length, and the paper's, of each run of figure 5.
-
-    By boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), left,
-    width, gamma and, under a stress boundary, fraction (of the path that counts as arrest).
-    """
+    """Exact transitions, and the paper's estimates, of each run of figure 5 at each choice."""
     sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     springs, cracks = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
     springs, cracks = springs.query("left > 0"), cracks.query("left < 0")

@@ -57,11 +57,7 @@ DIFFERENCE, FIRST = 0.01, 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Best fits of every reading of the left panel over the damping ratio, and of the right panel.
-
-    Rows of a reading by part: profile (tau0 and gamma that fit all but the drawn arrows best),
-    arrows (that fit all readings), notebook (as profile, by NOTEBOOK), stress (the right panel).
-    """
+    """Parts profile (all but the arrows), arrows (all readings), notebook, stress (right)."""
     panel = LeftPanel(readings_of(settings["published"], "space_time_displacement"))
     parts = []
     for release in RELEASES:
