@@ -21,7 +21,7 @@ def findings(
     for id, entry in entries.items():
         rows = entry.get("numbers", [])
         parts = [numbers(evidence, damping_ratio, **row) for row in rows]
-        if id in COMPUTED:
+        if id in COMPUTED and all(parts):
             parts.append(COMPUTED[id](evidence))
         # An altered configuration may have left no runs to take some of them from.
         values: dict[str, Any] = {}
