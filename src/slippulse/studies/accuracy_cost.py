@@ -77,12 +77,7 @@ class Setting(NamedTuple):
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Parts trade (work and errors of each setting) and locking (front speed by the step)."""
-    window = settings["measure"]["front_window"]
-    return pd.concat([trade(settings["presets"], window), locking(window)], ignore_index=True)
-
-
-def trade(presets: dict, window: float) -> pd.DataFrame:
-    """Costs and errors of every setting."""
+    presets, window = settings["presets"], settings["measure"]["front_window"]
     names = {
         Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
         for name, preset in presets.items()
@@ -92,8 +87,9 @@ def trade(presets: dict, window: float) -> pd.DataFrame:
         ladder.append(Setting("localised", order, step, dx))
     ladder.append(Setting("continuum", 1, 1.0, TEXTBOOK_SPACING))
     ladder += [setting for setting in names if setting not in ladder]
-    rows = pd.DataFrame(ladder).join(pd.DataFrame([errors(one, window) for one in ladder]))
-    return rows.assign(preset=[names.get(setting, "") for setting in ladder], part="trade")
+    trade = pd.DataFrame(ladder).join(pd.DataFrame([errors(one, window) for one in ladder]))
+    trade = trade.assign(preset=[names.get(setting, "") for setting in ladder], part="trade")
+    return pd.concat([trade, locking(window)], ignore_index=True)
 
 
 def locking(window: float) -> pd.DataFrame:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -54,22 +55,21 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     stress), fine (one pulse on a finer grid), crack and barrier (held stress).
     """
     rows = []
-    for gamma in GAMMAS:
-        for tau0 in LEVELS:
-            scene = uniform("displacement", gamma, tau0, TOUGHNESS * tau0**2 / gamma)
-            in_one_dimension = one_dimension(scene)
-            rows += [row | in_one_dimension for row in on_grids("pulse", scene, CELLS)]
+    for gamma, tau0 in product(GAMMAS, LEVELS):
+        scene = uniform("displacement", gamma, tau0, TOUGHNESS * tau0**2 / gamma)
+        in_one_dimension = one_dimension(scene)
+        rows += [row | in_one_dimension for row in on_grids("pulse", scene, CELLS)]
     rows += on_grids("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
-    rows += on_grids("crack", uniform("stress", GAMMA, *CRACK), CELLS)
+    crack, barrier = uniform("stress", GAMMA, *CRACK), Prestress(BARRIER, 0.0, WIDTH)
+    rows += on_grids("crack", crack, CELLS)
     main = uniform("displacement", GAMMA, 0.8, TOUGHNESS * 0.8**2 / GAMMA)
     rows += on_grids("fine", main, FINE)
     for coupling in COUPLINGS:
         rows += on_grids("coupled", replace(main, coupling=coupling), FINE[:2], (1, -1))
+    crack = replace(crack, prestress=barrier, duration=1.8 * DURATION)
+    balance = {"balance_distance": paper_transition_stress(barrier)[0]}
     for weakening in WEAKENINGS:
-        barrier = Prestress(BARRIER, 0.0, WIDTH)
-        scene = replace(uniform("stress", GAMMA, *CRACK), prestress=barrier, weakening=weakening)
-        balance = {"balance_distance": paper_transition_stress(barrier)[0]}
-        stopped = on_grids("barrier", replace(scene, duration=1.8 * DURATION), CELLS, (1, -1))
+        stopped = on_grids("barrier", replace(crack, weakening=weakening), CELLS, (1, -1))
         rows += [row | balance for row in stopped]
     return pd.concat([pd.DataFrame(rows), field(replace(main, duration=SNAPSHOT))])
 
