@@ -48,18 +48,8 @@ class ArrestingCrack:
         self.fronts = Fronts(prestress, damping_ratio, release, self.end)
         self.zero = -float(self.fronts.ends[-1.0])
 
-    def entry_for(self, position: float) -> float:
-        """Where the characteristic that ends on the left front, from x_minus to x*, entered.
-
-        Parameters
-        ----------
-        position : float, between x_minus and the zero x* of the pre-stress
-
-        Returns
-        -------
-        float : e, to the right of x*
-        """
-        check_number("position", position, above=self.balance_position, at_most=self.zero)
+    def _entry(self, position: float) -> float:
+        """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
         last, balance = self.end - 1e-9, partial(self.prestress.integral, position)
         if balance(last) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
@@ -80,7 +70,7 @@ class ArrestingCrack:
         check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
-        entry = self.entry_for(position)
+        entry = self._entry(position)
         return entry + float(self.fronts.arrival(entry)) - position
 
     def time_at_fraction(self, fraction: float) -> float:
@@ -136,7 +126,7 @@ class ArrestingCrack:
         # Denser towards x_minus, which is never reached.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
         slow = self.zero + (self.balance_position - self.zero) * fraction
-        entered = np.array([self.entry_for(x) for x in slow])
+        entered = np.array([self._entry(x) for x in slow])
         slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
         positions = np.concatenate([entries, slow])
         velocity = [0.5 * self.prestress.integral(x, self.end) for x in positions]
