@@ -46,14 +46,11 @@ def pulse(accuracy, level, gamma, ratio, width, release):
     speed = theory.front_speed(level, ratio, release)
     steady = theory.steady_pulse(level, gamma, 0.0, speed)
     exact = theory.exact_transition_displacement(profile, gamma, ratio, release)
-    pulse_numbers = ("width", "slip", "peak_velocity", "stress_drop")
-    return scene, {f"pulse_{name}": getattr(steady, name) for name in pulse_numbers} | {
-        "front_speed_left": speed,
-        "front_speed_right": speed,
-        "transition_time": exact.time,
-        "transition_length": exact.length,
-        "first_stick_time": exact.time,
-    }
+    names = ("width", "slip", "peak_velocity", "stress_drop")
+    numbers = {f"pulse_{name}": getattr(steady, name) for name in names}
+    numbers |= dict.fromkeys(("front_speed_left", "front_speed_right"), speed)
+    numbers |= dict.fromkeys(("transition_time", "first_stick_time"), exact.time)
+    return scene, numbers | {"transition_length": exact.length}
 
 
 def crack(accuracy, level, ratio, width):

@@ -23,9 +23,7 @@ def symbol(k: complex, v: float, b: float) -> complex:
 
 @pytest.mark.parametrize("v", [1.05, 1.5, 4.0])
 def test_the_factors_at_damping_ratio_one(v):
-    def factor(k: complex, sign: int) -> complex:
-        return 1.0 - sign / v * (np.exp(sign * 1j * k) - 1.0) / (sign * 1j * k)
-
+    factor = lambda k, sign: 1.0 - sign / v * (np.exp(sign * 1j * k) - 1.0) / (sign * 1j * k)
     for k in (0.3, 2.0, -7.5, 0.4 + 0.0j):
         product = factor(k, 1) * factor(k, -1)
         assert product == pytest.approx(symbol(k, v, 1.0), rel=tolerances.PULSE_THEORY)
@@ -40,8 +38,7 @@ def test_the_factors_at_damping_ratio_one(v):
 @pytest.mark.parametrize("v", [1.02, 1.3, 3.0])
 @pytest.mark.parametrize("b", [0.05, 0.7, 5.0])
 def test_the_symbol_does_not_wind_around_zero(v, b):
-    k = np.linspace(1e-3, 200.0, 20001)
-    assert np.min(symbol(k, v, b).real) >= 1.0 - 1.0 / v**2 - 1e-9
+    assert np.min(symbol(np.linspace(1e-3, 200.0, 20001), v, b).real) >= 1.0 - 1.0 / v**2 - 1e-9
 
 
 @pytest.mark.parametrize("v", [1.2, 2.0])
@@ -146,36 +143,17 @@ class Layer:
         excess = shear_stress / self.normal_stress - self.kinetic_friction
         return excess / (self.static_friction - self.kinetic_friction)
 
-    def peak_velocity(self) -> float:
-        """Peak of the paper's pulse, derived from the scales: twice the printed one."""
-        return self.slip_scale("displacement") / self.time_scale / np.sqrt(self.gamma)
-
-    def printed_peak_velocity(self) -> float:
-        """The peak as printed in section IV A of the paper."""
-        return self.friction_drop / np.sqrt(2.0 * self.shear_modulus * self.density)
-
-    def transition_length(self, front_speed: float) -> float:
-        return 2.0 * np.pi * self.thickness / np.sqrt(self.gamma) * front_speed
-
-    def pulse_width(self, tau0: float, front_speed: float) -> float:
-        return np.pi * tau0 * self.thickness / np.sqrt(self.gamma) * front_speed
-
 
 def random_layers():
     """Layers of rock-like properties, each with a pre-stress and a generator of its own."""
     random = np.random.default_rng(SEED)
     for i in range(LAYERS):
-        kinetic = random.uniform(0.1, 0.7)
-        layer = Layer(
-            thickness=10.0 ** random.uniform(-3, 5),
-            density=random.uniform(1e3, 4e3),
-            lame=10.0 ** random.uniform(6, 11),
-            shear_modulus=10.0 ** random.uniform(6, 11),
-            static_friction=kinetic + random.uniform(0.01, 0.3),
-            kinetic_friction=kinetic,
-            normal_stress=10.0 ** random.uniform(4, 8),
-        )
-        yield layer, random.uniform(0.05, 0.95), np.random.default_rng([SEED, i])
+        kinetic, between = random.uniform(0.1, 0.7), random.uniform
+        powers = {"thickness": (-3, 5), "lame": (6, 11), "shear_modulus": (6, 11)}
+        rock = {name: 10.0 ** between(*ends) for name, ends in powers.items()}
+        rock |= {"density": between(1e3, 4e3), "normal_stress": 10.0 ** between(4, 8)}
+        rock |= {"static_friction": kinetic + between(0.01, 0.3), "kinetic_friction": kinetic}
+        yield Layer(**rock), between(0.05, 0.95), np.random.default_rng([SEED, i])
 
 
 def relative(one, other) -> float:
@@ -286,12 +264,17 @@ def transition_estimate_algebra(layer, tau, random):
 
 def dimensional_lengths(layer, tau, factor=1.0) -> np.ndarray:
     """L_trans and width at a factor times the thickness, over those of the scaled model."""
-    v = front_speed_undamped(tau)
-    thick = dataclasses.replace(layer, thickness=factor * layer.thickness)
-    lengths = np.array([thick.transition_length(v), thick.pulse_width(tau, v)])
+    reach = factor * layer.thickness / np.sqrt(layer.gamma) * front_speed_undamped(tau)
     transition = 2.0 * np.pi / np.sqrt(layer.gamma * (1.0 - tau**2))
     scaled = np.array([transition, paper_pulse(tau, layer.gamma).width])
-    return lengths / scaled / layer.thickness
+    return np.pi * reach * np.array([2.0, tau]) / scaled / layer.thickness
+
+
+def dimensional_peak_velocity(layer, tau, random):
+    """Twice the peak as printed in section IV A, and that of the paper's pulse by the scales."""
+    printed = layer.friction_drop / np.sqrt(2.0 * layer.shear_modulus * layer.density)
+    scaled = layer.slip_scale("displacement") / layer.time_scale / np.sqrt(layer.gamma)
+    return [2.0 * printed / scaled]
 
 
 def damage_zone_in_series(layer, tau, random):
@@ -316,21 +299,13 @@ def burridge_knopoff_identity(layer, tau, random):
 
 FORMULAS = (wave_equation_at_zero, layer_average, displacement_reduction, nondimensional_form)
 FORMULAS += (prestress_is_initial_displacement, units_wave_speed, pulse_algebra)
-FORMULAS += (transition_estimate_algebra, burridge_knopoff_identity)
+FORMULAS += (transition_estimate_algebra, burridge_knopoff_identity, dimensional_peak_velocity)
 ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
     # Equation (7) at the static strength, forwards.
-    "static_threshold": lambda rock, *_: [
-        rock.prestress(rock.static_friction * rock.normal_stress)
-    ],
+    "static_threshold": lambda one, *_: [one.prestress(one.static_friction * one.normal_stress)],
     "dimensional_transition_length": lambda rock, tau, _: dimensional_lengths(rock, tau)[:1],
-    # The printed one is half of it.
-    "dimensional_peak_velocity": lambda rock, *_: [
-        2.0 * rock.printed_peak_velocity() / rock.peak_velocity()
-    ],
     "dimensional_width": lambda rock, tau, _: dimensional_lengths(rock, tau)[1:],
-    "transition_length_scales_with_H": lambda rock, tau, _: (
-        dimensional_lengths(rock, tau, 2.0) / 2.0
-    ),
+    "transition_length_scales_with_H": lambda one, tau, _: dimensional_lengths(one, tau, 2.0) / 2.0,
     "damage_zone_stress_drop": damage_zone_in_series,
     # A zone of 1e-9 of the stiffness of rock ten times as thick.
     "damage_zone_limit": lambda *_: [damage_zone_stress_drop(1.0, 1.0, 1e9, 1.0, 10.0)],

@@ -51,10 +51,6 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
         lattice.advance_to_end(at_most(20))
 
 
-def coarse(**values) -> sp.Scene:
-    return displacement(0.3, 20.0, 0.4, **values)
-
-
 def arrest(left: float, **values) -> sp.Scene:
     return displacement(left, 60.0, beta=0.01, **values)
 
@@ -75,8 +71,8 @@ def below(friction_ratio: float) -> sp.Scene:
 
 
 FLAGS = {
-    "a pulse of few blocks": (coarse(), "unresolved_pulse"),
-    "a pulse of few blocks, if that is allowed": (coarse(resolved_blocks=1), ""),
+    "a pulse of few blocks": (displacement(0.3, 20.0, 0.4), "unresolved_pulse"),
+    "a pulse of few blocks, allowed": (displacement(0.3, 20.0, 0.4, resolved_blocks=1), ""),
     "a pulse of many blocks": (displacement(0.3, 20.0, 0.05), ""),
     "a Gaussian of few blocks under stress": (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"),
     "a Gaussian of many blocks under stress": (stress(-0.5, 0.0, 4.0, 0.125), ""),
@@ -112,5 +108,5 @@ def test_flags(scene, flags):
 
 def test_strict_raises_where_a_flag_would_be_set():
     with pytest.raises(sp.UnresolvedRun, match=r"unresolved_pulse .*needed 8"):
-        sp.simulate(displacement(0.3, 20.0, 0.4), strict=True)
-    sp.simulate(displacement(0.3, 20.0, 0.05), strict=True)
+        sp.simulate(FLAGS["a pulse of few blocks"][0], strict=True)
+    sp.simulate(FLAGS["a pulse of many blocks"][0], strict=True)

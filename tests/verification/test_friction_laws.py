@@ -27,11 +27,7 @@ def run(law, dx, level=0.5, duration=40.0, beta=BETA, step=0.1, **values):
     return sp.simulate(sp.Scene(*layer, duration, dx, GAMMA, friction=law, **values))
 
 
-def test_every_law_has_an_example():
-    assert {*EXAMPLES} == {law.law for law in LAWS}
-
-
-@pytest.mark.parametrize("law", EXAMPLES)
+@pytest.mark.parametrize("law", [law.law for law in LAWS])
 @pytest.mark.parametrize("half", [True, False])
 def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
     friction = sp.friction(law, **EXAMPLES[law])
@@ -49,29 +45,29 @@ def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
 def test_the_work_against_friction_is_the_fracture_energy_of_the_path(law):
     """Exponential weakening by 50 d_c and more pays d_c a length, linear weakening d_c/2."""
     data = run(sp.friction(law, d_c=0.02, nucleation=2.0), 0.02, 0.8, 12.0, step=0.05)
-    x = data["x"].values
-    done = (np.abs(x) >= 2.0) & (data["slip"].values > 0.0)
+    done = (np.abs(data["x"].values) >= 2.0) & (data["slip"].values > 0.0)
     per_length = 0.02 if law == "exponential_weakening" else 0.01
     # Blocks at the fronts are on their way.
     assert data.attrs["friction_loss"] == pytest.approx(per_length * 0.02 * done.sum(), rel=0.03)
 
 
+@pytest.mark.parametrize(("scheme", "least"), [("fixed_step", 1.0), ("localised", 3.0)])
 @pytest.mark.parametrize(
     ("level", "d_c", "sticks"), [(0.8, 0.1, True), (0.5, 0.2, True), (0.5, 0.3, False)]
 )
-def test_slip_weakening_selects_the_speed_of_theory_as_the_spacing_falls(level, d_c, sticks):
+def test_lattices_tend_to_the_rupture_of_linear_weakening(level, d_c, sticks, scheme, least):
+    """By events at second order: the error falls by a factor of at least 3 as spacing is halved."""
     exact = theory.weakening_pulse(level, GAMMA, BETA, d_c)
     law = sp.friction("slip_weakening", d_c=d_c, nucleation=2.0)
-    measured = [sp.measure(run(law, dx, level)) for dx in SPACINGS]
-    speeds = np.array([numbers["front_speed_right"] for numbers in measured])
-    errors = np.abs(speeds / exact.speed - 1.0)
-    assert errors[0] > errors[1] > errors[2] and errors[2] < 5e-4
+    runs = [run(law, dx, level, scheme=scheme) for dx in SPACINGS]
+    measured = [sp.measure(data) for data in runs]
+    assert scheme == "fixed_step" or max(data.attrs["energy_residual"] for data in runs) < ENERGY
     assert exact.sticks == sticks
-    if sticks:
-        slips = np.array([numbers["pulse_slip"] for numbers in measured])
-        deviations = np.abs(slips / exact.slip - 1.0)
-        assert deviations[0] > deviations[1] and deviations[2] < 5e-4
-        assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
+    expected = {"front_speed_right": exact.speed} | ({"pulse_slip": exact.slip} if sticks else {})
+    for name, value in expected.items():
+        errors = np.abs([numbers[name] / value - 1.0 for numbers in measured])
+        assert errors[2] < 5e-4 and (errors[:2] > least * errors[1:]).all()
+    assert not sticks or measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
 
 
 @pytest.mark.parametrize(("law", "ratio"), [("bounded_rate", 0.1), ("rate_weakening", 0.0)])
@@ -89,23 +85,9 @@ def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ra
         assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
 
 
-def by_events(dx, d_c=0.1, level=0.8, **values):
-    law = sp.friction("slip_weakening", d_c=d_c, nucleation=2.0)
-    return run(law, dx, level, scheme="localised", **values)
-
-
-@pytest.mark.parametrize(
-    ("level", "d_c", "sticks"), [(0.8, 0.1, True), (0.5, 0.2, True), (0.5, 0.3, False)]
-)
-def test_linear_weakening_by_events_tends_to_theory_at_second_order(level, d_c, sticks):
-    exact = theory.weakening_pulse(level, GAMMA, BETA, d_c)
-    runs = [by_events(dx, d_c, level) for dx in SPACINGS]
-    measured = [sp.measure(data) for data in runs]
-    assert max(data.attrs["energy_residual"] for data in runs) < ENERGY
-    expected = {"front_speed_right": exact.speed} | ({"pulse_slip": exact.slip} if sticks else {})
-    for name, value in expected.items():
-        errors = np.abs([numbers[name] / value - 1.0 for numbers in measured])
-        assert errors[2] < 5e-4 and errors[0] / errors[1] > 3.0 and errors[1] / errors[2] > 3.0
+def by_events(dx, **values):
+    law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
+    return run(law, dx, 0.8, scheme="localised", **values)
 
 
 def test_at_a_fixed_damping_ratio_the_front_tends_to_the_wave_speed():
@@ -121,8 +103,7 @@ def test_linear_weakening_by_events_is_the_limit_of_short_textbook_steps():
     errors = []
     for step in (0.04, 0.02):
         textbook = run(law, 0.05, 0.8, 15.0, step=step)
-        late = textbook["release_time"] - localised["release_time"]
-        errors.append(float(np.abs(late).max()))
+        errors.append(float(np.abs(textbook["release_time"] - localised["release_time"]).max()))
     assert errors[1] < 0.6 * errors[0] and errors[1] < 0.02
 
 

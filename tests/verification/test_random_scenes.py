@@ -53,8 +53,7 @@ def random_scenes(draw) -> sp.Scene:
     bound = largest_step(scheme, order, ratio, gamma * dx**2)
     duration = draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0)))
     release = draw(st.sampled_from(RELEASES))
-    max_step = min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0]))
-    how = release, scheme, max_step, order
+    how = release, scheme, min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0])), order
     return sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx, *how)
 
 
@@ -118,24 +117,20 @@ def check_motion(run) -> None:
 def check_equation(run) -> None:
     """Stuck blocks are at rest below the threshold; the others obey the equation of motion."""
     moving, total = sliding(run)[1:-1], total_stress(run)[1:-1]
-    stuck = threshold_stress(run)[1:-1][~moving]
-    assert np.max(stuck, initial=-np.inf) <= 1.0 + tol.STRESS_AT_END
+    assert np.max(threshold_stress(run)[1:-1][~moving], initial=-np.inf) <= 1.0 + tol.STRESS_AT_END
     assert not run["slip_velocity"].values[1:-1][~moving].any()
     force = np.where(moving, total, 0.0)
     assert np.max(np.abs(run["slip_acceleration"].values[1:-1] - force)) < tol.STRESS_AT_END
 
 
 def check_mirror(scene, run) -> None:
-    profile = scene.prestress
-    steps = tuple((-position, level) for position, level in profile.steps)
-    bumps = tuple((-centre, *rest) for centre, *rest in profile.bumps)
-    turned = sp.Prestress(profile.right, profile.left, profile.width, profile.peak, steps, bumps)
-    other = sp.simulate(dataclasses.replace(scene, prestress=turned))
-    assert other.sizes == {"x": run.sizes["x"]}
+    tau = scene.prestress
+    steps = tuple((-position, level) for position, level in tau.steps)
+    bumps = tuple((-centre, *rest) for centre, *rest in tau.bumps)
+    turned = sp.Prestress(tau.right, tau.left, tau.width, tau.peak, steps, bumps)
+    other = sp.simulate(dataclasses.replace(scene, prestress=turned)).isel(x=slice(None, None, -1))
     for name in FIELDS:
-        one, two = run[name].values, other[name].values[::-1]
-        assert np.array_equal(np.isfinite(one), np.isfinite(two))
-        assert np.max(np.abs(one - two), where=np.isfinite(one), initial=0.0) < tol.MIRROR
+        assert other[name].values == pytest.approx(run[name].values, 0.0, tol.MIRROR, nan_ok=True)
 
 
 @FEWER

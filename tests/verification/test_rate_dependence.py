@@ -13,12 +13,9 @@ PROFILE, SPEED = sp.Prestress(LEVEL, LEVEL), theory.front_speed(LEVEL, RATIO)
 CRITICAL = theory.critical_rate_strengthening(GAMMA, SPEED)
 
 
-def law(alpha):
-    return sp.friction("linear_rate", alpha=alpha)
-
-
 def run(alpha, dx=0.04, duration=20.0, **values):
-    values = {"gamma": GAMMA, "beta": RATIO * dx, "friction": law(alpha)} | values
+    law = sp.friction("linear_rate", alpha=alpha)
+    values = {"gamma": GAMMA, "beta": RATIO * dx, "friction": law} | values
     return sp.simulate(sp.Scene("displacement", PROFILE, duration, dx, **values))
 
 
@@ -39,8 +36,9 @@ def test_the_steady_pulse_and_its_end_are_those_derived_independently():
     velocity = pulse.profile([-pulse.width, 0.5 * -pulse.width, 0.0])[1]
     np.testing.assert_allclose(velocity[[0, 2]], 0.0, atol=tol.ALGEBRA)
     for alpha in (CRITICAL, -CRITICAL):
-        refusal = r"rate_strengthening: .*; allowed: less than 0.947322"
-        with pytest.raises(ValueError, match=refusal):
+        with pytest.raises(
+            ValueError, match=r"rate_strengthening: .*; allowed: less than 0.947322"
+        ):
             theory.steady_pulse(LEVEL, GAMMA, 0.0, SPEED, rate_strengthening=1.01 * alpha)
 
 
@@ -52,8 +50,7 @@ def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(a
     """
     bound = 2.0 * np.sqrt(GAMMA / (1.0 + 1.0 / SPEED**2))
     assert alpha > CRITICAL and (alpha < bound) == (time is not None)
-    first = rupture_of(alpha, 24.0).first_stick
-    assert first == (time and pytest.approx((time, 0.0), abs=1e-4))
+    assert rupture_of(alpha, 24.0).first_stick == (time and pytest.approx((time, 0.0), abs=1e-4))
     if time:
         lag = [run(alpha, dx, 24.0).attrs["first_stick_time"] - time for dx in (0.02, 0.01)]
         assert 0.0 < lag[1] < 0.5 * lag[0] < 0.25
