@@ -13,21 +13,15 @@ pytestmark = pytest.mark.slow
 
 LEVELS = [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7]
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}
-FILES = (
-    "data/{}.nc",
-    "measurements/{}.csv",
-    "uncertainties/{}.csv",
-    "uncertainties/coarser/{}.csv",
-)
+FILES = ("data/{}.nc", "measurements/{}.csv", "uncertainties/{}.csv")
+FILES += ("uncertainties/coarser/{}.csv",)
 
 
 def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
     """Write an overlay with sweeps of some levels, by how many chunks each has, or None."""
     sweep = SWEEP | {"left": LEVELS, "resolved_blocks": 4} | changes
-    simulations = {name: sweep | {"chunks": chunks} for name, chunks in sweeps.items()}
-    for simulation in simulations.values():
-        if simulation["chunks"] is None:
-            del simulation["chunks"]
+    chunked = {name: {"chunks": count} if count else {} for name, count in sweeps.items()}
+    simulations = {name: sweep | chunks for name, chunks in chunked.items()}
     overlay = {"preset": "draft", "simulations": simulations}
     (folder / name).write_text(json.dumps(overlay), encoding="utf-8")
     return name

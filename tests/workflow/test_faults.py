@@ -59,10 +59,9 @@ def test_surroundings_do_not_change_a_byte(finished, tmp_path):
 
 @pytest.mark.slow
 def test_it_can_be_started_from_anywhere(finished, tmp_path):
-    options = ["--directory", finished, "--snakefile", finished / "Snakefile", "--dry-run"]
-    overlay = finished / "overlay.yaml"
-    arguments = [*options, "--", SCENE]
-    result = snakemake(finished, *arguments, overlay=overlay, command=BY_PROFILE, cwd=tmp_path)
+    how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
+    folder = ("--directory", finished, "--snakefile", finished / "Snakefile")
+    result = snakemake(finished, *folder, "--dry-run", "--", SCENE, **how)
     assert planned(result) == {}
 
 
@@ -89,17 +88,15 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
 def test_an_unreadable_table_is_named(tmp_path):
     path = tmp_path / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
-    refusal = r"edited\.csv: cannot be read .* delete it and run again"
-    with pytest.raises(UnreadableFile, match=refusal):
+    with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run"):
         load_table(path)
 
 
 # Places of folders, where a file is put, and of files, where a folder is put.
-FOLDERS = ("results/data", "results/logs", ".snakemake")
+FOLDERS = ("results", "results/data", "results/logs", ".snakemake")
 FILES = ("kernels/localised.txt", "measurements/arrest.csv", "records/data/arrest.nc.json")
-PLACES = [("results", "file")]
-PLACES += [pytest.param(place, "file", marks=pytest.mark.slow) for place in FOLDERS]
-PLACES += [pytest.param(f"results/{name}", "folder", marks=pytest.mark.slow) for name in FILES]
+PLACES = [(place, "file") for place in FOLDERS] + [(f"results/{name}", "folder") for name in FILES]
+PLACES[1:] = [pytest.param(*place, marks=pytest.mark.slow) for place in PLACES[1:]]
 
 
 @pytest.mark.parametrize(("place", "kind"), PLACES)

@@ -4,22 +4,18 @@ import re
 
 import pytest
 from pipeline_copy import BY_PROFILE, edges, planned, snakemake
-
-from slippulse.steps.reach import needs_of
+from rules_by_imports import DRAWN, STUDIED
 
 FIGURE = "fig07_damage_zone"
 
 
 @pytest.mark.slow
 def test_the_default_is_the_whole_paper_and_one_figure_needs_only_its_own_simulations(
-    linked, project
+    linked,
 ):
     jobs = planned(snakemake(linked, "--dry-run"))
     pages = {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"}
-    figures = project / "src/slippulse/figures"
-    drawn = {path.stem for path in [*figures.glob("fig*.py"), *figures.glob("study_*.py")]}
-    studied = {f"study_of_{name}" for name in needs_of("studies")}
-    assert pages | drawn | studied <= set(jobs)
+    assert pages | DRAWN | {*STUDIED} <= set(jobs)
     jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
     once = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
     assert jobs == once | {"simulate": 2, "measure": 2}

@@ -6,7 +6,6 @@ import shutil
 import site
 import subprocess
 import sys
-from typing import NamedTuple
 
 import pytest
 
@@ -15,42 +14,30 @@ from slippulse.model.cost import HOW_TO_GO_ON
 STEADY = "simulations: {steady_displacement: "
 
 
-class Command(NamedTuple):
-    """A run of the pipeline: overlay, parts of its refusal, further arguments."""
-
-    overlay: str
-    refusal: list[str]
-    arguments: tuple[str, ...] = ("--",)
-
-
-DRAFT = "preset: draft\n"
-SHELL = ("--config", "preset=$(touch written)")
-COSTS = ["simulations.scaling_stress.cost", "block updates", "allow_large=true"]
+DRAFT, LONG = "preset: draft\n", STEADY + "{duration: {time: 1.0e+8}}}"
+# Overlay, further arguments, and parts of the refusal.
 COMMANDS = {
-    "misspelt key": Command(STEADY + "{gama: [0.3]}}", ["did you mean 'gamma'"]),
-    "cost": Command(
-        STEADY + "{duration: {time: 1.0e+8}}}",
-        ["steady_displacement.cost: up to", "allow_large=true"],
+    "misspelt key": (STEADY + "{gama: [0.3]}}", "--", ["did you mean 'gamma'"]),
+    "cost": (LONG, "--", ["steady_displacement.cost: up to", "allow_large=true"]),
+    "unknown figure": (
+        DRAFT,
+        "-- results/figures/fig05_scalling.png",
+        ["mean 'results/figures/fig05"],
     ),
-    "python tag": Command("preset: !!python/name:os.system\n", ["no tags"]),
-    "list": Command("[1, 2]\n", ["with keys at top level"]),
-    "preset on the command line": Command(DRAFT, ["'$(touch written)'"], SHELL),
-    "accuracy that costs too much": Command(
-        "accuracy: 1.0e-4\n", COSTS, ("--", "results/figures/fig05_scaling.png")
-    ),
-    "unknown figure": Command(
-        DRAFT, ["mean 'results/figures/fig05"], ("--", "results/figures/fig05_scalling.png")
-    ),
-    "rule for many files": Command(
-        DRAFT, ["target: 'simulate'", "a rule of a single job"], ("--", "simulate")
-    ),
-    "unknown scene": Command(
-        DRAFT, ["did you mean 'results/scenes/barrier"], ("--", "results/scenes/bariere.html")
+    "rule for many files": (DRAFT, "-- simulate", ["target: 'simulate'", "a rule of a single job"]),
+}
+# These take the same way through the pipeline.
+SLOW = {
+    "python tag": ("preset: !!python/name:os.system\n", "--", ["no tags"]),
+    "preset on the command line": (DRAFT, "--config preset=$(touch\twritten)", ["'$(touch"]),
+    "unknown scene": (DRAFT, "-- results/scenes/bariere.html", ["mean 'results/scenes/barrier"]),
+    "accuracy that costs too much": (
+        "accuracy: 1.0e-4\n",
+        "-- results/figures/fig05_scaling.png",
+        ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
     ),
 }
-# The other cases take the same way through the pipeline.
-QUICK = ("misspelt key", "cost", "unknown figure", "rule for many files")
-REST = [pytest.param(case, marks=pytest.mark.slow) for case in COMMANDS if case not in QUICK]
+SLOW = [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
 
 
 @pytest.fixture
@@ -72,13 +59,15 @@ def said(command, folder, code, environment=None) -> str:
 SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
 
 
-@pytest.mark.parametrize("case", [*QUICK, *REST])
-def test_the_command_refuses_before_any_job(folder, case):
-    command = COMMANDS[case]
-    (folder / "mine.yaml").write_text(command.overlay, encoding="utf-8")
-    text = said([*SNAKEMAKE, *command.arguments], folder, 1)
+@pytest.mark.parametrize(
+    ("overlay", "arguments", "refusal"),
+    [*(pytest.param(*case, id=name) for name, case in COMMANDS.items()), *SLOW],
+)
+def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal):
+    (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
+    text = said([*SNAKEMAKE, *arguments.split(" ")], folder, 1)
     assert not any(part in text for part in ("Traceback", "localrule", "Select jobs"))
-    assert all(part in text for part in command.refusal)
+    assert all(part in text for part in refusal)
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
@@ -91,7 +80,7 @@ def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(fold
 
 @pytest.mark.slow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
-    (folder / "mine.yaml").write_text(COMMANDS["cost"].overlay, encoding="utf-8")
+    (folder / "mine.yaml").write_text(LONG, encoding="utf-8")
     allowed, target = HOW_TO_GO_ON.split()[:2], "results/data/steady_displacement.nc"
     said([*SNAKEMAKE, "--dry-run", *allowed, "--", target], folder, 0)
 
@@ -211,14 +200,9 @@ def test_a_folder_of_caches_that_cannot_be_written_is_one_line(folder, project, 
 def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
     monkeypatch.chdir(project)
     path = "results/figures/fig07_damage_zone.png"
-    short = {
-        "fig7": path,
-        "figure_07.png": path,
-        path: path,
-        "fig07.csv": path.replace("png", "csv"),
-        "sweep_mine": "results/figures/sweep_mine.png",
-        "everything": "everything",
-    }
+    short = dict.fromkeys(("fig7", "figure_07.png", path), path) | {"everything": "everything"}
+    short["fig07.csv"] = path.replace("png", "csv")
+    short["sweep_mine"] = "results/figures/sweep_mine.png"
     full_target = runpy.run_path("workflow/run.py")["full_target"]
     assert [*map(full_target, short)] == [*short.values()]
     with pytest.raises(SystemExit, match=r"TARGET: fig99; allowed: fig01_system_sketch, .*sweep_"):

@@ -28,11 +28,8 @@ OVERLAYS = {
     "paper": OVERLAY | {"preset": "paper"},
 }
 # Results that are made by every overlay.
-PART = (
-    "results/scenes/one.html",
-    "results/measurements/arrest.csv",
-    "results/figures/sweep_mine.png",
-)
+PART = ("results/scenes/one.html", "results/measurements/arrest.csv")
+PART += ("results/figures/sweep_mine.png",)
 FIGURE = "figures/fig07_damage_zone"
 
 
@@ -78,8 +75,6 @@ SHELL = r"""
 swap() { mv "$1" away; mv "$2" "$1"; mv away "$2"; }
 # A source or a text, as `rsync -a` and `cp -p` leave it.
 edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }
-# Another value in a record.
-rewrite() { sed -i -zE "s#(\"$2\": )(\"[^\"]*\"|\{[^}]*\})#\1$3#" "results/records/$1.json"; }
 """
 # Changes of a file. Edits keep the size.
 GONE = {
@@ -102,7 +97,6 @@ MISSING, CHANGED = "missing", "not what its job wrote"
 NO_RECORD, UNREADABLE = "no record", "its record cannot be read"
 RULE, SOURCES = "made by another rule", "made by other sources"
 CONFIGURATION, UNKNOWN = "made by another configuration", "not known; no rule makes it"
-OLDER = "older than {}, which it is made from"
 # Files of each kind, by how they are changed.
 CHANGED_FILES = f"""
 removed: data/mine/1-of-2.nc uncertainties/one.csv {FIGURE}.csv findings.json explorer.html
@@ -118,22 +112,19 @@ grown: studies/extremes.csv
 cut: manuscript/replication.html
 with zeros: provenance.json
 """
-FILES = {}
-for line in CHANGED_FILES.strip().splitlines():
-    FILES |= dict.fromkeys(line.partition(": ")[2].split(), line.partition(": ")[0])
 # Commands, and what verify then says of some results. All commands of a table change one folder,
 # where each change is named and repaired by itself.
-REASONS = dict.fromkeys(HARMS, CHANGED) | dict.fromkeys(GONE, MISSING)
-CONTENT = {
-    HARMS[how].format(f"results/{name}"): {name: REASONS[how]} for name, how in FILES.items()
-}
+CONTENT = {}
+for line in CHANGED_FILES.strip().splitlines():
+    how, _, names = line.partition(": ")
+    for name in names.split():
+        reason = {name: MISSING if how in GONE else CHANGED}
+        CONTENT[HARMS[how].format(f"results/{name}")] = reason
+TWO = dict.fromkeys(("data/pulse_damping.nc", "data/one.nc"), CHANGED)
+SCALING = "figures/fig05_scaling.png"
 MOVES = {
-    "cd results/data; swap pulse_damping.nc one.nc": dict.fromkeys(
-        ("data/pulse_damping.nc", "data/one.nc"), CHANGED
-    ),
-    "cd results/figures; cp fig04_space_time.png fig05_scaling.png": {
-        "figures/fig05_scaling.png": CHANGED
-    },
+    "cd results/data; swap pulse_damping.nc one.nc": TWO,
+    "cd results/figures; cp fig04_space_time.png fig05_scaling.png": {SCALING: CHANGED},
     "cd results/measurements; mv damping_stress.csv Damping_stress.csv": {
         "measurements/damping_stress.csv": MISSING,
         "measurements/Damping_stress.csv": UNKNOWN,
@@ -141,31 +132,10 @@ MOVES = {
     "echo mine > results/data/unknown.nc": {"data/unknown.nc": UNKNOWN},
     "echo {} > results/records/gone.csv.json": {"records/gone.csv.json": UNKNOWN},
 }
-HARMED_RECORDS = {
-    ("fig01_system_sketch", "removed"): NO_RECORD,
-    ("fig02_phase_diagram", "a dead link"): NO_RECORD,
-    ("fig03_steady_state", "emptied"): UNREADABLE,
-    ("fig04_space_time", "edited"): UNREADABLE,
-    ("fig05_scaling", "grown"): UNREADABLE,
-    ("fig06_burridge_knopoff", "cut"): UNREADABLE,
-}
+# Records, of which the tests of records change more.
 RECORDS = {
-    HARMS[how].format(f"results/records/figures/{name}.png.json"): {f"figures/{name}.png": reason}
-    for (name, how), reason in HARMED_RECORDS.items()
-}
-REWRITTEN = {
-    f"""rewrite {FIGURE}.png step '"measure"'""": {f"{FIGURE}.csv": RULE},
-    "rewrite scenes/one.png outputs {}": {"scenes/one.pdf": RULE},
-    "rewrite scenes/barrier.png inputs {}": {"scenes/barrier.html": RULE},
-    """rewrite explorer.html outputs '{"explorer.html": "0"}'""": {"explorer.html": CHANGED},
-    """rewrite data/arrest.nc sources '""'""": {
-        "data/arrest.nc": SOURCES,
-        "measurements/arrest.csv": OLDER.format("data/arrest.nc"),
-    },
-    """rewrite studies/extremes.csv configuration '""'""": {"studies/extremes.csv": CONFIGURATION},
-    """rewrite measurements/one.csv inputs '{"data/one.nc": "0"}'""": {
-        "measurements/one.csv": OLDER.format("data/one.nc")
-    },
+    f"rm results/records/{FIGURE}.png.json": {f"{FIGURE}.png": NO_RECORD},
+    f"truncate -s 20 results/records/{SCALING}.json": {SCALING: UNREADABLE},
     """cd results/measurements; swap scaling_stress.csv damping_stress.csv
        cd ../records/measurements; swap scaling_stress.csv.json damping_stress.csv.json""": {
         "measurements/scaling_stress.csv": RULE,
@@ -197,7 +167,7 @@ OLD_OVERLAY = "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml"
     "changes",
     [
         pytest.param(CONTENT | MOVES, id="content"),
-        pytest.param(RECORDS | REWRITTEN, id="records"),
+        pytest.param(RECORDS, id="records"),
         pytest.param(OLD_SOURCES, id="sources"),
         pytest.param(FOLDERS, id="folders"),
         pytest.param({f"{FUTURE}; {SOLVER_EDIT}": SOLVER}, id="a source, results in the future"),
@@ -224,10 +194,11 @@ HARMLESS = (
 )
 
 
-PUT_BACK = ("rm -r results; cp -r overlay results",)
-
-
-@pytest.mark.parametrize("commands", [HARMLESS, PUT_BACK], ids=["harmless", "a copy put back"])
+@pytest.mark.parametrize(
+    "commands",
+    [HARMLESS, ("rm -r results; cp -r overlay results",)],
+    ids=["harmless", "a copy put back"],
+)
 def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert change_and_verify(folder, {command: {} for command in commands}) == {}
     assert "made anew where needed" not in run(folder, *TARGETS)
