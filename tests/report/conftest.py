@@ -18,29 +18,14 @@ from slippulse.steps import write_report
 
 DIGEST = "0123456789abcdef"
 # A claim that is simply reproduced.
-CLAIM = {
-    "id": "speed",
-    "figure_or_section": "III A",
-    "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
-    "kind": "exact",
-    "counted": True,
-    "why": "",
-    "deviation": 8e-5,
-    "predicted": 1.25,
-    "measured": 1.2501,
-    "uncertainty": 1e-4,
-    "tolerance": 1e-3,
-    "verdict": "reproduced",
-    "note": "at $x_-$",
-    "source": "runs",
-    "runs": 4,
-    "left_out": 0,
-    "figure": "fig01_one",
-}
-CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": [], "at_earlier": ""}
-CLAIM |= {"beyond": False, "asked": ""}
-CLAIM |= dict.fromkeys(["held", "failed", "undecided", "ninety", "largest"])
-CLAIM |= dict.fromkeys(["exact_median", "exact_largest"])
+CLAIM = {"id": "speed", "figure_or_section": "III A", "kind": "exact", "verdict": "reproduced"}
+CLAIM |= {"statement": r"fronts <outrun> the waves & keep $\gamma<1$", "figure": "fig01_one"}
+CLAIM |= {"predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "deviation": 8e-5}
+CLAIM |= {"tolerance": 1e-3, "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0}
+CLAIM |= {"counted": True, "why": "", "beyond": False, "asked": "", "at_earlier": ""}
+CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": []}
+UNKNOWN = ("held", "failed", "undecided", "ninety", "largest", "exact_median", "exact_largest")
+CLAIM |= dict.fromkeys(UNKNOWN)
 
 
 def read(path: Path):
@@ -53,10 +38,8 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
-    numbered = enumerate(entries.items(), start=1)
-    return [
-        invented_claim(i, id, entry, scale) | {"further": further} for i, (id, entry) in numbered
-    ]
+    claims = [invented_claim(i, *entry, scale) for i, entry in enumerate(entries.items(), start=1)]
+    return [claim | {"further": further} for claim in claims]
 
 
 def invented_claim(i: int, id: str, entry: dict, scale: float) -> dict:
@@ -64,20 +47,12 @@ def invented_claim(i: int, id: str, entry: dict, scale: float) -> dict:
     deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
     formula = r"$T_\mathrm{trans}$ is $\pi/\sqrt\gamma$"
     claim = CLAIM | {key: entry[key] for key in ("kind", "tolerance", "reason")}
-    claim |= {
-        "id": id,
-        "predicted": 1.0,
-        "measured": 1.0 + deviation,
-        "uncertainty": 0.00021,
-        "deviation": deviation,
-        "verdict": within(deviation, 0.00021, entry["tolerance"]),
-        "statement": f"statement of {id.replace('_', ' ')}: {formula}",
-        "counted": "follows_from" not in entry,
-        "follows_from": entry.get("follows_from", []),
-        "why": "since $x$ is so",
-        "note": r"measured at $\Delta x=0$",
-        "figure": "fig05_scaling",
-    }
+    claim |= {"id": id, "statement": f"statement of {id.replace('_', ' ')}: {formula}"}
+    claim |= {"predicted": 1.0, "measured": 1.0 + deviation, "deviation": deviation}
+    claim |= {"uncertainty": 0.00021, "verdict": within(deviation, 0.00021, entry["tolerance"])}
+    claim |= {"why": "since $x$ is so", "note": r"measured at $\Delta x=0$"}
+    claim |= {"figure": "fig05_scaling", "counted": "follows_from" not in entry}
+    claim |= {"follows_from": entry.get("follows_from", [])}
     claim |= {"ninety": 1e-3 * i, "largest": 2e-3 * i}
     claim |= {"exact_median": 1e-5 * i, "exact_largest": 2e-5 * i}
     if "earlier_tolerance" in entry:
@@ -91,12 +66,9 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
     """Each finding, with every number that a text asks for."""
     names = set(re.findall(r"\b(?:n|late|literal|damped|made_with|collapse|plane)\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
-    numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {
-        "release": "total"
-    }
-    return [
-        {"id": id, "numbers": numbers, "text": f"found {id.replace('_', ' ')}"} for id in findings
-    ]
+    numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))}
+    common = {"numbers": numbers | {"release": "total"}}
+    return [common | {"id": id, "text": f"found {id.replace('_', ' ')}"} for id in findings]
 
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
@@ -106,25 +78,19 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
         names = re.findall(rf"\b{variable}\.(\w+)", texts)
         return {name: 1.0 + 0.01 * i for i, name in enumerate(names)}
 
-    crack, transition = row("crack"), {}
-    for name in ("transition_time", "transition_length"):
-        transition |= {name: 1.0, f"exact_{name}": 1.0}
+    crack = row("crack")
+    names = ("transition_time", "transition_length")
+    transition = dict.fromkeys((*names, *(f"exact_{name}" for name in names)), 1.0)
     quoted = [
         {"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()
     ]
     for name in ("release_time", "stick_time", "final_slip"):
-        quoted.append({"quantity": name, "x": 0.0, "value": 1.0})
-        quoted.append({"quantity": name, "x": 1.0, "value": 2.0})
+        quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
     edge = {"family": "level", "value": "tau_0 = 0.999", "quantity": "front speed"}
     edge |= {"error": 1e-4, "tolerance": 1e-2, "verdict": "right", "message": ""}
-    tables = {
-        "space_time_displacement": [row("scene")],
-        "space_time_stress": [crack],
-        "scaling_displacement": [transition],
-        "arrest_path": [{"to_go": 1e-6, "time": 2.88} | crack],
-        "derivations": quoted,
-        "extremes": [edge],
-    }
+    tables = {"space_time_displacement": [row("scene")], "space_time_stress": [crack]}
+    tables |= {"scaling_displacement": [transition], "derivations": quoted, "extremes": [edge]}
+    tables["arrest_path"] = [{"to_go": 1e-6, "time": 2.88} | crack]
     study = {"quantity": "front_speed_right", "value": 1.25}
     known = study | {"uncertainty": 0.0013, "observed_order": 1.04}
     for name in write_report.NEEDS["uncertainties"]:
@@ -148,9 +114,7 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
         for ending in ("png", "pdf"):
             drawn.savefig(folder / f"{name}.{ending}")
     entries = read(manuscript / "claims.yaml")
-    texts = "\n".join(
-        path.read_text(encoding="utf-8") for path in sorted(manuscript.glob("*.[my]*"))
-    )
+    texts = "\n".join(path.read_text("utf-8") for path in sorted(manuscript.glob("*.[my]*")))
 
     def make(config: dict = shipped, scale: float = 1.0) -> Inputs:
         return Inputs(

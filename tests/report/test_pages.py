@@ -26,12 +26,8 @@ FINDING = {"id": "ours", "numbers": {"gap": 0.5}, "text": "a gap of $x$", "sourc
 NEVER = CLAIM | {"id": "length", "verdict": "not testable", "note": ""}
 NEVER |= dict.fromkeys(["predicted", "measured", "uncertainty", "runs", "deviation"])
 CLAIMS = [CLAIM, FAILED, NEVER, OPEN]
-TABLES = [
-    "measurements/runs.csv",
-    "predictions/runs.csv",
-    "studies/other.csv",
-    "uncertainties/runs.csv",
-]
+TABLES = ["measurements/runs.csv", "predictions/runs.csv", "studies/other.csv"]
+TABLES += ["uncertainties/runs.csv"]
 NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
@@ -77,53 +73,27 @@ def results(project, tmp_path_factory):
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     caption = {"alt": "A line <up>", "caption": "(a) $x$."}
     caption["finding"] = "Found in {{ claim('speed').runs }} runs."
-    lines = [
-        {
-            "topic": "Yes",
-            "named": "fronts run",
-            "claims": {"speed": "speeds"},
-            "text": "Gap {{ found('ours').gap }}.",
-        },
-        {
-            "topic": "Fronts",
-            "named": "a front",
-            "said": {"not reproduced": "a width is not met"},
-            "claims": {"speed": "fronts", "width": "their width"},
-            "text": "No.",
-        },
-        {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."},
-        {
-            "topic": "Ahead",
-            "named": "a front",
-            "claims": {"length": ""},
-            "beside": {"always": ""},
-            "text": "No.",
-        },
-    ]
-    summary = {
-        "question": "Do they run?",
-        "symbols": "$H$ is a height.",
-        "picture": "fig01_one",
-        "accuracy": "Of {{ claim('speed').runs }} runs, {{ misprints | length }} misprint.",
-        "verdict": lines,
-    }
+    back = {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."}
+    ahead = back | {"topic": "Ahead", "named": "a front", "beside": {"always": ""}}
+    met = {"topic": "Yes", "named": "fronts run", "claims": {"speed": "speeds"}}
+    met |= {"text": "Gap {{ found('ours').gap }}."}
+    off = {"topic": "Fronts", "named": "a front", "said": {"not reproduced": "a width is not met"}}
+    off |= {"claims": {"speed": "fronts", "width": "their width"}, "text": "No."}
+    summary = {"question": "Do they run?", "symbols": "$H$ is a height.", "picture": "fig01_one"}
+    summary["accuracy"] = "Of {{ claim('speed').runs }} runs, {{ misprints | length }} misprint."
+    summary["verdict"] = [met, off, back, ahead]
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
-    contents = {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}
-    for name, content in contents.items():
+    for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
     erratum = dict.fromkeys(ERRATUM, "text")
     for name, content in {"captions": captions, "summary": summary, "errata": [erratum]}.items():
-        text = yaml.safe_dump(content)
-        (results.parent / f"{name}.yaml").write_text(text, encoding="utf-8")
+        (results.parent / f"{name}.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
     return results
 
 
 def written(results, captions: str = "captions") -> str:
-    texts = {
-        "captions": results.parent / f"{captions}.yaml",
-        "summary": results.parent / "summary.yaml",
-        "errata": results.parent / "errata.yaml",
-    }
+    names = {"captions": captions, "summary": "summary", "errata": "errata"}
+    texts = {name: results.parent / f"{file}.yaml" for name, file in names.items()}
     galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
     scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
     return index_page(results, texts, galleries, scenes)
@@ -139,9 +109,8 @@ def check_accessible(text: str) -> Outline:
     outline = Outline(text)
     assert text.startswith("<!DOCTYPE html>")
     assert outline.all("html") == [{"lang": "en"}]
-    assert {"name": "viewport", "content": "width=device-width, initial-scale=1"} in outline.all(
-        "meta"
-    )
+    view = {"name": "viewport", "content": "width=device-width, initial-scale=1"}
+    assert view in outline.all("meta")
     for tag in ("title", "h1", "main", "header"):
         assert len(outline.all(tag)) == 1
     levels = [int(tag[1]) for tag, _ in outline.tags if re.fullmatch("h[1-6]", tag)]
@@ -152,15 +121,12 @@ def check_accessible(text: str) -> Outline:
     labels = [attributes.get("aria-label") for attributes in outline.all("nav")]
     assert len(labels) == len(set(labels)) and all(labels)
     # The keyboard reaches every region that scrolls sideways, and each has a name.
-    for region in outline.all("div"):
-        if region.get("class") == "scroll":
-            assert region["tabindex"] == "0" and region["role"] == "region"
-            assert region["aria-label"]
+    regions = [tag for tag in outline.all("div") if tag.get("class") == "scroll"]
+    assert all((tag["tabindex"], tag["role"]) == ("0", "region") for tag in regions)
+    assert all(tag["aria-label"] for tag in regions)
     assert len(outline.all("caption")) == len(outline.all("table"))
     assert all(attributes["scope"] == "col" for attributes in outline.all("th"))
-    assert not any(
-        attributes.get("tabindex", "0") not in ("0", "-1") for _, attributes in outline.tags
-    )
+    assert {tag.get("tabindex", "0") for _, tag in outline.tags} <= {"0", "-1"}
     assert not outline.all("script") and "@import" not in text and "url(" not in text
     return outline
 
@@ -197,11 +163,8 @@ def test_it_says_what_was_found_and_from_what(page):
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "Of 4 runs, 1 misprint." in page
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
-    assert (
-        page.index("values differ")
-        < page.index('id="verdict"')
-        < page.index("Figures of the paper</h2>")
-    )
+    order = ("values differ", 'id="verdict"', "Figures of the paper</h2>")
+    assert sorted(order, key=page.index) == [*order]
     assert "results/scenes/not_made.html" in page
     # A line tells every verdict of its claims, and what has it if there are several.
     first = r'#speed">. reproduced<span class="unseen">, speed</span></a> \(fronts\);'
@@ -211,12 +174,8 @@ def test_it_says_what_was_found_and_from_what(page):
 def test_the_ledger_has_a_page_with_failures_first():
     text = claims_page(CLAIMS, findings=[FINDING], tables=TABLES)
     outline = check_accessible(text)
-    assert [row["id"] for row in outline.all("tr") if "id" in row] == [
-        "width",
-        "always",
-        "length",
-        "speed",
-    ]
+    ids = [row["id"] for row in outline.all("tr") if "id" in row]
+    assert ids == ["width", "always", "length", "speed"]
     assert outline.all("a")[1] == {"href": "index.html"}
     assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
     assert '<p class="why">It is <em>off</em>.</p>' in text and "3 of 5, 2 undecided" in text

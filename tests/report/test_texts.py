@@ -20,30 +20,16 @@ from report.conftest import read
 
 from slippulse.claims.ledger import KINDS, Ledger
 from slippulse.claims.reading import WHY_NONE, claims_of, coverage
+from slippulse.report import texts
 from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
 from slippulse.report.tables import sticking
-from slippulse.report.texts import (
-    ERRATUM,
-    PARTS,
-    Caption,
-    answer,
-    judged_lines,
-    parameters,
-    read_captions,
-    read_errata,
-)
+from slippulse.report.texts import Caption, read_captions, read_errata
 
 # What tests check beside the claims: algebra, and what the model imposes.
 CHECKS = ("algebra", "imposed")
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
-AS_PRINTED = (
-    "holds",
-    "holds corrected",
-    "depends on an open choice",
-    "does not hold",
-    "open",
-    "premise not met",
-)
+AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
+AS_PRINTED += ("open", "premise not met")
 WORDS = (
     r"four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|"
     r"sixteen|seventeen|eighteen|nineteen|twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety|"
@@ -94,8 +80,8 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entr
         names -= {id for part in CHECKS for id in entries[part]}
     summary = read(manuscript / "summary.yaml")
     for line in summary["verdict"]:
-        texts = " ".join([line["text"], *line.get("said", {}).values()])
-        names |= {*line["claims"], *line.get("beside", ()), *mentioned(texts)}
+        prose = " ".join([line["text"], *line.get("said", {}).values()])
+        names |= {*line["claims"], *line.get("beside", ()), *mentioned(prose)}
     assert len(names) > 30
     names |= mentioned(summary["accuracy"])
     assert names <= {*entries["claims"], *entries["findings"]}
@@ -106,25 +92,17 @@ def test_page_one_answers_in_a_minute(manuscript):
     summary = read(manuscript / "summary.yaml")
     shipped = read(manuscript / "shipped_verdicts.yaml")
     claims = [{"id": id, "kind": "exact", "verdict": verdict} for id, verdict in shipped.items()]
-    lines = judged_lines(summary, Ledger(claims), partial(EXPRESSION.sub, "n"))
+    lines = texts.judged_lines(summary, Ledger(claims), partial(EXPRESSION.sub, "n"))
     assert len(lines) <= 8 and summary["question"].endswith("?")
     words = [f"{line['topic']} {EXPRESSION.sub('n', line['text'])}" for line in summary["verdict"]]
     assert sum(len(text.split()) for text in words) <= 350
-    sentences = answer(lines).removesuffix(".").split(". ")
+    sentences = texts.answer(lines).removesuffix(".").split(". ")
     assert sentences[0].startswith("**Yes**") and len(sentences) <= 3
     assert max(len(sentence.split()) for sentence in sentences) <= 25
-    page = (
-        (manuscript / "replication.md")
-        .read_text(encoding="utf-8")
-        .partition("# What was claimed")[0]
-    )
-    order = [
-        "{{ question }}",
-        "{{ answer }}",
-        "{{ symbols }}",
-        "show(verdicts())",
-        "{{ accuracy }}",
-    ]
+    report = (manuscript / "replication.md").read_text(encoding="utf-8")
+    page = report.partition("# What was claimed")[0]
+    order = ["{{ question }}", "{{ answer }}", "{{ symbols }}"]
+    order += ["show(verdicts())", "{{ accuracy }}"]
     assert sorted(order, key=page.index) == order and r"$b=\beta/\Delta x$" in summary["symbols"]
     assert page.count("claim.summary()") == 1 and "claim.count" not in page
 
@@ -170,7 +148,9 @@ def test_every_erratum_is_shown_and_the_bibliography_is_what_is_cited(manuscript
     assert cited == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
 
 
-@pytest.mark.parametrize(("reader", "keys"), [(read_captions, PARTS), (read_errata, ERRATUM)])
+@pytest.mark.parametrize(
+    ("reader", "keys"), [(read_captions, texts.PARTS), (read_errata, texts.ERRATUM)]
+)
 def test_a_text_that_is_not_whole_is_refused(reader, keys, tmp_path):
     complete = dict.fromkeys(keys, "text")
     wrong = {f"{key}: missing": complete | {key: " "} for key in keys}
@@ -207,8 +187,8 @@ def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_
         Image.new("1", (round(100 * width), 10)).save(tmp_path / f"{name}.png", dpi=(100, 100))
     names = ("a", "b", "c", "fig05_scaling")
     captions = {name: Caption(name.upper(), "alt", "finding", "what") for name in names}
-    texts = {"report": "figure('a') figure('fig05_scaling') figure('b')", "more": "figure('c')"}
-    gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], texts, captions, tmp_path, "report")
+    sources = {"report": "figure('a') figure('fig05_scaling') figure('b')", "more": "figure('c')"}
+    gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], sources, captions, tmp_path, "report")
     assert gallery.figure("c").startswith(f"![**Figure S1. C.** finding what]({tmp_path}/c){{")
     title = "![**Figure 2 (paper, figure 5). FIG05_SCALING.**"
     assert gallery.figure("fig05_scaling").startswith(title)
@@ -229,17 +209,14 @@ def test_the_parameters_of_a_simulation_in_words(shipped):
     two = {"boundary": "stress", "profiles": profiles, "damping_ratio": [0.0, 0.1, 0.3]}
     two |= {"beyond": {"position": 5.0, "levels": [0.1, 0.3]}}
     config = {"simulations": {"one": one, "two": two}, "model": {"damping_ratio": 0.1}}
-    assert (
-        parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
-    )
-    assert parameters(config, "two") == (
-        r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, "
-        r"then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
-        "$b$ = 0, 0.1 and 0.3"
-    )
+    words = r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
+    assert texts.parameters(config, "one") == words
+    words = r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, "
+    words += "$W$ = 1 and 2, $b$ = 0, 0.1 and 0.3"
+    assert texts.parameters(config, "two") == words
     with pytest.raises(ValueError, match="simulation: 'three'; allowed: one, two"):
-        parameters(config, "three")
-    for text in map(partial(parameters, shipped), shipped["simulations"]):
+        texts.parameters(config, "three")
+    for text in map(partial(texts.parameters, shipped), shipped["simulations"]):
         assert "$b$" in text or r"$\beta$" in text
 
 
@@ -274,14 +251,10 @@ def test_the_table_of_stick_times():
     assert sticking(table.assign(value=float("nan"))) == ""
 
 
-def in_formula(formula: str) -> list[str]:
-    """Numbers in a formula that are neither a digit nor a power of ten."""
-    return re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))
-
-
-def in_name(name: str) -> list[str]:
-    """Numbers in a name in back quotes that are not part of a word."""
-    return re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)
+# Numbers in a formula that are neither a digit nor a power of ten.
+in_formula = lambda formula: re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))
+# Numbers in a name in back quotes that are not part of a word.
+in_name = lambda name: re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)
 
 
 def in_code(code: str) -> list[str]:
@@ -304,16 +277,14 @@ def in_prose(text: str) -> list[str]:
             numbers += check(match[match.lastindex or 0])
         text = pattern.sub(" ", text)
     for match in re.finditer(rf"\d[\d.,]*|{WORD.pattern}", text, re.I):
-        context = text[max(0, match.start() - 30) : match.end() + 20]
-        numbers.append(" ".join(context.split()))
+        numbers.append(" ".join(text[max(0, match.start() - 30) : match.end() + 20].split()))
     return numbers
 
 
 def typed_numbers(source: str) -> list[str]:
     """Numbers typed into a jupytext Markdown source."""
     source = HEADER.sub("", source)
-    cells = "\n".join(FENCE.findall(source))
-    return in_code(cells) + in_prose(FENCE.sub(" ", source))
+    return in_code("\n".join(FENCE.findall(source))) + in_prose(FENCE.sub(" ", source))
 
 
 def test_no_text_has_a_typed_number(manuscript):
