@@ -20,6 +20,7 @@ FILES += ("uncertainties/coarser/{}.csv",)
 def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
     """Write an overlay with sweeps of some levels, by how many chunks each has, or None."""
     sweep = SWEEP | {"left": LEVELS, "resolved_blocks": 4} | changes
+    del sweep["chunks"]
     chunked = {name: {"chunks": count} if count else {} for name, count in sweeps.items()}
     simulations = {name: sweep | chunks for name, chunks in chunked.items()}
     overlay = {"preset": "draft", "simulations": simulations}
