@@ -19,20 +19,11 @@ from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected
 
 
-def claim(
-    name: str, verdict: str, tolerance: float, deviation: float, choice="", choices=()
-) -> dict:
+def claim(name, verdict, tolerance, deviation, choice="", choices=()) -> dict:
     """A claim as in claims.json."""
-    return {
-        "id": name,
-        "label": f"an {name}",
-        "kind": "approximate" if choice else "exact",
-        "verdict": verdict,
-        "tolerance": tolerance,
-        "choice": choice,
-        "deviation": deviation,
-        "choices": list(choices),
-    }
+    one = {"id": name, "label": f"an {name}", "kind": "approximate" if choice else "exact"}
+    one |= {"verdict": verdict, "tolerance": tolerance, "deviation": deviation}
+    return one | {"choice": choice, "choices": list(choices)}
 
 
 LATTICE = {"release": "total", "deviation": 0.24, "solution": "lattice"}
@@ -67,8 +58,7 @@ class Drawings:
     def predict(self, name: str, topics: list[str]) -> pd.DataFrame:
         path = self.shared / f"sweeps/{name}.{'_'.join(topics)}.csv"
         if not path.exists():
-            scenes = self.simulate(name)[2]
-            save_table(predictions(topics, scenes, self.shipped["measure"]), path)
+            save_table(predictions(topics, self.simulate(name)[2], self.shipped["measure"]), path)
         return load_table(path)
 
     def inputs(self, needs: dict) -> tuple[dict, dict]:
@@ -95,9 +85,8 @@ class Drawings:
             save_table(module.table(data, tables, settings), self.folder / f"{name}.csv")
             table = load_table(self.folder / f"{name}.csv")
             figure = module.draw(table)
-            self.drawn[name] = SimpleNamespace(
-                table=table, figure=figure, measured=tables, module=module
-            )
+            parts = {"table": table, "figure": figure, "measured": tables, "module": module}
+            self.drawn[name] = SimpleNamespace(**parts)
         return self.drawn[name]
 
 

@@ -1,6 +1,6 @@
 """Figures 1, 6 and 7: the sketches, and the blocks and springs at positions of the runs."""
 
-from itertools import chain, pairwise
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,8 +20,7 @@ def named(axes, gid: str) -> list:
     return [artist for artist in (*axes.patches, *axes.lines) if artist.get_gid() == gid]
 
 
-def texts(axes) -> str:
-    return " ".join(text.get_text() for text in axes.texts)
+texts = lambda axes: " ".join(text.get_text() for text in axes.texts)
 
 
 def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
@@ -94,14 +93,13 @@ def drawn():
     data = {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
     rows = figure.table(data, {}, {})
     axes = figure.draw(rows).axes
-    panels = dict(zip(figure.PITCH, (axes[:2], axes[2:4]), strict=True))
-    return data, rows, panels
+    return data, rows, dict(zip(figure.PITCH, (axes[:2], axes[2:4]), strict=True))
 
 
 def segments(axes, name):
     """Springs of one kind, as arrays of points."""
-    groups = [group.get_segments() for group in axes.collections if group.get_gid() == name]
-    return list(chain.from_iterable(groups))
+    groups = [group for group in axes.collections if group.get_gid() == name]
+    return [segment for group in groups for segment in group.get_segments()]
 
 
 @pytest.mark.parametrize("name", figure.PITCH)
@@ -115,8 +113,7 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     assert centres == pytest.approx(np.sort(moved))
     for state in figure.COLOURS:
         assert sum(block.get_gid() == state for block in blocks) == (part["state"] == state).sum()
-    steps = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])])
-    gaps = steps - figure.BLOCK
+    gaps = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])]) - figure.BLOCK
     coils = segments(axes, "coil springs")
     assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
     # No blocks overlap, and some springs are stretched.

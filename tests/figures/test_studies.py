@@ -249,9 +249,8 @@ def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_b
 
 def test_lattices_a_tenth_away_from_the_line_where_pulses_cease_to_stick_are_on_its_side(draw):
     table = draw("study_rate_dependence").table
-    runs = select(table, role="lattice").assign(
-        over_critical=lambda rows: rows["over_critical"].abs()
-    )
+    runs = select(table, role="lattice")
+    runs = runs.assign(over_critical=runs["over_critical"].abs())
     # Every rupture is a pulse by the one definition; which one sticks is what the line says.
     assert set(runs["regime"]) == {"sticking pulse", "creeping pulse"}
     side = (runs["regime"] == "sticking pulse") == (runs["over_critical"] < 1.0)
@@ -305,8 +304,7 @@ def test_resolved_slip_weakening_selects_the_exact_front_speed(draw):
     error = deviation(runs, "speed", "exact_speed")
     assert error[runs["d_c"] >= 3.9 * runs["dx"]].max() < 0.01
     assert error[runs["dx"] == runs["dx"].min()].max() < 1e-3
-    cases = select(table, role="case").merge(
-        select(table, role="theory"), on=["law", "level", "strength"], suffixes=("", "_exact")
-    )
+    exact, keys = select(table, role="theory"), ["law", "level", "strength"]
+    cases = select(table, role="case").merge(exact, on=keys, suffixes=("", "_exact"))
     finest = select(cases, dx=0.02, regime="sticking pulse")
     assert len(finest) == 4 and deviation(finest, "pulse_slip", "pulse_slip_exact").max() < 0.006

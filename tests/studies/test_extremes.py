@@ -1,6 +1,7 @@
 """No limit of the solver's domain gives a wrong number without a flag."""
 
 import math
+from unittest.mock import Mock
 
 import pytest
 
@@ -46,12 +47,8 @@ FAMILIES = {
     ],
 )
 def test_the_verdict_is_computed(monkeypatch, expected, outcome, verdict):
-    def measured(case, window):
-        if isinstance(outcome, Exception):
-            raise outcome
-        return outcome
-
-    monkeypatch.setattr(extremes, "measured", measured)
+    how = "side_effect" if isinstance(outcome, Exception) else "return_value"
+    monkeypatch.setattr(extremes, "measured", Mock(**{how: outcome}))
     monkeypatch.setattr(Case, "expected", lambda case: expected)
     case = Case("family", "where", "front speed", "right", 0.1, 1.0)
     assert extremes.judged(case, 0.3)["verdict"] == verdict

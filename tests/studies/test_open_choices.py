@@ -7,15 +7,9 @@ from slippulse.steps.inputs import given
 from slippulse.studies import open_choices
 
 # Medians of L_trans under leaf springs in percent, by release rule and damping ratio.
-LENGTHS = {
-    ("total", 0.0): 13.6,
-    ("total", 0.058): 20.4,
-    ("total", 0.08): 22.2,
-    ("total", 0.1): 23.5,
-    ("elastic", 0.1): 15.6,
-    ("elastic", 0.16): 16.7,
-    ("elastic", 0.23): 17.9,
-}
+LENGTHS = {("total", 0.0): 13.6, ("total", 0.058): 20.4, ("total", 0.08): 22.2}
+LENGTHS |= {("total", 0.1): 23.5, ("elastic", 0.1): 15.6}
+LENGTHS |= {("elastic", 0.16): 16.7, ("elastic", 0.23): 17.9}
 # Medians of T_trans and L_trans by fraction of the way, at the damping of the figures.
 ARRESTS = {0.9: (8.96, 5.64), 0.95: (21.8, 12.6), 0.99: (41.0, 24.1)}
 

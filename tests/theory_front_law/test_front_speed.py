@@ -2,6 +2,7 @@
 
 import time
 import tracemalloc
+from itertools import product
 
 import numpy as np
 import pytest
@@ -108,8 +109,8 @@ def test_the_continuum_is_the_limit_of_the_lattice():
     errors = np.array(speeds) - limit
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=1e-2)
     assert abs(2.0 * errors[2] - errors[1]) < 1e-6
-    without_springs = sp.theory.continuum_front_speed(0.3, 0.0, 1.0)
-    assert without_springs == pytest.approx(1.0 / np.sqrt(0.7), rel=1e-15)
+    free = sp.theory.continuum_front_speed(0.3, 0.0, 1.0)
+    assert free == pytest.approx(1.0 / np.sqrt(0.7), rel=1e-15)
 
 
 def test_a_fold():
@@ -145,20 +146,12 @@ def late_front_speed(scene: sp.Scene) -> float:
 
 # Level, gamma, dx, damping ratio, release and rate strengthening.
 SPRINGS = [
-    (0.6, 0.05, 1.0, 0.0, "total", 0.0),
-    (0.6, 0.3, 1.0, 0.0, "total", 0.0),
-    (0.6, 0.05, 1.0, 0.1, "total", 0.0),
-    (0.6, 0.05, 1.0, 0.1, "elastic", 0.0),
-    (0.6, 0.3, 1.0, 0.1, "elastic", 0.0),
-    (0.8, 0.5, 1.0, 0.2, "total", 0.0),
-    (0.9, 1.0, 1.0, 0.3, "elastic", 0.0),
-    (0.5, 0.5, 1.0, 3.0, "total", 0.0),
-    (0.5, 0.65, 0.2, 0.3, "total", 0.0),
+    *((0.6, 0.05, 1.0, *rule, 0.0) for rule in ((0.0, "total"), (0.1, "total"), (0.1, "elastic"))),
+    *((0.6, 0.3, 1.0, *rule, 0.0) for rule in ((0.0, "total"), (0.1, "elastic"))),
+    *((0.8, 0.5, 1.0, 0.2, "total", 0.0), (0.9, 1.0, 1.0, 0.3, "elastic", 0.0)),
+    *((0.5, 0.5, 1.0, 3.0, "total", 0.0), (0.5, 0.65, 0.2, 0.3, "total", 0.0)),
     (0.4, 1.0, 0.1, 1.0, "elastic", 0.0),
-    (0.5, 0.65, 0.4, 0.1, "total", 0.9),
-    (0.5, 0.65, 0.4, 0.1, "total", -0.6),
-    (0.5, 0.65, 0.4, 0.1, "elastic", 0.9),
-    (0.5, 0.65, 0.4, 0.1, "elastic", -0.6),
+    *product([0.5], [0.65], [0.4], [0.1], ["total", "elastic"], [0.9, -0.6]),
 ]
 
 
@@ -166,9 +159,9 @@ SPRINGS = [
 def test_pulses_of_lattices(tau, gamma, dx, ratio, release, alpha):
     law = lattice_front_speed(tau, gamma, dx, ratio, release, alpha)
     friction = {"release": release, "friction": sp.friction("linear_rate", alpha=alpha)}
-    accuracy = {"order": 8, "max_step": 0.15, "resolved_blocks": 1}
-    values = {"gamma": gamma, "beta": ratio * dx, **friction, **accuracy}
-    scene = sp.Scene("displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, **values)
+    how = {"order": 8, "max_step": 0.15, "resolved_blocks": 1} | friction
+    layer = "displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, gamma, ratio * dx
+    scene = sp.Scene(*layer, **how)
     assert late_front_speed(scene) == pytest.approx(law, rel=LATTICE)
 
 

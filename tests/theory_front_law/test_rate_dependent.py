@@ -37,6 +37,5 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
 
 def test_laws_that_depend_on_slip_are_refused():
     law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
-    refusal = "friction.law: 'slip_weakening'; allowed: laws that depend on slip rate alone"
-    with pytest.raises(ValueError, match=refusal):
+    with pytest.raises(ValueError, match="law: 'slip_weakening'; allowed: laws that depend"):
         theory.rate_pulse(0.5, GAMMA, 0.1, law)
