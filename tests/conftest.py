@@ -25,13 +25,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # The first files run no kernel, while the kernels are compiled. Then come those that take longest,
 # so that the workers end together.
-WITHOUT_KERNELS = (
-    "test_final_regime",
-    "test_refused_commands",
-    "test_refusals",
-    "test_dependencies",
-    "test_plans",
-)
+WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals")
+WITHOUT_KERNELS += ("test_dependencies", "test_plans")
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
 # Folders of the compiled kernels that the workers share, and of a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
@@ -41,9 +36,8 @@ READY, LONGEST_WAIT = "ready", 300.0
 
 def compile_into(folder: Path) -> None:
     program = "from slippulse.solver.compilation import compile_all; compile_all()"
-    subprocess.run(
-        [sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True
-    )
+    how = {"env": os.environ | {SHARED: str(folder)}, "check": True}
+    subprocess.run([sys.executable, "-c", program], **how)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
@@ -130,10 +124,8 @@ def study(project, shipped, shared):
         if not path.exists():
             needs = declared(f"studies.{name}", "NEEDS")
             settings = selected(shipped, needs.get("settings", ()), {})
-            if "sweeps" in needs:
-                settings["sweeps"] = {
-                    sweep: small_sweep(shipped, sweep) for sweep in needs["sweeps"]
-                }
+            sweeps = {sweep: small_sweep(shipped, sweep) for sweep in needs.get("sweeps", ())}
+            settings |= {"sweeps": sweeps} if sweeps else {}
             module = import_module(f"slippulse.studies.{name}")
             lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
             save_table(module.table(data or {}, (tables or {}) | lists, settings), path)

@@ -132,34 +132,23 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
     return bool(victims)
 
 
-def quiet_run(folder: Path, targets: Sequence[str]) -> tuple[float, dict[str, str]]:
-    """Make the reduced run without a stop; returns its time and the digests of its results."""
-    began = time.monotonic()
-    assert start(prepare(folder), targets).wait(timeout=1200) == 0, said(folder)
-    duration, expected = time.monotonic() - began, digests(folder)
-    assert len(expected) >= 3 * len(targets)
-    return duration, expected
-
-
-def ends_within(run: subprocess.Popen, seconds: float) -> bool:
-    with suppress(subprocess.TimeoutExpired):
-        run.wait(seconds)
-    return run.poll() is not None
-
-
 def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARGETS) -> str:
     """Stop runs ``stops`` times; compare whenever one ends by itself. Returns what happened."""
     chance, harmed = random.Random(seed), prepare(folder / "harmed")
     stopped, compared = Counter(), 0
-    duration, expected = quiet_run(folder / "quiet", targets)
+    quiet, began = prepare(folder / "quiet"), time.monotonic()
+    assert start(quiet, targets).wait(timeout=1200) == 0, said(quiet)
+    duration, expected = time.monotonic() - began, digests(quiet)
+    assert len(expected) >= 3 * len(targets)
     # Every file is named, so that each file that is taken away is missed.
     targets = [f"results/{name}" for name in expected]
     while True:
         way = min(WAYS, key=stopped.__getitem__)
         run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
         last = stopped.total() >= stops
-        time_until_stop = 1200 if last else chance.uniform(0.02, 0.7) * duration
-        if not ends_within(run, time_until_stop):
+        with suppress(subprocess.TimeoutExpired):
+            run.wait(1200 if last else chance.uniform(0.02, 0.7) * duration)
+        if run.poll() is None:
             stopped[way] += stop(run, harmed, way, chance)
             assert run.returncode or digests(harmed) == expected
             continue
@@ -177,14 +166,10 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
     return f"{stops} stops survived ({counts}); {same_files}"
 
 
-def main() -> None:
+if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=24)
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="faults für ") as folder:
         print(fault_run(Path(folder), chosen.kills, chosen.seed))
-
-
-if __name__ == "__main__":
-    main()

@@ -25,12 +25,8 @@ from pipeline_copy import SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
 # Programs, and the Debian packages that hold them.
-PROGRAMS = {
-    "munged": "munge",
-    "slurmctld": "slurmctld",
-    "slurmd": "slurmd",
-    "sbatch": "slurm-client",
-}
+PROGRAMS = {"munged": "munge", "slurmctld": "slurmctld", "slurmd": "slurmd"}
+PROGRAMS |= {"sbatch": "slurm-client"}
 # proctrack/linuxproc and task/none need no control groups, which containers often lack. Cores and
 # memory are limited, as on clusters. Finished jobs stay visible to squeue, and in a log.
 SLURM_CONF = """\
@@ -105,8 +101,7 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     local = ("127.0.0.1", 0)
     with socket.create_server(local) as first, socket.create_server(local) as second:
         machine["ports"] = [server.getsockname()[1] for server in (first, second)]
-    conf, srun = folder / "slurm.conf", folder / "bin/srun"
-    key = folder / "munged.key-file"
+    conf, srun, key = folder / "slurm.conf", folder / "bin/srun", folder / "munged.key-file"
     conf.write_text(SLURM_CONF.format(folder=folder, **machine), encoding="ascii")
     key.write_bytes(os.urandom(1024))
     key.chmod(0o400)
@@ -126,8 +121,7 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
 
     try:
         files = ("key-file", "socket", "pid-file", "log-file", "seed-file")
-        options = [f"--{file}={folder}/munged.{file}" for file in files]
-        daemon("munged", "--foreground", *options)
+        daemon("munged", "--foreground", *[f"--{file}={folder}/munged.{file}" for file in files])
         wait_for((folder / "munged.socket").exists, "munged", folder)
         daemon("slurmctld", "-D")
         daemon("slurmd", "-D", "-N", "localhost")

@@ -6,8 +6,7 @@ STENCIL = 1e-13
 JIT = 1e-11
 # Profiles and integrals in closed form against adaptive quadrature asked for 1e-12.
 QUADRATURE = 1e-10
-# The same formula twice, each to rounding in about a hundred operations; a limit at a ratio of
-# 1e-9.
+# The same formula twice, to rounding in a hundred operations; a limit at a ratio of 1e-9.
 ALGEBRA = 1e-12
 SOFT_DAMAGE_ZONE = 1e-6
 # A root of a polynomial with coefficients near 1: rounding over the slope at the root.
@@ -16,8 +15,7 @@ ROOT = 1e-12
 MIRROR = 1e-10
 # A sample is the same Taylor polynomial that the step itself uses.
 SAMPLE = 1e-10
-# The stress at the end of a run, recomputed by second differences of the slip, which cancel:
-# rounding of slip / dx^2 at dx = 0.05.
+# The stress at the end of a run, by second differences of the slip: rounding of slip / dx^2.
 STRESS_AT_END = 1e-9
 
 # Order 8 at step 0.05 is at rounding, and so is the reference. Stick times are zeros of a velocity
@@ -68,8 +66,7 @@ PUBLISHED_FRONT_SPEED, PUBLISHED_INTERCEPT = 0.01, 0.05
 PUBLISHED_TRAILING = 0.015
 # Tabulated transition times and lengths, known to four or five digits.
 TRANSITION_TABLE = SHARE_TABLE = 1e-4
-# Simulated transitions converge to the continuum at first order in dx: halving the spacing halves
-# the error.
+# Simulated transitions converge to the continuum at first order in dx.
 TRANSITION_HALVING = (1.6, 2.5)
 # Relative error after the first-order error is extrapolated away, from dx = 0.02 and 0.01.
 TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
@@ -91,11 +88,9 @@ FRONT_SPEED_STUDY = 5e-5
 PULSE_SLIP_THEORY, PULSE_PEAK_THEORY = 5e-4, 2e-3
 PULSE_WIDTH_BLOCKS = 2.0
 
-# ln M_+(0) by panels up to 2500 with the leading tail alone: what is left is of second order in
-# 1/2500.
+# ln M_+(0) by panels up to 2500 with the leading tail alone: the rest is of second order in 1/2500.
 CAUCHY_BY_PANELS = 1e-6
-# A Gaussian of width 1e-3 in place of uniform pre-stress: its part of an integral over lengths
-# near 1.
+# A Gaussian of width 1e-3 in place of uniform pre-stress: its part of lengths near 1.
 NARROW_GAUSSIAN = 1e-3
 # Random scenes on coarse lattices at nine tenths of the stability bound, damping ratio up to 1: the
 # shipped runs are flagged above this. Below 20 steps the viscous loss, integrated to third order,
@@ -106,9 +101,7 @@ RANDOM_ENERGY, RANDOM_ENERGY_FLAGGED = 1e-2, 0.1
 # The smallest fraction of each kind of scene: the constants of the code change which are drawn.
 RANDOM_SHARE = 0.05
 
-# Measured numbers of a draft scene beside theory: the error of the draft preset in the peak
-# velocity
-# (see config/README.md).
+# Numbers of a draft scene beside theory: the draft preset's error in the peak (config/README.md).
 SCENE_SHARE = 1.5e-2
 # The largest errors of the draft preset in front speed and final slip over the shipped levels
 # (config/README.md), doubled: the examples stop earlier.
@@ -116,8 +109,7 @@ DRAFT_SPEED, DRAFT_SLIP = 2e-3, 6e-3
 # Strong damping under the total rule, at b = 1600: the next term of an expansion in 1/sqrt(b).
 STRONG_DAMPING_ORDER, STRONG_DAMPING_LIMIT = 0.03, 3e-3
 # A promised accuracy is its own tolerance. The worst number of all scenes uses at least this
-# fraction
-# of it, or the lattice is finer than it needs to be. The spacing may take 0.7 of it.
+# fraction of it, or the lattice is finer than needed. The spacing may take 0.7 of it.
 PROMISE_USED = 0.5
 # Spacings chosen for an accuracy are rounded to three digits.
 SHOWN_DIGITS = 0.02
@@ -128,8 +120,7 @@ DRAFT_TRANSITION = 0.05
 
 # Error of a page: below a pixel and in the fourth digit that it shows.
 EXPLORER = 1e-3
-# Cubics in a table of the front law; v follows ln(v - 1), so that fast fronts have the largest
-# error.
+# Cubics in a table of the front law; v follows ln(v - 1), and fast fronts have the largest error.
 EXPLORER_SPEED = 1e-4
 
 # Answers near 1 to 10, at the end of a duration against a longer one: other panels, each to 1e-10.

@@ -33,8 +33,7 @@ RATIOS = (0.0, 0.02, 0.05, 0.1, 0.3, 1.0)
 def profile(left, right, width, *bumps):
     """Pre-stress that is 1 at x = 0 in spite of bumps."""
     others = sum(a * math.exp(-0.5 * (c / w) ** 2) for c, a, w in bumps)
-    peak = 1.0 - others + (1e-12 if bumps else 0.0)
-    return sp.Prestress(left, right, width, peak, (), bumps)
+    return sp.Prestress(left, right, width, 1.0 - others + (1e-12 if bumps else 0.0), (), bumps)
 
 
 def between(chance, low, high):
@@ -119,11 +118,9 @@ def judge(number, accuracy, most_steps):
         step = chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2, enough=1.0)
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
-    study = judged(
-        grid_tables(tables[:3], FACTORS[1:3], PARAMETERS), tables[0], accuracy, SETTINGS["share"]
-    )
-    fine = min(0.01, duration / 2000.0)
-    truth = numbers(layer, duration, fine, ratio, scheme="continuum")
+    study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)
+    study = judged(study, tables[0], accuracy, SETTINGS["share"])
+    truth = numbers(layer, duration, min(0.01, duration / 2000.0), ratio, scheme="continuum")
     result |= dict.fromkeys(KINDS, 0)
     keeping = np.ones(len(rows), dtype=bool)
     for name, kept in study.loc[study["kept"] != "", ["quantity", "kept"]].itertuples(index=False):
@@ -150,11 +147,10 @@ def judge(number, accuracy, most_steps):
 def run(path, accuracy, first, count, most_steps):
     """Append the rows of scenes to a file, but for those that it has."""
     done = pd.read_csv(path) if path.exists() else pd.DataFrame(columns=COLUMNS)
-    known = set(done.loc[done["accuracy"] == accuracy, "scene"])
-    for number in range(first, first + count):
-        if number not in known:
-            row = pd.DataFrame([judge(number, accuracy, most_steps)], columns=COLUMNS)
-            row.to_csv(path, mode="a", header=not path.exists(), index=False)
+    known = done.loc[done["accuracy"] == accuracy, "scene"]
+    for number in {*range(first, first + count)}.difference(known):
+        row = pd.DataFrame([judge(number, accuracy, most_steps)], columns=COLUMNS)
+        row.to_csv(path, mode="a", header=not path.exists(), index=False)
 
 
 def median(costs):

@@ -28,12 +28,8 @@ def still(page: Page) -> Iterator[None]:
     assert sum(page.evaluate("window.shifts")) < LARGEST_SHIFT
 
 
-def reading(page: Page) -> str:
-    return page.locator("#reading").text_content()
-
-
-def time_of(page: Page) -> float:
-    return float(page.locator("#time").input_value())
+reading = lambda page: page.locator("#reading").text_content()
+time_of = lambda page: float(page.locator("#time").input_value())
 
 
 def inside(page: Page, name: str, across: float, down: float) -> tuple[int, int]:

@@ -71,10 +71,8 @@ def test_schema_and_tables_are_those_of_the_definition(project, config, tmp_path
     key = describe.json_schema()["$defs"]["Model"]["properties"]["release"]
     monkeypatch.setitem(key, "description", "something else")
     describe.main(str(tmp_path))
-    assert "| `release` | something else |" in (tmp_path / describe.README).read_text(
-        encoding="utf-8"
-    )
-    assert "something else" in (tmp_path / describe.SCHEMA).read_text(encoding="utf-8")
+    table, schema = ((tmp_path / path).read_text("utf-8") for path in paths[1::-1])
+    assert "| `release` | something else |" in table and "something else" in schema
 
 
 def test_jobs_do_not_load_what_only_the_check_needs():
@@ -82,7 +80,4 @@ def test_jobs_do_not_load_what_only_the_check_needs():
         "import sys, slippulse.configuration.expand, slippulse.steps.simulate;"
         "print(sorted({'pydantic', 'ruamel.yaml', 'jsonschema'} & set(sys.modules)))"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "[]"
+    assert subprocess.check_output([sys.executable, "-c", program], text=True).strip() == "[]"

@@ -38,12 +38,10 @@ class Chain:
 
     def elastic(self, slip: np.ndarray) -> np.ndarray:
         """Force of the springs and of the pull; the ends are held."""
-        held = np.concatenate([[0.0], slip, [0.0]])
-        return np.diff(held, 2) - self.leaf * slip + self.pull
+        return np.diff(np.concatenate([[0.0], slip, [0.0]]), 2) - self.leaf * slip + self.pull
 
     def drag(self, velocity: np.ndarray) -> np.ndarray:
-        held = np.concatenate([[0.0], velocity, [0.0]])
-        return self.damping * np.diff(held, 2)
+        return self.damping * np.diff(np.concatenate([[0.0], velocity, [0.0]]), 2)
 
     def threshold_force(self, slip: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         return self.elastic(slip) + (self.drag(velocity) if self.release == "total" else 0.0)
