@@ -18,7 +18,7 @@ SINE = np.sin(np.pi * 7 * np.arange(50) / 49)
 STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
 
 
-def test_the_branch_free_step_is_a_taylor_step_of_order_four():
+def test_the_stencils_are_a_taylor_step_of_order_four_and_symplectic_euler():
     derivatives = [1.0, 2.0]
     for _ in range(4):
         damping = BETA * STIFFNESS * derivatives[-1]
@@ -29,9 +29,6 @@ def test_the_branch_free_step_is_a_taylor_step_of_order_four():
     slip = sum(STEP**k / math.factorial(k) * derivatives[k] for k in range(6))
     velocity = sum(STEP**k / math.factorial(k) * derivatives[k + 1] for k in range(5))
     assert w[:2] == pytest.approx(np.outer([slip, velocity], SINE), abs=tol.STENCIL)
-
-
-def test_the_two_stage_stencil_is_symplectic_euler():
     w, tau = np.outer([1.0, 2.0, 0.0], SINE), np.zeros(SINE.size)
     stencils.two_stage_steps(w, tau, 1, STEP, 1.0, GAMMA, BETA)
     after = 2.0 - STEP * (STIFFNESS + GAMMA + 2.0 * BETA * STIFFNESS)

@@ -109,7 +109,7 @@ def test_the_keyboard_reads_the_map(explorer, opened):
         assert page.locator("#place").get_attribute("aria-valuetext") in reading(page)
 
 
-def test_a_reading_is_the_exact_solution(explorer, opened):
+def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(explorer, opened):
     with opened(explorer) as page:
         settled(page)
         page.locator("#time").fill("200")
@@ -121,31 +121,6 @@ def test_a_reading_is_the_exact_solution(explorer, opened):
             }"""
         )
     assert [float(number) for number in said] == pytest.approx(exact, rel=5e-3)
-
-
-def test_play_advances_pauses_and_begins_anew(explorer, opened):
-    with opened(explorer, 1440) as page:
-        settled(page)
-        page.locator("#time").press("End")
-        drawn = page.locator("#blocks").inner_html()
-        play = page.locator("#play")
-        with still(page):
-            play.press("Enter")
-            assert play.text_content() == "Pause"
-            page.wait_for_function("Number(document.getElementById('time').value) > 100")
-            assert page.locator("#blocks").inner_html() != drawn
-            play.press("Enter")
-            assert play.text_content() == "Play"
-            paused = time_of(page)
-            page.wait_for_timeout(200)
-            assert paused == time_of(page) < 1000
-        page.locator("#time").fill("990")
-        play.press("Enter")
-        page.wait_for_function("document.getElementById('play').textContent === 'Play'")
-        assert time_of(page) == 1000
-
-
-def test_blocks_slide_by_the_slip_of_the_exact_solution_and_keep_their_order(explorer, opened):
     with opened(explorer) as page:
         settled(page)
         found = page.evaluate(
@@ -168,6 +143,28 @@ def test_blocks_slide_by_the_slip_of_the_exact_solution_and_keep_their_order(exp
         assert block["slip"] == pytest.approx(block["exact"], rel=2e-2, abs=1e-9)
         assert (block["velocity"] > 0.0) == (block["state"] == "slides")
     assert heights == sorted(heights, reverse=True)
+
+
+def test_play_advances_pauses_and_begins_anew(explorer, opened):
+    with opened(explorer, 1440) as page:
+        settled(page)
+        page.locator("#time").press("End")
+        drawn = page.locator("#blocks").inner_html()
+        play = page.locator("#play")
+        with still(page):
+            play.press("Enter")
+            assert play.text_content() == "Pause"
+            page.wait_for_function("Number(document.getElementById('time').value) > 100")
+            assert page.locator("#blocks").inner_html() != drawn
+            play.press("Enter")
+            assert play.text_content() == "Play"
+            paused = time_of(page)
+            page.wait_for_timeout(200)
+            assert paused == time_of(page) < 1000
+        page.locator("#time").fill("990")
+        play.press("Enter")
+        page.wait_for_function("document.getElementById('play').textContent === 'Play'")
+        assert time_of(page) == 1000
 
 
 def test_little_motion_is_asked_for_and_given(explorer, opened):

@@ -113,6 +113,9 @@ def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_fla
         early = run.exact_regime in REGIMES and run.exact_regime != run.regime
         colour = "white" if early else phases.LOOKS[run.regime][0]
         assert (run.left, run.right, *to_rgba(colour)) in faces
+    assert set(phases.LOOKS) == set(REGIMES)
+    for looks in zip(*phases.LOOKS.values(), strict=True):
+        assert len(set(looks)) == len(REGIMES)
 
 
 def test_equal_levels_end_alike_at_every_gamma_and_otherwise_without_leaf_springs(draw):
@@ -133,12 +136,6 @@ def test_equal_levels_end_alike_at_every_gamma_and_otherwise_without_leaf_spring
     assert held["gamma"].nunique() >= 4 and held["regime"].nunique() == 1
     strips = [axes for axes in drawn.figure.axes if axes.child_axes and axes.lines]
     assert len(strips) == len(phases.NUMBERS), "each velocity has its pre-stress"
-
-
-def test_looks_tell_all_regimes_apart():
-    assert set(phases.LOOKS) == set(REGIMES)
-    for looks in zip(*phases.LOOKS.values(), strict=True):
-        assert len(set(looks)) == len(REGIMES)
 
 
 def curves(axes, kind: str) -> dict[str, np.ndarray]:

@@ -73,15 +73,19 @@ def results(project, tmp_path_factory):
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     caption = {"alt": "A line <up>", "caption": "(a) $x$."}
     caption["finding"] = "Found in {{ claim('speed').runs }} runs."
-    back = {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."}
-    ahead = back | {"topic": "Ahead", "named": "a front", "beside": {"always": ""}}
+    untested = {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."}
+    ahead = untested | {"topic": "Ahead", "named": "a front", "beside": {"always": ""}}
     met = {"topic": "Yes", "named": "fronts run", "claims": {"speed": "speeds"}}
     met |= {"text": "Gap {{ found('ours').gap }}."}
-    off = {"topic": "Fronts", "named": "a front", "said": {"not reproduced": "a width is not met"}}
-    off |= {"claims": {"speed": "fronts", "width": "their width"}, "text": "No."}
+    failing = {
+        "topic": "Fronts",
+        "named": "a front",
+        "said": {"not reproduced": "a width is not met"},
+    }
+    failing |= {"claims": {"speed": "fronts", "width": "their width"}, "text": "No."}
     summary = {"question": "Do they run?", "symbols": "$H$ is a height.", "picture": "fig01_one"}
     summary["accuracy"] = "Of {{ claim('speed').runs }} runs, {{ misprints | length }} misprint."
-    summary["verdict"] = [met, off, back, ahead]
+    summary["verdict"] = [met, failing, untested, ahead]
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
     for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")

@@ -56,13 +56,10 @@ def test_a_front_without_springs_follows_the_scaling_law(tau0, factor, beta, wea
     assert (speed**2 - 1.0) / scale == pytest.approx(factor, abs=1e-5)
 
 
-def test_slip_does_not_depend_on_damping():
+def test_slip_does_not_depend_on_damping_and_releases_the_fracture_energy():
     # Lengths scale with (beta v)^(1/3), and so does every term.
     slips = [weakening_pulse(0.5, GAMMA, beta, 0.2).slip for beta in (0.02, 0.05, 0.3)]
     np.testing.assert_allclose(slips, slips[0], rtol=1e-9)
-
-
-def test_undamped_slip_releases_the_fracture_energy():
     slip = undamped_weakening_slip(0.5, GAMMA, 0.2)
     assert 0.5 * slip - 0.5 * GAMMA * slip**2 == pytest.approx(0.1)
     with pytest.raises(ValueError, match="weakening"):

@@ -30,10 +30,12 @@ def test_a_note_names_what_differs_in_the_runs_of_a_figure(overlay, note):
     assert alterations(overlay).note(["steady_displacement"], []) == note
 
 
-def test_a_note_names_altered_keys_that_a_figure_reads():
+def test_a_note_names_altered_keys_that_a_figure_reads_and_nothing_else():
     altered = alterations({"figures": {"fig01_system_sketch": {"thickness": 2.0}}})
     assert altered.note([], ["figures.fig01_system_sketch"]) == "altered: thickness = 2.0"
     assert altered.note([], ["figures.fig07_damage_zone"]) == ""
+    altered = alterations({})
+    assert not altered.untaken() and not any(altered.simulations.values())
 
 
 def test_simulations_that_do_not_take_a_default_are_named():
@@ -43,11 +45,6 @@ def test_simulations_that_do_not_take_a_default_are_named():
     assert "steady_displacement" in names and "scaling_displacement" not in names
     # A fixed beta replaces the ratio too.
     assert "front_speed_fixed_beta" in names
-
-
-def test_an_unchanged_configuration_has_no_note():
-    altered = alterations({})
-    assert not altered.untaken() and not any(altered.simulations.values())
 
 
 def test_a_note_makes_a_figure_higher_and_covers_nothing(tmp_path):

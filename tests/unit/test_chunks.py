@@ -62,9 +62,9 @@ def made(shipped, tmp_path_factory):
     folder = tmp_path_factory.mktemp("chunks")
 
     def make(name: str, chunk: list[int] | None = None) -> list:
-        whole = resolve(SWEEPS[name], shipped["model"], COARSE)
-        whole |= {"chunk": chunk} if chunk else {}
-        blocks = {factor: whole | {"coarser": factor} for factor in (1.0, 1.5, 2.0)}
+        block = resolve(SWEEPS[name], shipped["model"], COARSE)
+        block |= {"chunk": chunk} if chunk else {}
+        blocks = {factor: block | {"coarser": factor} for factor in (1.0, 1.5, 2.0)}
         endings = (".nc", ".csv", "_study.csv", "_coarser.csv")
         files = [folder / f"{name}{chunk or ''}{ending}" for ending in endings]
         if not files[0].exists():

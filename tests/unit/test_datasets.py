@@ -44,7 +44,7 @@ def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_d
     assert one == two == three != other
 
 
-def test_a_point_is_what_the_scene_alone_gives():
+def test_a_point_is_what_the_scene_alone_gives_as_far_as_it_is_asked_for():
     together = sweep(2)
     for index, (scene, samples) in enumerate(zip(SCENES, SAMPLES, strict=True)):
         alone, again = sp.simulate(scene, samples), sp.point(together, index)
@@ -52,9 +52,6 @@ def test_a_point_is_what_the_scene_alone_gives():
         np.testing.assert_equal(again.attrs, alone.attrs)
         for name, value in alone.attrs.items():
             assert type(again.attrs[name]) is type(value), name
-
-
-def test_only_what_is_asked_for_is_kept():
     fields, full = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
     kept = (fields | {*FRONTS}, fields | {*FIELDS}, sampled)
@@ -93,6 +90,10 @@ def test_a_sample_is_the_state_of_a_run_that_ends_there():
             assert run[sampled].values[s] == pytest.approx(expected, abs=tol.SAMPLE), (time, name)
     assert not run["sample_slip"].values[0].any()
     assert not run["sample_slip"].values[:, [0, -1]].any()
+    scene = sp.Scene("stress", sp.Prestress(-2.0, -2.0), 20.0, 0.1, beta=0.01)
+    run = sp.simulate(scene, sp.Samples([19.0, 20.0], [0.0]))
+    assert run.attrs["stopped_because"] == "everything is stuck"
+    assert (run["sample_slip"].values == float(run["slip"].sel(x=0.0))).all()
 
 
 @pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
@@ -105,13 +106,6 @@ def test_samples_do_not_change_the_run_and_are_mirrored_at_mirrored_positions(sc
         assert sampled[list(plain.data_vars)].equals(plain)
     slip = sampled["sample_slip"].values
     assert np.array_equal(slip, slip[:, ::-1])
-
-
-def test_the_time_after_everything_stuck_is_the_final_state():
-    scene = sp.Scene("stress", sp.Prestress(-2.0, -2.0), 20.0, 0.1, beta=0.01)
-    run = sp.simulate(scene, sp.Samples([19.0, 20.0], [0.0]))
-    assert run.attrs["stopped_because"] == "everything is stuck"
-    assert (run["sample_slip"].values == float(run["slip"].sel(x=0.0))).all()
 
 
 def test_a_dataset_comes_back_as_it_was_and_opens_without_this_project(tmp_path):
@@ -209,7 +203,7 @@ def test_the_exact_scheme_is_the_exact_rupture(name):
     assert blocks["slip"].values == pytest.approx(rupture.slip(x, scene.duration))
 
 
-def test_it_is_the_same_dataset():
+def test_exact_and_lattice_datasets_have_one_form_and_are_empty_where_nothing_is_released():
     samples = sp.Samples(times=np.linspace(0.0, 8.0, 5), positions=np.linspace(-4.0, 4.0, 9))
     lattice, exact = sp.simulate(HELD, samples), exactly(HELD, samples)
     assert set(exact.variables) == set(lattice.variables)
@@ -219,6 +213,13 @@ def test_it_is_the_same_dataset():
     assert all(name.endswith(("energy", "loss", "of_prestress")) for name in missing)
     assert exact.attrs["scheme"] == "continuum" and exact.attrs["run_flags"] == ""
     assert np.abs(exact.sample_slip - lattice.sample_slip).max() < 0.1 * lattice.sample_slip.max()
+    scene = dataclasses.replace(HELD, prestress=sp.Prestress(0.5, 0.5, peak=0.9))
+    samples = sp.Samples([0.0, 1.0], [0.0, 1.0])
+    lattice, exact = sp.simulate(scene, samples), exactly(scene, samples)
+    assert exact.equals(lattice) and lattice.attrs["run_flags"] == "nothing_released"
+    for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
+        assert exact.attrs[name] == lattice.attrs[name]
+    assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene.duration
 
 
 def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
@@ -228,13 +229,3 @@ def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
     assert run.attrs["run_flags"] == "construction_ended" and run.attrs["limit_reason"]
     assert run.attrs["limit_time"] <= run.attrs["duration"]
     assert np.isnan(run.slip.values).any()
-
-
-def test_a_scene_that_releases_nothing_is_an_empty_run():
-    scene = dataclasses.replace(HELD, prestress=sp.Prestress(0.5, 0.5, peak=0.9))
-    samples = sp.Samples([0.0, 1.0], [0.0, 1.0])
-    lattice, exact = sp.simulate(scene, samples), exactly(scene, samples)
-    assert exact.equals(lattice) and lattice.attrs["run_flags"] == "nothing_released"
-    for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
-        assert exact.attrs[name] == lattice.attrs[name]
-    assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene.duration

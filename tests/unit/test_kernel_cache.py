@@ -19,7 +19,7 @@ def run_with(folder, program: str, **variables: str) -> str:
     return subprocess.check_output(command, env=environment, text=True).strip()
 
 
-def test_any_edit_a_new_source_and_a_new_name_change_the_digest(tmp_path):
+def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path, monkeypatch):
     copied = tmp_path / "solver"
     shutil.copytree(jit.SOURCES, copied, ignore=shutil.ignore_patterns("__pycache__"))
     digests = [jit.source_digest()]
@@ -32,9 +32,6 @@ def test_any_edit_a_new_source_and_a_new_name_change_the_digest(tmp_path):
     (copied / "more.py").rename(copied / "other.py")
     digests.append(jit.source_digest(copied))
     assert len(set(digests)) == len(digests) > 5
-
-
-def test_the_cache_folder_is_named_by_the_digest(monkeypatch, tmp_path):
     monkeypatch.setenv("SLIPPULSE_CACHE", str(tmp_path / "mine"))
     assert jit.cache_folder() == tmp_path / "mine" / f"kernels-{jit.source_digest()}"
     monkeypatch.delenv("SLIPPULSE_CACHE")

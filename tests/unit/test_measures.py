@@ -147,13 +147,10 @@ def fields(velocity: np.ndarray) -> xr.Dataset:
     return xr.Dataset(named, {"x": 0.01 * np.arange(velocity.size)})
 
 
-def test_the_half_width_of_a_gaussian():
+def test_half_widths_and_waves_of_the_lattice():
     run = fields(np.exp(-0.5 * ((X - 8.0) / 0.7) ** 2))
     assert half_width(run, PULSE) == pytest.approx(2.0 * 0.7 * np.sqrt(2.0 * np.log(2.0)), rel=1e-4)
     assert np.isnan(half_width(fields(np.exp(-X)), PULSE))
-
-
-def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
     even = np.where(np.abs(X - 8.0) < 2.0, np.cos(0.25 * np.pi * (X - 8.0)), 0.0)
     assert lattice_noise(fields(even)) < 1e-15
     # Waves of two blocks pass wholly, waves of four to a sixteenth of their power.
@@ -164,12 +161,18 @@ def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
 
 
-def test_blocks_that_slide_at_once():
+def test_blocks_that_slide_at_once_and_the_longest_wait_of_a_front():
     x = np.arange(-6.0, 7.0)
     # Each slides for 1.5; the last three to the right are still sliding.
     stick = np.where(x > 3.0, np.nan, np.abs(x) + 1.5)
     times = {"release_time": ("x", np.abs(x)), "stick_time": ("x", stick)}
     assert sliding_at_once(xr.Dataset(times, {"x": x}, {"end_time": 6.5})) == 3.0
+    # Blocks at -1, -2, ... are released at 1, 2, 5, 6 and 20, the last beyond the distance.
+    x = np.arange(-5.0, 1.0)
+    run = xr.Dataset({"release_time": ("x", [20.0, 6.0, 5.0, 2.0, 1.0, 0.0])}, coords={"x": x})
+    assert arrival(run, 4.0, "left")[1] == 3.0
+    assert arrival(run, 5.0, "left")[1] == 14.0
+    assert np.isnan(arrival(run, 6.0, "left")[1])
 
 
 def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
@@ -201,15 +204,6 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
 def test_what_changes_is_measured(run, expected):
     numbers = {quantity: far_field(run)[quantity] for quantity in expected}
     assert numbers == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
-
-
-def test_the_longest_wait_on_the_way():
-    """Blocks at -1, -2, ... are released at 1, 2, 5, 6 and 20, the last beyond the distance."""
-    x = np.arange(-5.0, 1.0)
-    run = xr.Dataset({"release_time": ("x", [20.0, 6.0, 5.0, 2.0, 1.0, 0.0])}, coords={"x": x})
-    assert arrival(run, 4.0, "left")[1] == 3.0
-    assert arrival(run, 5.0, "left")[1] == 14.0
-    assert np.isnan(arrival(run, 6.0, "left")[1])
 
 
 @pytest.mark.parametrize(

@@ -117,10 +117,8 @@ def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study
     unknown = judged(study, tables[0], math.nan, SHARE)
     assert set(unknown["kept"]) == {""} and unknown["promised"].isna().all()
     assert summary(unknown, math.nan) == "its spacing is user-defined and promises nothing"
-
-
-def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
     coarse = tables[2].assign(front_speed_right=math.nan)
+    # An unknown uncertainty has not kept its promise.
     study = grid_tables((*tables[:2], coarse), (2.0, 4.0), PARAMETERS)
     study = judged(study, tables[0], 10.0, SHARE)
     row = study[(study["quantity"] == "front_speed_right") & (study["point"] == 0)]

@@ -196,12 +196,18 @@ def plan(results, monkeypatch) -> Plan:
     return Plan(JOBS, named)
 
 
-def test_a_target_is_known_or_guessed(plan):
+def test_what_is_asked_for_is_known_or_guessed_and_compared(plan, results, capsys):
     assert plan.wanted(["all"]) == [DATA, TABLE, PAGE]
     assert plan.wanted([f"results/{OTHER}"]) == [OTHER]
     refusal = r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"
     with pytest.raises(ConfigError, match=refusal):
         plan.wanted(["al"])
+    (results / OTHER).unlink()
+    assert plan.verify(plan.wanted(["all"])) == 0
+    said = capsys.readouterr().out
+    assert "3 files are as made" in said and "Not looked at: 1 files" in said
+    assert plan.verify(plan.wanted(["everything"])) == 1
+    assert capsys.readouterr().out == f"results/{OTHER}: missing\n"
 
 
 def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
@@ -224,15 +230,6 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
     assert plan.begin(plan.wanted(["all"]), makes=False) is None
     assert (results / PAGE).stat().st_mtime == before.st_mtime
     held.close()
-
-
-def test_verification_compares_what_is_asked_for(plan, results, capsys):
-    (results / OTHER).unlink()
-    assert plan.verify(plan.wanted(["all"])) == 0
-    said = capsys.readouterr().out
-    assert "3 files are as made" in said and "Not looked at: 1 files" in said
-    assert plan.verify(plan.wanted(["everything"])) == 1
-    assert capsys.readouterr().out == f"results/{OTHER}: missing\n"
 
 
 def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
@@ -261,13 +258,9 @@ def test_an_overlay_is_marked_value_by_value():
     assert changes(shipped, shipped) == []
 
 
-def test_sources_are_the_library_and_the_workflow(project):
-    names = {str(path.relative_to(project)) for path in source_files(project)}
-    assert {"Snakefile", "src/slippulse/model/scene.py", "workflow/rules/common.smk"} <= names
-    assert not any("__pycache__" in name or name.startswith("tests") for name in names)
-
-
-def test_it_holds_everything_and_names_nobody(project, config, results):
+def test_provenance_and_manifest_hold_everything_and_name_nobody(
+    project, config, results, tmp_path
+):
     facts = provenance(project, config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft"
     assert [entry["key"] for entry in facts["overlay"]] == ["preset"]
@@ -278,11 +271,11 @@ def test_it_holds_everything_and_names_nobody(project, config, results):
     assert len(host) < 4 or host not in text
     assert str(project) not in text and f'"{getpass.getuser()}"' not in text
     assert machine_class()["cores"] >= 1
-
-
-def test_the_manifest_lists_every_output(tmp_path):
     files = [str(tmp_path / "data/a.nc"), str(tmp_path / "claims.json")]
     listed = yaml.safe_load(manifest(files, tmp_path, {"a": "A caption"}))
     assert [entry["file"] for entry in listed["manifest"]] == ["claims.json", "data/a.nc"]
     assert all(entry["comment"] for entry in listed["manifest"])
     assert len(listed["paper"]["authors"]) == 4
+    names = {str(path.relative_to(project)) for path in source_files(project)}
+    assert {"Snakefile", "src/slippulse/model/scene.py", "workflow/rules/common.smk"} <= names
+    assert not any("__pycache__" in name or name.startswith("tests") for name in names)

@@ -15,9 +15,6 @@ def test_a_root_between_two_floats():
     assert root_between(lambda x: x**3 - 2.0, 0.0, 2.0) == pytest.approx(2.0 ** (1 / 3), abs=4e-12)
     with pytest.raises(ValueError):
         root_between(lambda x: x + 1.0, 0.0, 2.0)
-
-
-def test_bisection_ends_at_neighbouring_floats():
     root = root_to_last_bit(lambda x: x * x - 2.0, 0.0, 2.0)
     assert root * root >= 2.0 > math.nextafter(root, 0.0) ** 2
 

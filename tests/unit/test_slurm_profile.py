@@ -3,48 +3,28 @@
 import re
 import tomllib
 
-import pytest
 import yaml
 from rules_by_imports import DRAWN
 
 RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
 
 
-@pytest.fixture(scope="module")
-def rules(project) -> dict[str, str]:
-    """Texts of the rules by name."""
+def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(project):
     paths = [project / "Snakefile", *(project / "workflow/rules").glob("*.smk")]
-    return dict(RULE.findall("\n".join(path.read_text(encoding="utf-8") for path in paths)))
-
-
-@pytest.fixture(scope="module")
-def profile(project) -> dict:
+    rules = dict(RULE.findall("\n".join(path.read_text(encoding="utf-8") for path in paths)))
     path = project / "workflow/profiles/slurm/config.yaml"
-    return yaml.safe_load(path.read_text(encoding="utf-8"))
-
-
-@pytest.fixture(scope="module")
-def names(rules) -> set[str]:
-    """Names of all rules, with those that are made in a loop: one a figure."""
-    return {*rules, *DRAWN}
-
-
-def test_it_names_rules_that_exist(profile, names):
+    profile = yaml.safe_load(path.read_text(encoding="utf-8"))
+    # Some rules are made in a loop: one a figure.
+    names = {*rules, *DRAWN}
     shown = {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"}
     assert shown | {"fig01_system_sketch", "study_barriers"} <= names
     assert {*profile["set-resources"], *profile["groups"]} <= names
-
-
-def test_every_job_asks_for_time_memory_and_cores(profile, names):
     for name in names:
         asked = profile["default-resources"] | profile["set-resources"].get(name, {})
         assert asked["cpus_per_task"] == "threads", name
         assert 1 <= asked["runtime"] <= 60, name
         # The largest job of the paper takes 480 MB; Snakemake, twice, is beside it.
         assert 700 <= asked["mem_mb"] <= 4000, name
-
-
-def test_a_sweep_or_chunk_is_one_job_the_joining_another_and_costs_are_asked_for(profile, rules):
     groups = profile["groups"]
     assert groups["simulate"] == groups["measure"] == groups["study_grid"]
     # In a group with them, the rule that joins the chunks would make one job of all.

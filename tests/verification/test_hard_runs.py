@@ -98,12 +98,13 @@ def test_a_rough_chain_that_a_long_step_moves_is_flagged():
         assert float(abs(long - exact).max()) > 0.02 * float(exact.max())
 
 
-def test_a_front_that_stopped_is_not_extrapolated():
+def test_a_front_that_stopped_is_not_extrapolated_and_one_that_paused_is_measured_after_it():
     """It was said to be at 30 and to have the patch as its pulse."""
     for pulses in ((), ((2.0, 3.0, 3.0),)):
         row = made_up(12.0, stopped=15.0, pulses=pulses)
         assert row["pulse_state"] == "stopped" and row["pulse_front"] == 12.0
         assert row["pulse_peak_velocity"] == 0.0 and np.isnan(row["pulse_width"])
+    assert made_up(30.0, wait=8.0)["front_speed_right"] == pytest.approx(SPEED, rel=tol.ALGEBRA)
 
 
 def test_the_leading_one_of_two_pulses_is_measured():
@@ -113,7 +114,3 @@ def test_the_leading_one_of_two_pulses_is_measured():
     for name in ("pulse_front", "pulse_width", "pulse_peak_velocity", "pulse_slip"):
         assert two[name] == one[name]
     assert two["pulse_width"] == pytest.approx(3.0, abs=0.1)
-
-
-def test_a_front_is_measured_after_its_pause():
-    assert made_up(30.0, wait=8.0)["front_speed_right"] == pytest.approx(SPEED, rel=tol.ALGEBRA)

@@ -31,19 +31,14 @@ def inputs(linked) -> dict[str, set[str]]:
     return files
 
 
-@pytest.fixture(scope="module")
-def seen(inputs) -> dict[str, set[str]]:
-    """Sources that each rule depends on: what its modules reach, and the texts that it takes."""
-    depends = {}
+def test_every_file_marks_the_rules_whose_step_reaches_it_and_nothing_else_does(inputs):
+    # Sources that each rule depends on: what its modules reach, and the texts that it takes.
+    seen = {}
     for name in inputs.keys() - NAMES:
         # The folder of the sources only has a time.
         files = inputs[name] - {"src"}
         texts = {file for file in files if not file.startswith(("results/", "<"))}
-        depends[name] = texts.union(sources(*MODULES[name]))
-    return depends
-
-
-def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
+        seen[name] = texts.union(sources(*MODULES[name]))
     # There is one rule a step, a figure and a study.
     assert set(seen) == RULES and len(FILES) > 150
     for file in FILES:
@@ -51,9 +46,6 @@ def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
     # Predictions that two figures share do not stand in the module of one of them.
     for name in DRAWN:
         assert rules_of(f"src/slippulse/figures/{name}.py") == {name} | EVERY_SOURCE
-
-
-def test_rules_depend_on_no_other_file_of_the_sources(seen):
     others = {rule: depends.difference(FILES) for rule, depends in seen.items()}
     assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_provenance")
     # The report says what differs from the shipped configuration, and its version.

@@ -46,7 +46,7 @@ def test_a_run_is_stopped_in_every_way_and_the_next_gives_the_same(tmp_path, tim
 
 
 @pytest.mark.slow
-def test_surroundings_do_not_change_a_byte(finished, tmp_path):
+def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(finished, tmp_path):
     elsewhere = prepare(tmp_path / "elsewhere")
     strange = {"TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "DISPLAY": ""}
     strange |= {"PYTHONHASHSEED": "1", "MPLBACKEND": "wrong", "OMP_NUM_THREADS": "3"}
@@ -55,10 +55,6 @@ def test_surroundings_do_not_change_a_byte(finished, tmp_path):
     result = snakemake(elsewhere, "--", SCENE, FIGURE, **how)
     assert result.returncode == 0, result.stderr
     assert digests(elsewhere) == digests(finished)
-
-
-@pytest.mark.slow
-def test_it_can_be_started_from_anywhere(finished, tmp_path):
     how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
     folder = ("--directory", finished, "--snakefile", finished / "Snakefile")
     result = snakemake(finished, *folder, "--dry-run", "--", SCENE, **how)
@@ -85,11 +81,15 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
     assert "Traceback" in (copy / "results/logs/measure/one.traceback").read_text()
 
 
-def test_an_unreadable_table_is_named(tmp_path):
+def test_a_table_that_cannot_be_read_and_a_log_that_cannot_be_written_are_named(tmp_path):
     path = tmp_path / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
     with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run"):
         load_table(path)
+    (tmp_path / "logs").write_text("a file")
+    reason = r"allowed: a results folder that can be written\Z"
+    with pytest.raises(SystemExit, match=reason), logged(tmp_path / "logs/one.log"):
+        pass
 
 
 # Places of folders, where a file is put, and of files, where a folder is put.
@@ -124,13 +124,6 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
         save_table(numbers, path) if kind == "table" else save_dataset(numbers.to_xarray(), path)
     assert path.read_text() == "what was there\n"
     assert {entry.name for entry in tmp_path.iterdir()} == {"log", "log.traceback", kind}
-
-
-def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
-    (tmp_path / "logs").write_text("a file")
-    reason = r"allowed: a results folder that can be written\Z"
-    with pytest.raises(SystemExit, match=reason), logged(tmp_path / "logs/one.log"):
-        pass
 
 
 def test_a_job_that_fails_says_why(tmp_path, capfd):

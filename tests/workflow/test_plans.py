@@ -49,11 +49,7 @@ def test_without_a_terminal_a_run_shows_one_short_line_a_job(linked):
     said = result.stdout + result.stderr
     assert result.returncode == 0 and len(re.findall(rf"{FIGURE}: [0-9.]+ s", said)) == 1
     assert "input:" not in said and len(said.splitlines()) < 40
-
-
-@pytest.mark.slow
-def test_the_report_of_snakemake_is_one_file_that_loads_nothing(linked):
-    assert snakemake(linked, "--", FIGURE).returncode == 0
+    # Its report is one file that loads nothing.
     result = snakemake(linked, "--report", "report.html", "--", f"results/figures/{FIGURE}.png")
     assert result.returncode == 0, result.stderr
     text = (linked / "report.html").read_text(encoding="utf-8")

@@ -300,7 +300,7 @@ def test_a_run_asks_snakemake_and_not_the_command_line_what_it_is_to_do(folder):
     assert result.stdout.splitlines() == ["dryrun False", "local True"], result.stderr
 
 
-def test_short_names_are_targets(folder):
+def test_short_names_are_targets_and_a_draft_is_verified_as_a_draft(folder):
     for name in ("fig07", "fig07_damage_zone"):
         (folder / f"results/{FIGURE}.png").unlink()
         run(folder, name)
@@ -308,9 +308,6 @@ def test_short_names_are_targets(folder):
     result = snakemake(folder, "--", "fig077", overlay="overlay.yaml")
     said = result.stdout + result.stderr
     assert result.returncode and "target: 'fig077' (did you mean 'fig07'?)" in said
-
-
-def test_a_draft_is_verified_as_a_draft(folder):
     for name in ("claims.json", "index.html"):
         (folder / "results" / name).unlink()
     result = snakemake(folder, "--", "verify", overlay="overlay.yaml")
