@@ -64,7 +64,6 @@ def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subproc
 
 
 def said(folder: Path) -> str:
-    """Read what the last run in a folder wrote to its terminal."""
     return (folder / "said.txt").read_text(encoding="utf-8")
 
 
@@ -121,7 +120,6 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
     if way in WITHOUT_MAKE:
         return bool(victims)
     if way not in SIGNALS:
-        # The run has to notice that its server is gone.
         since = time.monotonic()
     limit = since + (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE)
     while others := at_work(folder):

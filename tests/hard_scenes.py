@@ -27,7 +27,6 @@ class Keys:
     x: float = 1.0
 
     def rupture(self) -> Rupture:
-        """The exact rupture."""
         names = ("prestress", "gamma", "damping_ratio", "release", "duration", "refinement")
         return Rupture(*(getattr(self, name) for name in names))
 
@@ -152,7 +151,6 @@ class Compared:
         self.answers = Answers(keys, rupture, self.x, self.times)
 
     def answers_of(self, other: Keys) -> Answers:
-        """The answers of another solution."""
         return Answers(other, other.rupture(), self.x, self.times)
 
     def faults(self, two: Answers) -> list[str]:

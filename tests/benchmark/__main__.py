@@ -181,7 +181,6 @@ def textbook_numpy_step(blocks: int) -> float:
 
 
 def main(config_path: str, folder: str) -> None:
-    """Make every measurement, write it and print the ratios."""
     output = Path(folder) / "benchmark.json"
     output.parent.mkdir(parents=True, exist_ok=True)
     config = read_config(read_overlay(config_path)).plain()

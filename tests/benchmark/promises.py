@@ -37,7 +37,6 @@ def profile(left, right, width, *bumps):
 
 
 def between(chance, low, high):
-    """Random number with a uniform logarithm."""
     return float(np.exp(chance.uniform(math.log(low), math.log(high))))
 
 
@@ -55,7 +54,6 @@ def held_displacement(chance, unit):
 
 
 def barriers(chance, unit):
-    """A barrier of negative pre-stress on each side."""
     width, level = float(chance.uniform(0.2, 1.0)) * unit, float(chance.uniform(0.15, 0.8))
     centre, wide = float(chance.uniform(1.2, 4.0)) * unit, float(chance.uniform(0.1, 0.8)) * unit
     depth = float(chance.uniform(0.0, 0.8)) * (1.0 if chance.random() < 0.8 else 2.0)
@@ -98,7 +96,6 @@ def drawn(number):
 
 
 def numbers(layer, duration, dx, ratio, **scheme):
-    """Measured numbers of a scene."""
     scene = sp.Scene(duration=duration, dx=dx, beta=ratio * dx, **layer, **scheme)
     return measured_row(sp.simulate(scene), SETTINGS)
 

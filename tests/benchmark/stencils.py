@@ -18,7 +18,6 @@ def second_difference(out, lower, upper, per_dx2, leaf, damping):
 
 @inner()
 def advance_polynomials(slip, velocity, a, b, c, d, h):
-    """Slip and velocity by the Taylor polynomial of order 4."""
     for i in range(slip.shape[0]):
         slip[i] += h * (
             velocity[i] + h / 2.0 * (a[i] + h / 3.0 * (b[i] + h / 4.0 * (c[i] + h / 5.0 * d[i])))
@@ -41,7 +40,6 @@ def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
 
 @inner()
 def force_and_velocity(velocity, force, slip, tau, h, per_dx2, leaf, damping):
-    """First stage: the force, damping included."""
     for i in range(force.shape[0]):
         force[i] = (
             per_dx2 * (slip[i + 2] - 2.0 * slip[i + 1] + slip[i])
@@ -53,7 +51,6 @@ def force_and_velocity(velocity, force, slip, tau, h, per_dx2, leaf, damping):
 
 @inner()
 def kick_and_drift(slip, velocity, force, h):
-    """Second stage: velocity, then slip."""
     for i in range(slip.shape[0]):
         velocity[i] += h * force[i]
         slip[i] += h * velocity[i]

@@ -27,7 +27,6 @@ RUN |= {"pulse_slip": 1.11, "pulse_state": "steady"}
 
 @pytest.fixture(scope="session")
 def browser():
-    """Chromium without a window."""
     path = next(filter(None, map(shutil.which, NAMES)), None)
     if path is None:
         pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
@@ -83,7 +82,6 @@ def violations():
 
 @pytest.fixture(scope="session")
 def explorer(tmp_path_factory):
-    """The explorer with one simulated run."""
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
     page = explorer_page(explorer_law.table({}, {}, {}), [pd.DataFrame([RUN])], "viridis")
     path.write_text(page, encoding="utf-8")

@@ -22,7 +22,6 @@ LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 3.5e6}
 
 @pytest.fixture(scope="module")
 def results(project) -> Path:
-    """A results folder with every page."""
     if not RESULTS:
         pytest.skip("no results folder named: make test-pages")
     return project / RESULTS

@@ -30,7 +30,6 @@ def test_the_tutorial_keeps_what_it_says(project, tmp_path):
     # Slip without damping is the paper's.
     slips = [2.0 * tau / 0.65 for tau in names["levels"]]
     assert names["left_behind"] == pytest.approx(slips, rel=tol.FRONT_SPEED)
-    # The promise is kept.
     assert names["relative_error"] < 1e-3
     # The first barrier is passed, and the second is not.
     edges = [position for position, _ in names["barrier"].steps]
@@ -67,7 +66,6 @@ def test_schema_and_tables_are_those_of_the_definition(project, config, tmp_path
     tables = len(describe.TABLE.findall(text))
     assert text.count("<!-- keys: ") == text.count("<!-- end of keys -->") == tables
     jsonschema.validate(config, yaml.safe_load(describe.schema_text()))
-    # Another definition changes both.
     key = describe.json_schema()["$defs"]["Model"]["properties"]["release"]
     monkeypatch.setitem(key, "description", "something else")
     describe.main(str(tmp_path))

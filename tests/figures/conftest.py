@@ -20,7 +20,6 @@ from slippulse.steps.targets import selected
 
 
 def claim(name, verdict, tolerance, deviation, choice="", choices=()) -> dict:
-    """A claim as in claims.json."""
     one = {"id": name, "label": f"an {name}", "kind": "approximate" if choice else "exact"}
     one |= {"verdict": verdict, "tolerance": tolerance, "deviation": deviation}
     return one | {"choice": choice, "choices": list(choices)}
@@ -44,7 +43,6 @@ class Drawings:
         self.drawn: dict[str, SimpleNamespace] = {}
 
     def simulate(self, name: str) -> tuple:
-        """Data, measured table and scenes of a sweep."""
         if name not in self.simulated:
             block = small_sweep(self.shipped, name)
             data, measured = (self.shared / f"sweeps/{name}.{ending}" for ending in ("nc", "csv"))

@@ -190,7 +190,6 @@ def test_the_arrows_are_the_measured_transition(draw):
 
 
 def offsets(axes, gid: str) -> np.ndarray:
-    """Positions of the markers with a name."""
     groups = [group.get_offsets() for group in axes.collections if group.get_gid() == gid]
     return np.ma.getdata(np.concatenate(groups))
 

@@ -38,7 +38,6 @@ SCENES["arrested at once"]["width"] = 0.5
 
 @pytest.fixture(scope="module")
 def drawn(shipped, tmp_path_factory):
-    """Each scene by the steps of the pipeline."""
     model, accuracy = Model.model_validate(shipped["model"]), shipped["presets"]["draft"]
     common, made = {"measure": shipped["measure"], "threads": 1}, {}
     for name, scene in SCENES.items():
@@ -170,7 +169,6 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     save_table(table, tmp_path / "sweep.csv")
     drawn = user_defined_sweep.draw(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
-    # Each line has theory, and markers full and open.
     assert len(speeds.lines) == 3 * lines
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
     held = sweep["boundary"] == "displacement"

@@ -16,7 +16,6 @@ SYMBOLS = ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$
 
 
 def named(axes, gid: str) -> list:
-    """Artists of one name."""
     return [artist for artist in (*axes.patches, *axes.lines) if artist.get_gid() == gid]
 
 
@@ -97,7 +96,6 @@ def drawn():
 
 
 def segments(axes, name):
-    """Springs of one kind, as arrays of points."""
     groups = [group for group in axes.collections if group.get_gid() == name]
     return [segment for group in groups for segment in group.get_segments()]
 

@@ -14,12 +14,10 @@ from slippulse.theory.rupture import Rupture
 
 
 def deviation(rows, value, exact):
-    """Relative deviations of one column from another."""
     return np.abs(rows[value] / rows[exact] - 1.0)
 
 
 def rises(values) -> bool:
-    """True where each value is above the one before."""
     return bool((np.diff(values) > 0.0).all())
 
 
@@ -38,7 +36,6 @@ def between(marks, line, value: str, along: str = "position"):
 
 
 def order(line, error) -> float:
-    """Exponent of an error in the spacing."""
     return np.polyfit(np.log(line["dx"]), np.log(error), 1)[0]
 
 
@@ -120,7 +117,6 @@ def test_pulses_change_by_the_sign_of_the_level_and_are_steady_only_beyond_their
         first, *_, last = rows["largest_velocity"]
         assert np.sign(last / first - 1.0) == np.sign(level) or level == 0.0
     exact = select(table, role="exact")
-    # No construction ends early.
     assert exact["level"].nunique() >= 4 and exact["slip"].notna().all()
     for level, rows in exact.groupby("level"):
         difference, fraction = deviation(rows, "slip", "steady"), rows["x"] / rows["memory"]
@@ -173,7 +169,6 @@ def test_every_quantity_converges_at_first_order_to_the_exact_curves(draw):
         assert line["places"].min() >= 20
     # Marks lie on the curves, and the trailing edge follows the front.
     for scene, exact in select(table, role="exact").groupby("scene"):
-        # No construction ends early.
         assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all()
         known = exact.dropna(subset="stick")
         assert len(known) > 100 and (known["stick"] > known["release"]).all()

@@ -31,7 +31,6 @@ APART, GREYS_APART = 10.0, 15.0
 
 
 def linear(colour) -> np.ndarray:
-    """Linear red, green and blue of a colour."""
     rgb = np.array(to_rgb(colour))
     return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
 

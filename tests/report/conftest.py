@@ -29,12 +29,10 @@ CLAIM |= dict.fromkeys(UNKNOWN)
 
 
 def read(path: Path):
-    """A YAML file."""
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
 def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0) -> list[dict]:
-    """One claim for each entry of the texts, each with its own numbers."""
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
@@ -157,5 +155,4 @@ def build(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def report(make_inputs, build) -> SimpleNamespace:
-    """The report of an invented run of the shipped configuration."""
     return build(make_inputs())

@@ -109,7 +109,6 @@ def page(results) -> str:
 
 
 def check_accessible(text: str) -> Outline:
-    """Check the structure of a page."""
     outline = Outline(text)
     assert text.startswith("<!DOCTYPE html>")
     assert outline.all("html") == [{"lang": "en"}]

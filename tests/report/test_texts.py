@@ -51,7 +51,6 @@ EXPRESSION = re.compile(r"\{\{(.+?)\}\}", re.S)
 
 @pytest.fixture(scope="module")
 def source(manuscript) -> str:
-    """Report and supplement."""
     return "\n".join((manuscript / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS)
 
 
@@ -67,7 +66,6 @@ def mentioned(text: str) -> set[str]:
 
 @pytest.fixture(scope="module")
 def entries(manuscript) -> dict[str, dict]:
-    """Claims, checks and findings."""
     return read(manuscript / "claims.yaml")
 
 

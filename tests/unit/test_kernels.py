@@ -1,4 +1,4 @@
-"""Roots of polynomials, releases and sticks within a step, and segments, at their edges."""
+"""Roots of polynomials, and releases and sticks within a step, at their edges."""
 
 import math
 from functools import cache
@@ -9,28 +9,13 @@ import pytest
 import tolerances as tol
 from numpy.polynomial.polynomial import polyfromroots
 
-from slippulse.solver import arrays, events, foresight, segments, stencils
+from slippulse.solver import arrays, foresight, stencils
 
 
 @cache
 def from_python(kernel):
     """A function that calls a kernel as another kernel would, where rounding matters: compiled."""
     return numba.njit(lambda *arguments: kernel(*arguments))
-
-
-@pytest.mark.parametrize("lower", [0.0, 0.01])
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("seed", range(5))
-def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
-    """A polynomial with one real root in the interval, and others outside it or complex."""
-    random = np.random.default_rng(seed)
-    h = float(random.uniform(0.01, 2.0))
-    inside = float(random.uniform(0.02, 0.98)) * h
-    pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
-    outside = [-random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0)]
-    coefficients = sign * np.real(polyfromroots([inside, *outside, pair, pair.conjugate()]))
-    root = from_python(foresight.crossing)(coefficients, 5, lower * h, h)
-    assert root == pytest.approx(inside, abs=tol.ROOT)
 
 
 def test_crossing_finds_a_root_of_zero_slope_and_one_at_the_end():
@@ -112,37 +97,3 @@ def test_a_block_is_released_when_its_stress_passes_the_threshold(case):
     time, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
     assert time == pytest.approx(release, abs=tol.ROOT)
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)
-
-
-@pytest.mark.parametrize("damping", [0.0, 0.3])
-def test_a_released_block_gets_every_derivative_of_its_neighbours_force(damping):
-    top, now = 5, 0.3
-    dx = 0.5
-    motion, centre = arrays.make_motion(top + 1, 3), np.zeros(top + 3)
-    motion.w[1:, [0, 2]] = np.random.default_rng(0).standard_normal((top, 2))
-    medium = arrays.make_medium(dx, 0.0, damping * dx**2, False, True)
-    events.start(centre, medium, motion, 1, now, top)
-    factorials = [math.factorial(k) for k in range(top + 1)]
-    slip = np.polynomial.Polynomial(motion.w[:, [0, 2]].sum(axis=1) / factorials)
-    # The strain holds the slip at the start of the step.
-    force = (slip + damping * dx**2 * slip.deriv()) / dx**2
-    expected = [force(now), *(force.deriv(m)(now) for m in range(1, top - 1))]
-    np.testing.assert_allclose(centre[2 : top + 1], expected, rtol=tol.STENCIL, atol=tol.STENCIL)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_segments_after_random_events_agree_with_a_mask(seed):
-    random = np.random.default_rng(seed)
-    mask, kept = np.zeros(24, dtype=bool), arrays.make_segments(24)
-    for _ in range(300):
-        block, inside = int(random.integers(24)), int(random.integers(1, 23))
-        (segments.stick_block if mask[block] else segments.release_block)(kept, block)
-        mask[block] = not mask[block]
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
-        n = kept.count.n
-        assert np.array_equal(np.column_stack([kept.starts[:n], kept.ends[:n]]).ravel(), edges)
-        left, right = segments.sliding_beside(kept, inside)
-        assert mask[inside - left : inside].all()
-        assert left == inside or not mask[inside - left - 1]
-        after = mask[inside + 1 :]
-        assert after[:right].all() and not after[right : right + 1].any()

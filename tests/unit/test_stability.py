@@ -13,7 +13,6 @@ from slippulse.model.stability import WEAK_ORDERS, largest_step
 from slippulse.simulation.flags import flags_of
 from slippulse.solver.fixed_step import LATTICES, solve_by_scheme
 from slippulse.solver.lattice import UnstableRun
-from slippulse.studies.stability import largest_stable
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)
@@ -119,10 +118,3 @@ def test_no_scheme_blows_up_below_its_bound_and_the_chain_at_it(study):
     # Weak orders are held below the measured boundary.
     weak = rows[(rows["order"].isin(WEAK_ORDERS)) & (rows["damping_ratio"] == 0.0)]
     assert (weak["measured_ratio"] > 1.0).all()
-
-
-@pytest.mark.parametrize(
-    ("ends", "expected"), [((0.2, 0.4), 0.4), ((3.0, 4.0), 3.0), ((0.5, 2.0), 1.0)]
-)
-def test_the_bisection_reports_the_end_beyond_which_it_does_not_look(ends, expected):
-    assert largest_stable(lambda step: step <= 1.0, *ends) == pytest.approx(expected, abs=0.01)

@@ -71,7 +71,6 @@ def random_scene(random: np.random.Generator) -> dict:
 
 @pytest.mark.parametrize("step", [0.5, 0.2])
 def test_no_event_is_stepped_over(step):
-    """Events that come and go within a long step are counted as with a short one."""
     random, names = np.random.default_rng(1), ("releases", "sticks", "re_releases")
     for number in range(200):
         scene = random_scene(random)

@@ -109,7 +109,6 @@ def check_motion(run) -> None:
     late = np.where(np.isfinite(release), release, np.inf)
     after = np.flatnonzero(np.isfinite(release) & (release > 0.0))
     assert np.all(np.minimum(late[after - 1], late[after + 1]) <= release[after])
-    # A block sticks after it was released.
     assert np.all(stick[np.isfinite(stick)] >= release[np.isfinite(stick)])
     assert not any(run[name].values[np.isnan(release)].any() for name in FIELDS[2:])
 

@@ -85,13 +85,11 @@ def halved_spacing(table, path):
 
 
 def user_defined_sweep(table, path):
-    """It is the product of its lists."""
     assert len(table) == 12
     assert np.isfinite(table["pulse_slip"]).all()
 
 
 def chunked_sweep(table, path):
-    """It is in the order of its lists."""
     levels, widths = table["left"].unique(), table["width"].unique()
     assert [*zip(table["left"], table["width"], strict=True)] == [*product(levels, widths)]
     assert levels.tolist() == [-0.3, -0.6, -1.0, -2.0] and widths.tolist() == [1.0, 2.0, 4.0]

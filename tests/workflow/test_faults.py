@@ -134,7 +134,6 @@ def test_a_job_that_fails_says_why(tmp_path, capfd):
             jobs.run(origin, "a job", {}, {}, {}, tmp_path / "logs/one.log")
     assert capfd.readouterr().err == ""
     assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
-    # The logger prints the log.
     assert (tmp_path / "logs/one.log").read_text() == ""
 
 

@@ -153,7 +153,6 @@ def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
             for line in str(refusal).splitlines():
                 assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
                 assert len(line) < 400 and "http" not in line, line
-    # Both happen often enough to mean something.
     assert counts["allowed"] > 100 and counts["refused"] > 1000
 
 
@@ -177,7 +176,6 @@ def test_nothing_that_is_shipped_takes_too_much(project, preset):
     config = read_config(read_overlay(project / "config/config.yaml"), [{"preset": preset}])
     bounds = [bound_and_chunks(config, name)[0] for name in all_simulations(config)]
     assert not any(bound.exceeded() for bound in bounds)
-    # They are far from the limits.
     assert max(bound.block_updates for bound in bounds) < 1e-2 * 4e13
     assert max(bound.bytes for bound in bounds) < 0.5 * 4e9
 

@@ -42,7 +42,6 @@ SLOW = [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in S
 
 @pytest.fixture
 def folder(project, tmp_path):
-    """A folder with the sources of the project."""
     for part in ("Snakefile", "workflow", "config", "src", "requirements.lock"):
         (tmp_path / part).symlink_to(project / part)
     return tmp_path

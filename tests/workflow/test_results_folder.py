@@ -4,11 +4,9 @@ Each job is imitated by one that writes by what and from what it is made: the te
 """
 
 import json
-import os
 import re
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -271,33 +269,6 @@ def test_nothing_is_removed_that_is_not_made_anew(folder, case):
     assert jobs["simulate"] == jobs["measure"] == 1
     run(folder, table)
     assert "data/one.nc" not in verify(folder)
-
-
-# A program with a command line of its own that looks, and then makes.
-PROGRAM = """
-from pathlib import Path
-from snakemake.api import SnakemakeApi
-from snakemake.settings import types
-
-for executor in ("dryrun", "local"):
-    output = types.OutputSettings(quiet={types.Quietness.ALL})
-    with SnakemakeApi(output) as api:
-        overlay = types.ConfigSettings(configfiles=[Path("overlay.yaml")])
-        cores = types.ResourceSettings(cores=1)
-        workflow = api.workflow(cores, overlay, snakefile=Path("Snakefile"))
-        dag = workflow.dag(types.DAGSettings(targets={"results/data/one.nc"}))
-        how = types.ExecutionSettings(use_threads=True)
-        dag.execute_workflow(executor, execution_settings=how)
-    print(executor, Path("results/records/data/one.nc.json").exists())
-"""
-
-
-def test_a_run_asks_snakemake_and_not_the_command_line_what_it_is_to_do(folder):
-    (folder / "results/records/data/one.nc.json").unlink()
-    command = [sys.executable, "-c", PROGRAM, "--dry-run", "results/nothing"]
-    how = {"cwd": folder, "env": os.environ | {"PYTHONPATH": str(folder / "src")}}
-    result = subprocess.run(command, **how, capture_output=True, text=True, check=False)
-    assert result.stdout.splitlines() == ["dryrun False", "local True"], result.stderr
 
 
 def test_short_names_are_targets_and_a_draft_is_verified_as_a_draft(folder):
