@@ -201,7 +201,7 @@ def compare(folder: Path) -> str:
     return f"slurm-test: {counts}; nothing left running"
 
 
-def main() -> None:
+if __name__ == "__main__":
     # A run that is told to stop stops its cluster too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     install()
@@ -211,7 +211,3 @@ def main() -> None:
         finally:
             # A run that was interrupted leaves jobs without Slurm too.
             end_all(Path(folder))
-
-
-if __name__ == "__main__":
-    main()

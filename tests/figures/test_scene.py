@@ -13,14 +13,12 @@ import slippulse as sp
 from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve, scene_simulation
 from slippulse.configuration.schema import Model, NamedScene
-from slippulse.data.points import point
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.figures import scene as figure
 from slippulse.figures import user_defined_sweep
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.predict.comparison import measured_table
-from slippulse.simulation.simulate import run_sweep
 from slippulse.steps import draw_scene, measure, predict, simulate, study_grid
 
 TITLE = "A <scene> & its $title"
@@ -57,7 +55,7 @@ def drawn(shipped, tmp_path_factory):
         study_grid.run({"finest": files["measured"]}, files, settings)
         draw_scene.run(files, outputs, {"scene": name, "title": TITLE, "altered": ""})
         numbers, table = load_table(outputs["numbers"]), load_table(outputs["csv"])
-        run = point(load_dataset(files["data"]), 0)
+        run = sp.point(load_dataset(files["data"]), 0)
         made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, outputs=outputs)
     return made
 
@@ -163,7 +161,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     varied, lines, runs = SWEEPS[name]
     sweep = varied | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
-    measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
+    measured = measured_table(sp.run_sweep(scenes, samples, sweep["record"]), config["measure"])
     predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
     table = user_defined_sweep.table({}, {name: measured.join(predicted)}, {})
     save_table(table, tmp_path / "sweep.csv")

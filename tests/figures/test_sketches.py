@@ -5,8 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from slippulse import Prestress, Samples, Scene, run_sweep
-from slippulse.data.points import point
+import slippulse as sp
 from slippulse.figures import fig01_system_sketch, fig07_damage_zone
 from slippulse.figures import fig06_burridge_knopoff as figure
 from slippulse.studies import damage_zone
@@ -80,15 +79,15 @@ LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 
 def sweep(scene, count=101):
-    samples = Samples(np.linspace(0.0, scene.duration, count), np.linspace(-20.0, 20.0, 41))
-    return run_sweep([scene], [samples], ("fronts", "fields", "samples"))
+    samples = sp.Samples(np.linspace(0.0, scene.duration, count), np.linspace(-20.0, 20.0, 41))
+    return sp.run_sweep([scene], [samples], ("fronts", "fields", "samples"))
 
 
 @pytest.fixture(scope="module")
 def drawn():
     """Runs, their table, and blocks and pre-stress of each panel."""
-    held = Scene("displacement", Prestress(0.3, 0.3), 10.0, gamma=0.4, **LATTICE)
-    loaded = Scene("stress", Prestress(-0.7, 0.0), 12.0, **LATTICE)
+    held = sp.Scene("displacement", sp.Prestress(0.3, 0.3), 10.0, gamma=0.4, **LATTICE)
+    loaded = sp.Scene("stress", sp.Prestress(-0.7, 0.0), 12.0, **LATTICE)
     data = {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
     rows = figure.table(data, {}, {})
     axes = figure.draw(rows).axes
@@ -133,7 +132,7 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
 @pytest.mark.parametrize("name", figure.PITCH)
 def test_instants_are_the_start_a_crack_the_first_stick_and_later(drawn, name):
     data, rows, _ = drawn
-    run = point(data[f"burridge_knopoff_{name}"], 0)
+    run = sp.point(data[f"burridge_knopoff_{name}"], 0)
     (start, first), (crack, _), (stick, index), *_, (_, last) = figure.instants(run)
     assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
     slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
@@ -166,6 +165,6 @@ def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_release
 
 
 def test_a_run_without_a_stick_is_called_a_crack():
-    scene = Scene("stress", Prestress(0.3, 0.3), 4.0, **LATTICE)
-    names = [name for name, _ in figure.instants(point(sweep(scene, 21), 0))]
+    scene = sp.Scene("stress", sp.Prestress(0.3, 0.3), 4.0, **LATTICE)
+    names = [name for name, _ in figure.instants(sp.point(sweep(scene, 21), 0))]
     assert names == ["start", "crack", "crack"]

@@ -7,10 +7,8 @@ import pytest
 import tolerances as tol
 from matplotlib.lines import Line2D
 
+import slippulse as sp
 from slippulse.measurement.inference import inference, likely
-from slippulse.model.prestress import Prestress
-from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
-from slippulse.theory.rupture import Rupture
 
 
 def deviation(rows, value, exact):
@@ -142,13 +140,13 @@ def test_lattices_tend_to_the_exact_depth_which_the_estimate_falls_short_of_at_l
     # Depths are whole blocks.
     assert 0.85 < np.median(orders) < 1.15
     for _, row in select(table, part="fine").iloc[::397].iterrows():
-        exact = barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
+        exact = sp.theory.barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
         assert row["exact"] == pytest.approx(exact, rel=5e-3)
     curves = select(table, part="curve").sort_values("barrier")
     for (tau0, _), line in curves.groupby(["tau0", "damping_ratio"]):
         assert rises(line["exact"])
         parameters = line[["tau0", "barrier", "gamma"]].to_numpy()
-        estimate = [barrier_depth_estimate(*row) for row in parameters]
+        estimate = [sp.theory.barrier_depth_estimate(*row) for row in parameters]
         assert line["paper"].to_numpy() == pytest.approx(estimate, rel=1e-3)
         assert tau0 >= 0.3 or (line["paper"] < 0.5 * line["exact"]).all()
 
@@ -198,7 +196,7 @@ def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
     numbers = np.empty((3, 3, 3))
     barriers, levels = (-1.0, -0.3, -0.1), (0.1, 0.5, 0.9)
     for (row, left), (column, right) in product(enumerate(barriers), enumerate(levels)):
-        rupture = Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)
+        rupture = sp.theory.Rupture(sp.Prestress(left, right), 0.65, 0.1, duration=9.0)
         end = rupture.front_ends[0][0]
         assert end.reason == "stops" and not rupture.limit
         numbers[row, column] = -end.x, *rupture.transition

@@ -12,7 +12,6 @@ from slippulse.model.scene import ORDERS
 from slippulse.model.stability import WEAK_ORDERS, largest_step
 from slippulse.simulation.flags import flags_of
 from slippulse.solver.fixed_step import LATTICES, solve_by_scheme
-from slippulse.solver.lattice import UnstableRun
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)
@@ -92,7 +91,7 @@ def test_a_run_that_blows_up_names_the_step(scheme, ratio):
     above = tol.WELL_ABOVE_BOUND if scheme == "localised" else tol.ABOVE_BOUND
     sound = solve_by_scheme(beyond_the_bound(scheme, tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
     assert sound.slip_velocity.max() < STRONG["duration"]
-    with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
+    with pytest.raises(sp.UnstableRun, match=r"unstable at t = .*max_step"):
         solve_by_scheme(beyond_the_bound(scheme, above, **STRONG, beta=0.1 * ratio))
 
 

@@ -9,7 +9,6 @@ import slippulse as sp
 from slippulse import theory
 from slippulse.measurement.promise import covers
 from slippulse.predict.comparison import measured_table
-from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
 # Accuracy, level, gamma, damping ratio, width, release; each scene lasts until the pulse is steady.
@@ -78,7 +77,7 @@ def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not
     # The transition of an undamped crack is not covered.
     numbers = [9] * len(PULSES) + [3] * len(CRACKS) + [2] * len(FREE_FRONTS)
     numbers[len(PULSES) + UNDAMPED_CRACK] = 1
-    sweep = run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
+    sweep = sp.run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (_, exact), number, run in zip(cases, made, numbers, runs, strict=True):
         covered = [name for name in exact if covers(run, name, SHARE)]

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from slippulse.model.prestress import Prestress
-from slippulse.model.scene import Scene
+import slippulse as sp
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.solution import solve_on_lattice
 
 HOW = {"beta": 0.1 * 0.04, "max_step": 0.5}
-PULSE = Scene("displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, **HOW)
-CRACK = Scene("stress", Prestress(0.5, 0.5), 50.0, 0.04, half_lattice=False, **HOW)
+PULSE = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, **HOW)
+CRACK = sp.Scene("stress", sp.Prestress(0.5, 0.5), 50.0, 0.04, half_lattice=False, **HOW)
 # Scene; expected block updates a step over the mean number of sliding blocks (1: no others are
 # touched, 1/2: half of a symmetric scene); most blocks changed by events over block updates; least
 # blocks of the lattice over the sliding ones.
@@ -21,7 +20,7 @@ WORK = {
     "two pulses, by symmetry": (PULSE, 0.5, 0.3, 15.0),
     "two pulses, whole lattice": (replace(PULSE, half_lattice=False), 1.0, 0.3, 15.0),
     "crack, whole lattice": (CRACK, 1.0, 0.05, 1.0),
-    "one pulse, whole lattice": (replace(CRACK, prestress=Prestress(-0.5, 0.0)), 1.0, 0.05, 1.0),
+    "one pulse, whole lattice": (replace(CRACK, prestress=sp.Prestress(-0.5, 0.0)), 1.0, 0.05, 1.0),
 }
 
 
@@ -74,7 +73,7 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 @pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
 def test_rows_begin_at_different_places_of_their_pages(right):
     """In a page of 4096 bytes, any two beginnings are at least three lines of the cache apart."""
-    scene = Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8)
+    scene = sp.Scene("displacement", sp.Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8)
     lattice = Lattice(scene, None, 0.0)
     for _ in range(6):
         size = lattice.size

@@ -157,22 +157,16 @@ PAPER = {"data/arrest.nc": CONFIGURATION}
 SOLVER_EDIT = "edit src/slippulse/solver/taylor.py"
 FUTURE = "find results -exec touch -d '3 hours' {} +"
 LOCK = {f"{FIGURE}.png": SOURCES, "data/one.nc": SOURCES}
-COPY_PAPER = "rm -r results; cp -r paper results"
 OLD_OVERLAY = "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml"
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        pytest.param(CONTENT | MOVES, id="content"),
-        pytest.param(RECORDS, id="records"),
-        pytest.param(OLD_SOURCES, id="sources"),
-        pytest.param(FOLDERS, id="folders"),
-        pytest.param({f"{FUTURE}; {SOLVER_EDIT}": SOLVER}, id="a source, results in the future"),
-        pytest.param({f"rm -r .snakemake; {SOLVER_EDIT}": SOLVER}, id="a source, notes removed"),
-        pytest.param({"edit requirements.lock": LOCK}, id="the lock"),
-    ],
-)
+CHANGES = {"content": CONTENT | MOVES, "records": RECORDS, "sources": OLD_SOURCES}
+CHANGES |= {"folders": FOLDERS, "the lock": {"edit requirements.lock": LOCK}}
+CHANGES["a source, results in the future"] = {f"{FUTURE}; {SOLVER_EDIT}": SOLVER}
+CHANGES["a source, notes removed"] = {f"rm -r .snakemake; {SOLVER_EDIT}": SOLVER}
+
+
+@pytest.mark.parametrize("changes", CHANGES.values(), ids=CHANGES)
 def test_a_change_of_a_folder_is_named_and_repaired(folder, changes):
     named = change_and_verify(folder, changes)
     assert "made anew where needed" in run(folder, *TARGETS)
@@ -205,18 +199,18 @@ def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert planned(result) == {}
 
 
-@pytest.mark.parametrize(
-    ("command", "reasons", "overlay", "made"),
-    [
-        pytest.param("rm -r .snakemake", OTHER, "other.yaml", "other", id="another overlay"),
-        pytest.param("rm -r .snakemake", PAPER, "paper.yaml", "paper", id="another preset"),
-        pytest.param("swap results other", OTHER, "overlay.yaml", "overlay", id="swapped"),
-        pytest.param(COPY_PAPER, PAPER, "overlay.yaml", "overlay", id="copied in"),
-        pytest.param(OLD_OVERLAY, OTHER, "overlay.yaml", "other", id="an old overlay"),
-    ],
-)
+# A command, what verify then says of some results, the overlay, and a folder with its results.
+OTHERS = {
+    "another overlay": ("rm -r .snakemake", OTHER, "other.yaml", "other"),
+    "another preset": ("rm -r .snakemake", PAPER, "paper.yaml", "paper"),
+    "swapped": ("swap results other", OTHER, "overlay.yaml", "overlay"),
+    "copied in": ("rm -r results; cp -r paper results", PAPER, "overlay.yaml", "overlay"),
+    "an old overlay": (OLD_OVERLAY, OTHER, "overlay.yaml", "other"),
+}
+
+
+@pytest.mark.parametrize(("command", "reasons", "overlay", "made"), OTHERS.values(), ids=OTHERS)
 def test_results_of_another_overlay_are_made_anew(folder, command, reasons, overlay, made):
-    """Some results are asked for; ``made`` is a folder with the results of the overlay."""
     change_and_verify(folder, {command: reasons}, overlay)
     expected, names = digests(folder, made), digests(folder, "paper").keys()
     expected = {name: digest for name, digest in expected.items() if name in names}
