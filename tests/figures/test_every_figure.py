@@ -34,9 +34,7 @@ BOUNDARIES = ("displacement", "stress")
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_written(
-    draw, tmp_path, name
-):
+def test_it_fits_a_page_is_labelled_and_finite_and_is_written(draw, tmp_path, name):
     table, figure = draw(name).table, draw(name).figure
     width, height = figure.get_size_inches()
     assert width <= PAGE + 1e-9 and height <= 9.0

@@ -93,14 +93,11 @@ DECIDING = [
     (GROWING, dict(centre=0.02, right=0.5, before=0.4), {"largest_velocity_change": 0.25}),
     (ARRESTED, dict(right=0.0, before=0.0, last_release=9.0), {"centre_velocity_share": np.nan}),
 ]
+DECIDING += [(*case, {}) for case in CASES]
 
 
-@pytest.mark.parametrize(
-    ("expected", "run", "numbers"), [*((*case, {}) for case in CASES), *DECIDING]
-)
-def test_every_regime_is_reached_each_threshold_decides_and_the_numbers_are_given(
-    expected, run, numbers
-):
+@pytest.mark.parametrize(("expected", "run", "numbers"), DECIDING)
+def test_every_regime_is_reached_and_each_threshold_decides(expected, run, numbers):
     out = classify(made_up(**run), STILL, TOLERANCE)
     assert out["regime"] == expected
     assert {name: out[name] for name in numbers} == pytest.approx(numbers, abs=1e-3, nan_ok=True)

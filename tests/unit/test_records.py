@@ -255,9 +255,7 @@ def test_an_overlay_is_marked_value_by_value():
     assert changes(shipped, shipped) == []
 
 
-def test_provenance_and_manifest_hold_everything_and_name_nobody(
-    project, config, results, tmp_path
-):
+def test_provenance_holds_everything_and_names_nobody(project, config, results, tmp_path):
     facts = provenance(project, config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft"
     assert [entry["key"] for entry in facts["overlay"]] == ["preset"]

@@ -35,9 +35,7 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("boundary", OTHERS)
-def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(
-    boundary, config, tmp_path
-):
+def test_a_scene_comes_back_from_its_attributes_data_and_measured_row(boundary, config, tmp_path):
     scene = OTHERS[boundary]
     assert sp.Scene.from_attributes(scene.attributes()) == scene
     save_dataset(sp.run_sweep([scene], record=("fronts",)), tmp_path / "data.nc")

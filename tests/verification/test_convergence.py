@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -17,6 +18,11 @@ BASES = {
     "displacement, damped": ("displacement", 0.65, 0.02, sp.Prestress(0.5, 0.5)),
     "stress, damped": ("stress", 0.0, 0.02, sp.Prestress(-0.3, 0.2)),
 }
+# Gamma and the levels; the damping ratio and the rate strengthening.
+SPRUNG, UNSPRUNG = [(0.65, 0.5, 0.5), (0.1, 0.3, 0.8)], [(0.0, -0.5, 0.0), (0.0, 0.4, -0.2)]
+RATES = [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6)]
+# Weakening without leaf springs would let slip run away.
+BALANCED = [*product(SPRUNG + UNSPRUNG, RATES), *product(SPRUNG, [(0.0, -0.3)])]
 DAMPED = ("displacement, damped", "stress, damped")
 STEPS = (0.2, 0.1, 0.05)
 
@@ -104,20 +110,13 @@ def test_the_energy_balance_closes_at_third_order_with_damping(base, order, leas
     assert least - tol.ENERGY_ORDER < observed < most + tol.ENERGY_ORDER
 
 
-@pytest.mark.parametrize(
-    "rates", [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6), (0.0, -0.3)]
-)
-@pytest.mark.parametrize(
-    "case", [(0.65, 0.5, 0.5), (0.1, 0.3, 0.8), (0.0, -0.5, 0.0), (0.0, 0.4, -0.2)]
-)
-def test_the_energy_balance_closes(paper_accuracy, case, rates):
+@pytest.mark.parametrize("case", BALANCED)
+def test_the_energy_balance_closes(paper_accuracy, case):
     """Work of the pre-stress = kinetic + elastic + leaf springs + loss, at the paper preset's step.
 
     The loss is to damping and rate strengthening. Friction that weakens with slip rate adds energy.
     """
-    (gamma, *levels), (ratio, alpha) = case, rates
-    if alpha**2 >= 4.0 * gamma and alpha < 0.0:
-        pytest.skip("slip runs away")
+    (gamma, *levels), (ratio, alpha) = case
     boundary, dx = "displacement" if gamma else "stress", 0.02
     scene = sp.Scene(boundary, sp.Prestress(*levels), 12.0, dx, gamma, ratio * dx)
     scene = replace(scene, friction=sp.friction("linear_rate", alpha=alpha), **paper_accuracy)

@@ -77,9 +77,7 @@ TRANSITIONS = [
 
 
 @pytest.mark.parametrize(("tau0", "gamma", "table", "known"), TRANSITIONS)
-def test_transitions_as_tabulated_to_which_lattices_converge(
-    paper_accuracy, tau0, gamma, table, known
-):
+def test_lattices_converge_to_tabulated_transitions(paper_accuracy, tau0, gamma, table, known):
     profile = sp.Prestress(tau0, tau0)
     exact = sp.theory.exact_transition_displacement(profile, gamma)
     fronts = sp.theory.Fronts(profile, 0.0, "total", 1.1 * exact.time)

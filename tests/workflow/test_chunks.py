@@ -12,6 +12,9 @@ from slippulse.data.store import load_dataset
 pytestmark = pytest.mark.slow
 
 LEVELS = [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7]
+OTHER_LEVEL = {"left": [*LEVELS[:-1], 0.8]}
+JOBS_OF_A_TABLE = {"simulate": 2, "measure": 2, "join": 1}
+TABLES_ANEW = {"measure": 1, "study_grid": 1, "join": 3}
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}
 FILES = ("data/{}.nc", "measurements/{}.csv", "uncertainties/{}.csv")
 FILES += ("uncertainties/coarser/{}.csv",)
@@ -75,21 +78,9 @@ def case(identity: str, name: str, files=FILES, sweeps=CHUNKS, **parts):
         case("tables", "in_three", FILES[1:], forced=True, jobs=jobs(3, compile_kernels=1, join=3)),
         case("more chunks", "in_two", sweeps={"in_two": 3}, jobs=jobs(3, join=4)),
         case("chunks no more", "in_two", sweeps={"in_two": None}, jobs=jobs(1)),
-        case(
-            "another level",
-            "in_two",
-            FILES[1:2],
-            changes={"left": [*LEVELS[:-1], 0.8]},
-            jobs={"simulate": 2, "measure": 2, "join": 1},
-        ),
+        case("another level", "in_two", FILES[1:2], changes=OTHER_LEVEL, jobs=JOBS_OF_A_TABLE),
         case("lost chunk", "in_two", lost=True, jobs=jobs(1, join=4)),
-        case(
-            "lost tables",
-            "in_two",
-            FILES[1:],
-            lost=True,
-            jobs={"measure": 1, "study_grid": 1, "join": 3},
-        ),
+        case("lost tables", "in_two", FILES[1:], lost=True, jobs=TABLES_ANEW),
         case("lost study", "in_two", FILES[2:], lost=True, jobs={"study_grid": 1, "join": 2}),
     ],
 )

@@ -37,7 +37,8 @@ SLOW = {
         ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
     ),
 }
-SLOW = [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
+COMMANDS = [pytest.param(*case, id=name) for name, case in COMMANDS.items()]
+COMMANDS += [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
 
 
 @pytest.fixture
@@ -58,10 +59,7 @@ def said(command, folder, code, environment=None) -> str:
 SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
 
 
-@pytest.mark.parametrize(
-    ("overlay", "arguments", "refusal"),
-    [*(pytest.param(*case, id=name) for name, case in COMMANDS.items()), *SLOW],
-)
+@pytest.mark.parametrize(("overlay", "arguments", "refusal"), COMMANDS)
 def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal):
     (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
     text = said([*SNAKEMAKE, *arguments.split(" ")], folder, 1)
@@ -160,12 +158,11 @@ def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, monkeypatc
     assert code in (1, ended.value.code) and named in text and "\n" not in text
 
 
-@pytest.mark.parametrize(
-    "text", ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
-)
-def test_a_note_on_the_last_run_that_is_not_of_its_form_counts_as_absent(
-    project, tmp_path, monkeypatch, text
-):
+ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
+
+
+@pytest.mark.parametrize("text", ODD_NOTES)
+def test_an_odd_note_on_the_last_run_counts_as_absent(project, tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
     arguments = runpy.run_path(str(project / "workflow/run.py"))["arguments"]
     (tmp_path / "results/records").mkdir(parents=True)

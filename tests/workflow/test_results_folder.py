@@ -175,6 +175,7 @@ def test_a_change_of_a_folder_is_named_and_repaired(folder, changes):
 
 
 # Commands that lose nothing: times without order, what a kill leaves, notes of no form.
+PUT_BACK = ("rm -r results; cp -r overlay results",)
 HARMLESS = (
     "rm -r .snakemake",
     "rm -r results/logs",
@@ -186,11 +187,7 @@ HARMLESS = (
 )
 
 
-@pytest.mark.parametrize(
-    "commands",
-    [HARMLESS, ("rm -r results; cp -r overlay results",)],
-    ids=["harmless", "a copy put back"],
-)
+@pytest.mark.parametrize("commands", [HARMLESS, PUT_BACK], ids=["harmless", "a copy put back"])
 def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert change_and_verify(folder, {command: {} for command in commands}) == {}
     assert "made anew where needed" not in run(folder, *TARGETS)
