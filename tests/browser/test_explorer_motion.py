@@ -17,6 +17,8 @@ const keep = (list) => window.shifts.push(...list.getEntries().map((entry) => en
 new PerformanceObserver(keep).observe({ type: "layout-shift", buffered: true });
 """
 LARGEST_SHIFT = 0.01
+reading = lambda page: page.locator("#reading").text_content()
+time_of = lambda page: float(page.locator("#time").input_value())
 
 
 @contextmanager
@@ -26,10 +28,6 @@ def still(page: Page) -> Iterator[None]:
     yield
     settled(page)
     assert sum(page.evaluate("window.shifts")) < LARGEST_SHIFT
-
-
-reading = lambda page: page.locator("#reading").text_content()
-time_of = lambda page: float(page.locator("#time").input_value())
 
 
 def inside(page: Page, name: str, across: float, down: float) -> tuple[int, int]:

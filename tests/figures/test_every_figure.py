@@ -31,6 +31,7 @@ SMALLEST = 7.0
 TOUCHING = 0.012
 UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
 BOUNDARIES = ("displacement", "stress")
+PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady_state_stress")
 
 
 @pytest.mark.parametrize("name", DRAWN)
@@ -141,9 +142,6 @@ def curves(axes, kind: str) -> dict[str, np.ndarray]:
     prefix = f"{kind} "
     lines = [line for line in axes.lines if (line.get_gid() or "").startswith(prefix)]
     return {line.get_gid().removeprefix(prefix): line.get_xydata() for line in lines}
-
-
-PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady_state_stress")
 
 
 @pytest.mark.parametrize("name", PULSES)

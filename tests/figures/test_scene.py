@@ -32,6 +32,9 @@ SCENES = {
 }
 SCENES["barrier"] |= {"bumps": [[10.0, -2.5, 1.0]], "damping_ratio": 0.0}
 SCENES["arrested at once"]["width"] = 0.5
+# A run as a picture, in one call.
+PLAIN = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 8.0, 0.05, 0.65, scheme="continuum")
+SAMPLES = sp.Samples(np.linspace(0.0, 8.0, 41), np.linspace(-12.0, 12.0, 81))
 
 
 @pytest.fixture(scope="module")
@@ -180,11 +183,6 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     values = [tuple(np.round(axes.lines[1].get_ydata(), 9)) for axes in shown]
     assert len({*values}) == len(values), "no panel twice"
     assert len({axes.get_xlabel() for axes in shown}) == 1
-
-
-# A run as a picture, in one call.
-PLAIN = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 8.0, 0.05, 0.65, scheme="continuum")
-SAMPLES = sp.Samples(np.linspace(0.0, 8.0, 41), np.linspace(-12.0, 12.0, 81))
 
 
 @pytest.mark.parametrize("samples", [None, SAMPLES], ids=["edges", "map"])

@@ -12,13 +12,12 @@ from slippulse.studies import damage_zone
 
 SPAN, THICKNESSES = {"from": 1e-4, "to": 2.0, "count": 31}, [0.5, 2.0, 8.0]
 SYMBOLS = ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$", "$y$")
+texts = lambda axes: " ".join(text.get_text() for text in axes.texts)
+LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 
 def named(axes, gid: str) -> list:
     return [artist for artist in (*axes.patches, *axes.lines) if artist.get_gid() == gid]
-
-
-texts = lambda axes: " ".join(text.get_text() for text in axes.texts)
 
 
 def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
@@ -73,9 +72,6 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(zone):
         assert y == pytest.approx(1.0 / (1.0 + thickness * x), rel=1e-6) and y.max() < 1.0
         assert f"{thickness:g}" in line.get_label()
     assert all((upper.get_ydata() > lower.get_ydata()).all() for upper, lower in pairwise(lines))
-
-
-LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 
 def sweep(scene, count=101):

@@ -28,6 +28,8 @@ TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 
 WHITE = TO_XYZ.sum(axis=1)
 # Distances in CIE L*a*b*: what is just seen is about 2; marks of a few points need more.
 APART, GREYS_APART = 10.0, 15.0
+# The palest level that a figure draws as a line or a mark.
+PALEST = {"tau_0": 0.8, "tau_l": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
 
 
 def linear(colour) -> np.ndarray:
@@ -46,10 +48,6 @@ def lab(colour, vision: str) -> np.ndarray:
 def test_colours_of_the_cycle_are_apart(vision):
     for one, other in combinations([lab(colour, vision) for colour in CYCLE], 2):
         assert np.linalg.norm(one - other) > APART
-
-
-# The palest level that a figure draws as a line or a mark.
-PALEST = {"tau_0": 0.8, "tau_l": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
 
 
 @pytest.mark.parametrize(("quantity", "value"), PALEST.items())

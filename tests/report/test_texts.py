@@ -47,6 +47,10 @@ NAME = re.compile(r"`([^`]+)`")
 FENCE = re.compile(r"^```python[^\n]*\n(.*?)^```$", re.S | re.M)
 HEADER = re.compile(r"\A---\n.*?\n---\n", re.S)
 EXPRESSION = re.compile(r"\{\{(.+?)\}\}", re.S)
+# Numbers in a formula that are neither a digit nor a power of ten.
+in_formula = lambda formula: re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))
+# Numbers in a name in back quotes that are not part of a word.
+in_name = lambda name: re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)
 
 
 @pytest.fixture(scope="module")
@@ -242,12 +246,6 @@ def test_the_table_of_stick_times():
         "| 9 | not measured | not measured | 0 |",
     ]
     assert sticking(table.assign(value=float("nan"))) == ""
-
-
-# Numbers in a formula that are neither a digit nor a power of ten.
-in_formula = lambda formula: re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))
-# Numbers in a name in back quotes that are not part of a word.
-in_name = lambda name: re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)
 
 
 def in_code(code: str) -> list[str]:

@@ -10,6 +10,9 @@ from slippulse.model.prestress import Prestress
 from slippulse.studies import published_figure as study_module
 from slippulse.studies.published_figure import BETA, LeftPanel
 
+# How many readings are fitted: all, or all but the two arrows.
+READINGS = {"profile": 10, "arrows": 12}
+
 
 @pytest.fixture(scope="module")
 def table(study):
@@ -36,10 +39,6 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
     low, high = best["regions"][0.68]
     assert low < ratio < high
-
-
-# How many readings are fitted: all, or all but the two arrows.
-READINGS = {"profile": 10, "arrows": 12}
 
 
 @pytest.mark.parametrize("part", READINGS)

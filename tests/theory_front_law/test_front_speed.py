@@ -19,6 +19,9 @@ SPEED = 1e-10
 BLOCK_BY_BLOCK = 1e-11
 # Localised events of order 8 and a steady pulse: only the sticking behind the front is left.
 LATTICE = 3e-4
+# Level and damping ratio.
+CRACKS = [(0.2, 0.02), (0.35, 0.05), (0.5, 0.1), (0.65, 0.2), (0.8, 0.3)]
+CRACKS += [(0.3, 0.5), (0.45, 1.0), (0.6, 1.5), (0.7, 2.0), (0.55, 3.0)]
 
 
 def test_ratios_one_and_zero_are_closed_forms():
@@ -163,11 +166,6 @@ def test_pulses_of_lattices(tau, gamma, dx, ratio, release, alpha):
     layer = "displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, gamma, ratio * dx
     scene = sp.Scene(*layer, **how)
     assert late_front_speed(scene) == pytest.approx(law, rel=LATTICE)
-
-
-# Level and damping ratio.
-CRACKS = [(0.2, 0.02), (0.35, 0.05), (0.5, 0.1), (0.65, 0.2), (0.8, 0.3)]
-CRACKS += [(0.3, 0.5), (0.45, 1.0), (0.6, 1.5), (0.7, 2.0), (0.55, 3.0)]
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])

@@ -20,6 +20,14 @@ from slippulse.solver.fixed_step import LATTICES
 
 # Undamped blocks that slip again and again cut steps short.
 SMALL_FACTOR = 3.0
+PULSE = {"boundary": "displacement", "gamma": 0.65, "damping_ratio": 0.1}
+PULSE["prestress"] = sp.Prestress(0.5, 0.5)
+CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
+
+
+accuracy_for = lambda config, **to: accuracy_of(Configuration.model_validate(config | to))
+ASKED = {"continuum_fixed_ratio": "dx", "burridge_knopoff_speed": "spacing"}
+ASKED |= {"continuum_fixed_beta": "beta"}
 
 
 def scenes_of(shipped: dict, name: str, coarser: float = 1.0):
@@ -126,14 +134,6 @@ def test_slipping_again_and_again_is_bounded():
     assert run.attrs["block_updates"] < SMALL_FACTOR * bound_of(scene).block_updates
 
 
-PULSE = {"boundary": "displacement", "gamma": 0.65, "damping_ratio": 0.1}
-PULSE["prestress"] = sp.Prestress(0.5, 0.5)
-CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
-
-
-accuracy_for = lambda config, **to: accuracy_of(Configuration.model_validate(config | to))
-
-
 @pytest.mark.parametrize("scene", [PULSE, CRACK], ids=["pulse", "crack"])
 def test_a_smaller_error_takes_a_finer_lattice_at_the_same_damping_ratio(scene):
     scenes = []
@@ -190,10 +190,6 @@ def test_with_an_accuracy_each_scene_has_its_own_spacing_but_not_by_the_textbook
     block = resolve(config["simulations"]["steady_displacement"], model, accuracy)
     with pytest.raises(ValueError, match="scheme: 'fixed_step'; allowed: 'localised' where acc"):
         promised(block)
-
-
-ASKED = {"continuum_fixed_ratio": "dx", "burridge_knopoff_speed": "spacing"}
-ASKED |= {"continuum_fixed_beta": "beta"}
 
 
 @pytest.mark.parametrize("name", ASKED)

@@ -28,6 +28,14 @@ SCENES = [
 SAMPLES = [
     sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES
 ]
+STEP = {"gamma": 0.65, "beta": 0.005, "max_step": 0.4}
+ONE = sp.Scene("displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, **STEP)
+HELD = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 9.0, 0.1, gamma=0.65, beta=0.01)
+EXACT = {
+    "displacement": HELD,
+    "asymmetric": dataclasses.replace(HELD, prestress=sp.Prestress(-0.5, 0.5), duration=5.0),
+    "stress": sp.Scene("stress", sp.Prestress(-0.75, 0.0, 2.0), 9.0, 0.1, beta=0.01),
+}
 
 
 @cache
@@ -70,10 +78,6 @@ def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_
     object.__setattr__(broken, "max_step", 3.0)
     with pytest.raises(sp.UnstableRun, match="unstable"):
         sp.run_sweep([*SCENES, broken], None, ("fronts",), 2)
-
-
-STEP = {"gamma": 0.65, "beta": 0.005, "max_step": 0.4}
-ONE = sp.Scene("displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, **STEP)
 
 
 def test_a_sample_is_the_state_of_a_run_that_ends_there():
@@ -176,14 +180,6 @@ def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_
     plain = tmp_path / "plain.txt"
     plain.touch()
     assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(plain.stat().st_mode)
-
-
-HELD = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 9.0, 0.1, gamma=0.65, beta=0.01)
-EXACT = {
-    "displacement": HELD,
-    "asymmetric": dataclasses.replace(HELD, prestress=sp.Prestress(-0.5, 0.5), duration=5.0),
-    "stress": sp.Scene("stress", sp.Prestress(-0.75, 0.0, 2.0), 9.0, 0.1, beta=0.01),
-}
 
 
 def exactly(scene: sp.Scene, samples: sp.Samples | None = None) -> xr.Dataset:

@@ -62,6 +62,10 @@ CASES = {
     "reading: too few readings": (rules.reading, (0.5, 1, 0.05), OPEN),
     "reading: no fit": (rules.reading, (NAN, 7, 0.05), NONE),
 }
+ESTIMATED = {"kind": "approximate", "tolerance": 0.2, "earlier_tolerance": 0.01, "sentences": []}
+ENTRIES = {"equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]}}
+ENTRIES["estimate"] = ESTIMATED | {"follows_from": ["equation"]}
+LEVELS = [0.2, 0.4, 0.6, 0.8]
 
 
 @pytest.mark.parametrize(("rule", "arguments", "verdict"), CASES.values(), ids=CASES)
@@ -138,12 +142,6 @@ def test_no_claim_compares_a_function_with_itself(project):
             sweeps, _, quantities = part.partition(":")
             assert {*sweeps.split(", ")} <= {*SIMULATIONS}, id
             assert quantities and {*quantities.strip().split(", ")} <= {*RECORD_FOR, "regime"}, id
-
-
-ESTIMATED = {"kind": "approximate", "tolerance": 0.2, "earlier_tolerance": 0.01, "sentences": []}
-ENTRIES = {"equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]}}
-ENTRIES["estimate"] = ESTIMATED | {"follows_from": ["equation"]}
-LEVELS = [0.2, 0.4, 0.6, 0.8]
 
 
 def evidence(measure=lambda level, factor: level, flagged: int | None = None) -> Evidence:

@@ -21,6 +21,7 @@ from slippulse.theory import ArrestingCrack, Rupture, front_speed, steady_pulse
 STILL, TOLERANCE = 0.05, 0.02
 DURATION = 30.0
 ARRESTED, CRACKS, CRACK, PULSES, GROWING, STEADY, DECAYING = REGIMES
+PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 
 
 def made_up(
@@ -133,9 +134,6 @@ def test_simulated_ruptures(expected, gamma, levels, later):
     run = simulate(scene, Samples(np.linspace(0.0, duration, 10), np.linspace(-reach, reach, 801)))
     assert run.attrs["run_flags"] == ""
     assert classify(run, STILL, TOLERANCE)["regime"] == expected
-
-
-PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 
 
 def fields(velocity: np.ndarray) -> xr.Dataset:

@@ -16,6 +16,10 @@ from slippulse.predict.comparison import measured_table
 STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
 DISPLACEMENT = STRESS | {"boundary": "displacement", "gamma": 0.65, "beta": 1e-3}
 DISPLACEMENT["prestress"] = sp.Prestress(0.5, 0.5)
+SYMMETRIC = [{}, {"left": 0.0, "right": -0.0}, {"steps": ((5.0, 0.1), (-5.0, 0.1))}]
+SYMMETRIC += [{"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}]
+ASYMMETRIC = [{"right": 0.300001}, {"steps": ((5.0, 0.1), (-5.0, 0.2))}, {"steps": ((5.0, 0.1),)}]
+ASYMMETRIC += [{"bumps": ((4.0, 0.1, 1.0),)}, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}]
 
 
 def test_derived_numbers():
@@ -103,12 +107,6 @@ def test_a_step_replaces_the_level_beyond_its_position_on_its_side(steps):
     x = np.array([-50.0, -4.0, -3.999, 0.0, 14.999, 15.0, 19.999, 20.0, 99.0])
     assert profile.level(x).tolist() == [0.2, 0.2, -0.3, 0.0, 0.0, -0.1, -0.1, 0.4, 0.4]
     assert np.array_equal(profile(x), PROFILES["steps"](x))
-
-
-SYMMETRIC = [{}, {"left": 0.0, "right": -0.0}, {"steps": ((5.0, 0.1), (-5.0, 0.1))}]
-SYMMETRIC += [{"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}]
-ASYMMETRIC = [{"right": 0.300001}, {"steps": ((5.0, 0.1), (-5.0, 0.2))}, {"steps": ((5.0, 0.1),)}]
-ASYMMETRIC += [{"bumps": ((4.0, 0.1, 1.0),)}, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}]
 
 
 @pytest.mark.parametrize(

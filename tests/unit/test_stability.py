@@ -15,6 +15,7 @@ from slippulse.solver.fixed_step import LATTICES, solve_by_scheme
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)
+STRONG = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.3), "duration": 60.0, "dx": 0.1}
 
 
 def taylor_amplification(order: int, step: float, ratio: float, gamma_dx2: float) -> float:
@@ -67,9 +68,6 @@ def test_no_mode_grows_below_the_bound_and_one_grows_above(scheme, order, leaf, 
     # The bound of the localised scheme is sharp at strong damping.
     if leaf == 0.0 and (scheme == "fixed_step" or ratio == 10.0):
         assert growth(tol.ABOVE_BOUND * bound, ratio, leaf) > 1.0 + tol.AMPLIFICATION
-
-
-STRONG = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.3), "duration": 60.0, "dx": 0.1}
 
 
 def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():

@@ -16,6 +16,10 @@ from scipy.special import j0
 from slippulse import Prestress, theory
 from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, paper_pulse
 
+# The algebra of the paper: each formula over the one derived from its equations, at random layers
+# of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
+LAYERS, SEED, DEGREE = 200, 20210501, 4
+
 
 def symbol(k: complex, v: float, b: float) -> complex:
     return 1.0 - 4.0 * np.sin(k / 2.0) ** 2 * (1.0 + 1j * b * v * k) / (v * k) ** 2
@@ -96,11 +100,6 @@ def test_the_left_front_takes_for_ever():
         delay = lambda e, end=time + x: e + float(crack.fronts.arrival(e)) - end
         entry = brentq(delay, 0.0, crack.end - 1e-9, xtol=1e-13)
         assert abs(crack.prestress.integral(x, entry)) <= 1e-9
-
-
-# The algebra of the paper: each formula over the one derived from its equations, at random layers
-# of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
-LAYERS, SEED, DEGREE = 200, 20210501, 4
 
 
 @dataclasses.dataclass(frozen=True)

@@ -25,6 +25,8 @@ RATES = [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6)]
 BALANCED = [*product(SPRUNG + UNSPRUNG, RATES), *product(SPRUNG, [(0.0, -0.3)])]
 DAMPED = ("displacement, damped", "stress, damped")
 STEPS = (0.2, 0.1, 0.05)
+ORDERS = [(order, name, tol.ORDER_ABOVE) for order in (4, 6) for name in ("release_time", "slip")]
+ORDERS += [(order, "slip", math.inf) for order in (3, 5)]
 
 
 @cache
@@ -55,10 +57,6 @@ def orders(errors) -> np.ndarray:
 
 def slope(steps, errors) -> float:
     return np.polyfit(np.log(steps), np.log(errors), 1)[0]
-
-
-ORDERS = [(order, name, tol.ORDER_ABOVE) for order in (4, 6) for name in ("release_time", "slip")]
-ORDERS += [(order, "slip", math.inf) for order in (3, 5)]
 
 
 @pytest.mark.parametrize(("order", "quantity", "above"), ORDERS)

@@ -12,6 +12,11 @@ from slippulse.measurement.fronts import arrival, fit_front, position_at
 from slippulse.measurement.pulses import leading_pulse
 
 GAMMA = 2.0 / 3.0
+SPEED = sp.theory.front_speed(0.4, 0.3, "elastic")
+STEADY = [(0.25, 0.55, beta, 1.0686) for beta in (0.0, 1e-3, 0.05)] + [(0.4, 0.65, 3e-3, SPEED)]
+# On the right the pre-stress falls from 1 to 1/2 over TAIL_LENGTH, and is 0 from there on.
+TAIL_LEVEL, TAIL_LENGTH, TAIL_RATIO = -0.5, 3.0, 0.1
+X_MINUS, ARREST = -4.5, 9.1247
 
 
 def run_of(left, right=None, width=1.0, *, gamma=0.0, **values):
@@ -147,10 +152,6 @@ def test_the_papers_pulse_is_the_undamped_solution(tau, gamma):
     check_equation(pulse, tau, gamma, 0.0, v)
 
 
-SPEED = sp.theory.front_speed(0.4, 0.3, "elastic")
-STEADY = [(0.25, 0.55, beta, 1.0686) for beta in (0.0, 1e-3, 0.05)] + [(0.4, 0.65, 3e-3, SPEED)]
-
-
 @pytest.mark.parametrize(("tau", "gamma", "beta", "v"), STEADY)
 def test_the_steady_pulse_solves_its_equation(tau, gamma, beta, v):
     check_equation(sp.theory.steady_pulse(tau, gamma, beta, v), tau, gamma, beta, v)
@@ -170,11 +171,6 @@ def check_equation(pulse, tau, gamma, beta, v):
     assert (velocity[-1], slip[-1]) == pytest.approx((0.0, pulse.slip), abs=tol.QUADRATURE / gamma)
     assert pulse.stress_drop == pytest.approx(gamma * pulse.slip, rel=tol.PULSE_THEORY)
     assert pulse.peak_velocity == pytest.approx(velocity.max(), rel=tol.PULSE_EQUATION)
-
-
-# On the right the pre-stress falls from 1 to 1/2 over TAIL_LENGTH, and is 0 from there on.
-TAIL_LEVEL, TAIL_LENGTH, TAIL_RATIO = -0.5, 3.0, 0.1
-X_MINUS, ARREST = -4.5, 9.1247
 
 
 class EndingTail(sp.Prestress):

@@ -23,6 +23,10 @@ SETTINGS = settings(max_examples=600, suppress_health_check=list(HealthCheck), *
 FEWER = settings(SETTINGS, max_examples=200, phases=[Phase.generate])
 # The number of scenes of each kind.
 seen: collections.Counter = collections.Counter()
+# A front of the textbook scheme that moves by a block a step, near the end of its lattice.
+FAST_PROFILE = sp.Prestress(-3.0, 0.95, 1.0, bumps=((0.0, 1.0, 0.5),))
+FAST_STEP = {"scheme": "fixed_step", "max_step": 0.07284750148033359, "order": 3}
+FAST = sp.Scene("displacement", FAST_PROFILE, 5.0, 0.1, gamma=1.0, beta=0.3, **FAST_STEP)
 
 
 def real(low: float, high: float, *extremes: float) -> st.SearchStrategy[float]:
@@ -55,12 +59,6 @@ def random_scenes(draw) -> sp.Scene:
     release = draw(st.sampled_from(RELEASES))
     how = release, scheme, min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0])), order
     return sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx, *how)
-
-
-# A front of the textbook scheme that moves by a block a step, near the end of its lattice.
-FAST_PROFILE = sp.Prestress(-3.0, 0.95, 1.0, bumps=((0.0, 1.0, 0.5),))
-FAST_STEP = {"scheme": "fixed_step", "max_step": 0.07284750148033359, "order": 3}
-FAST = sp.Scene("displacement", FAST_PROFILE, 5.0, 0.1, gamma=1.0, beta=0.3, **FAST_STEP)
 
 
 @SETTINGS

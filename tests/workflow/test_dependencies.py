@@ -16,6 +16,10 @@ from workflow.conftest import NAMES, TARGETS
 from slippulse.steps.predict import TOPICS
 from slippulse.steps.reach import declared, sources
 
+LOCK = "requirements.lock"
+# One file of each folder: a test above covers them all.
+EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TOPICS}.values()
+
 
 @pytest.fixture(scope="module")
 def inputs(linked) -> dict[str, set[str]]:
@@ -88,11 +92,6 @@ def downstream(imitated):
         return {*rules}.union(*map(drawn.find_downstream_modules, known)) - NAMES
 
     return find
-
-
-LOCK = "requirements.lock"
-# One file of each folder: a test above covers them all.
-EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TOPICS}.values()
 
 
 def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:

@@ -83,6 +83,10 @@ ALTERED = {
     "exact": ("steady_displacement", {"scheme": "continuum", "spacing": None}),
     "lists": ("steady_stress", {"profiles": None, "left": [-0.5], "right": [0.0]}),
 }
+# Values that are put in place of any other.
+ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
+ODD += ["x" * 2000, "a\nb", "stress", [], [[]], [1, 0.2], [[1, 0.2]], [[1, 0.2, 0.3]], [None], {}]
+ODD += [{"a": 1}, {"time": 1.0}, {"": {}}, [{"left": 1}], ["samples"], {"fixed": 0.1}, [1e-300]]
 
 
 @pytest.fixture(scope="module")
@@ -113,12 +117,6 @@ def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, monkeypatch, case
         read_config(shipped, [MISTAKES[case]["overlay"]])
     assert_one_clear_message(str(refusal.value), MISTAKES[case]["refusal"].splitlines())
     assert not [*tmp_path.iterdir()]
-
-
-# Values that are put in place of any other.
-ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
-ODD += ["x" * 2000, "a\nb", "stress", [], [[]], [1, 0.2], [[1, 0.2]], [[1, 0.2, 0.3]], [None], {}]
-ODD += [{"a": 1}, {"time": 1.0}, {"": {}}, [{"left": 1}], ["samples"], {"fixed": 0.1}, [1e-300]]
 
 
 def mutated(value, chance: random.Random) -> object:

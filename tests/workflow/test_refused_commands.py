@@ -39,6 +39,8 @@ SLOW = {
 }
 COMMANDS = [pytest.param(*case, id=name) for name, case in COMMANDS.items()]
 COMMANDS += [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
+SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
+ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
 
 
 @pytest.fixture
@@ -54,9 +56,6 @@ def said(command, folder, code, environment=None) -> str:
     result = subprocess.run(command, cwd=folder, env=environment, **options)
     assert result.returncode == code, result.stdout + result.stderr
     return result.stdout + result.stderr
-
-
-SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
 
 
 @pytest.mark.parametrize(("overlay", "arguments", "refusal"), COMMANDS)
@@ -156,9 +155,6 @@ def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, monkeypatc
     # Python prints a text that a process ends with, and the code is 1.
     text = ended.value.code if code == 1 else capsys.readouterr().err.rstrip("\n")
     assert code in (1, ended.value.code) and named in text and "\n" not in text
-
-
-ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
 
 
 @pytest.mark.parametrize("text", ODD_NOTES)
