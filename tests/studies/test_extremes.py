@@ -13,22 +13,14 @@ from slippulse.studies.extremes import Outcome
 
 WRONG = "WRONG WITHOUT A FLAG"
 # Each family, its number of cases, and where its last case is.
-FAMILIES = {
-    "level near 1": (3, "tau_0 = 0.9999"),
-    "level near 0": (6, "tau_0 = 0.01, dx = 0.01"),
-    "gamma": (8, "gamma dx^2 = 10"),
-    "damping": (7, "beta/dx = 100, elastic"),
-    "spacing": (7, "dx = 0.001"),
-    "nucleation": (4, "W = 1000"),
-    "negative level": (8, "tau_l = -100, dx 0.001, b 0.1, r 60"),
-    "duration": (3, "t = 100000"),
-    "float32": (3, "state, gamma = 0.001"),
-    "peak": (4, "1 + 0.001"),
-    "two nucleations": (2, "20 apart"),
-    "barrier": (2, "depth 0.2"),
-    "damping sign": (1, "as printed"),
-    "step": (2, "3 dx, fixed_step"),
-}
+FAMILIES = {"level near 1": (3, "tau_0 = 0.9999"), "level near 0": (6, "tau_0 = 0.01, dx = 0.01")}
+FAMILIES |= {"gamma": (8, "gamma dx^2 = 10"), "damping": (7, "beta/dx = 100, elastic")}
+FAMILIES |= {"spacing": (7, "dx = 0.001"), "nucleation": (4, "W = 1000")}
+FAMILIES |= {"negative level": (8, "tau_l = -100, dx 0.001, b 0.1, r 60")}
+FAMILIES |= {"duration": (3, "t = 100000"), "float32": (3, "state, gamma = 0.001")}
+FAMILIES |= {"peak": (4, "1 + 0.001"), "two nucleations": (2, "20 apart")}
+FAMILIES |= {"barrier": (2, "depth 0.2"), "damping sign": (1, "as printed")}
+FAMILIES |= {"step": (2, "3 dx, fixed_step")}
 
 
 @pytest.mark.parametrize(

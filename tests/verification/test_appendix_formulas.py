@@ -1,7 +1,7 @@
 """Formulas of the appendices, as printed, against the code and the paper's equations."""
 
-import dataclasses
 import itertools
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -102,57 +102,31 @@ def test_the_left_front_takes_for_ever():
         assert abs(crack.prestress.integral(x, entry)) <= 1e-9
 
 
-@dataclasses.dataclass(frozen=True)
-class Layer:
-    """An elastic layer on a rigid substrate: sections II and IV A and appendix B of the paper."""
-
-    thickness: float
-    density: float
-    lame: float
-    shear_modulus: float
-    static_friction: float
-    kinetic_friction: float
-    normal_stress: float
-
-    @property
-    def modulus(self) -> float:
-        return self.lame + 2.0 * self.shear_modulus
-
-    @property
-    def gamma(self) -> float:
-        return 2.0 * self.shear_modulus / self.modulus
-
-    @property
-    def wave_speed(self) -> float:
-        return np.sqrt(self.modulus / self.density)
-
-    @property
-    def time_scale(self) -> float:
-        return self.thickness / self.wave_speed
-
-    @property
-    def friction_drop(self) -> float:
-        return (self.static_friction - self.kinetic_friction) * self.normal_stress
-
-    def slip_scale(self, boundary: str) -> float:
-        factor = 2.0 if boundary == "displacement" else 1.0
-        return factor * self.thickness * self.friction_drop / self.modulus
-
-    def prestress(self, shear_stress: float) -> float:
-        excess = shear_stress / self.normal_stress - self.kinetic_friction
-        return excess / (self.static_friction - self.kinetic_friction)
-
-
 def random_layers():
-    """Layers of rock-like properties, each with a pre-stress and a generator of its own."""
+    """Elastic layers on a rigid substrate (sections II and IV A and appendix B of the paper).
+
+    They have properties of rock; each comes with a pre-stress and a generator of its own.
+    """
     random = np.random.default_rng(SEED)
     for i in range(LAYERS):
         kinetic, between = random.uniform(0.1, 0.7), random.uniform
         powers = {"thickness": (-3, 5), "lame": (6, 11), "shear_modulus": (6, 11)}
-        rock = {name: 10.0 ** between(*ends) for name, ends in powers.items()}
-        rock |= {"density": between(1e3, 4e3), "normal_stress": 10.0 ** between(4, 8)}
-        rock |= {"static_friction": kinetic + between(0.01, 0.3), "kinetic_friction": kinetic}
-        yield Layer(**rock), between(0.05, 0.95), np.random.default_rng([SEED, i])
+        rock = SimpleNamespace(**{name: 10.0 ** between(*ends) for name, ends in powers.items()})
+        rock.density, rock.normal_stress = between(1e3, 4e3), 10.0 ** between(4, 8)
+        rock.static_friction, rock.kinetic_friction = kinetic + between(0.01, 0.3), kinetic
+        rock.modulus = rock.lame + 2.0 * rock.shear_modulus
+        rock.gamma = 2.0 * rock.shear_modulus / rock.modulus
+        rock.wave_speed = np.sqrt(rock.modulus / rock.density)
+        rock.time_scale = rock.thickness / rock.wave_speed
+        rock.friction_drop = (rock.static_friction - kinetic) * rock.normal_stress
+        slip = rock.thickness * rock.friction_drop / rock.modulus
+        rock.slip_scale = {"displacement": 2.0 * slip, "stress": slip}
+        yield rock, between(0.05, 0.95), np.random.default_rng([SEED, i])
+
+
+def prestress(layer, shear_stress: float) -> float:
+    excess = shear_stress / layer.normal_stress - layer.kinetic_friction
+    return excess / (layer.static_friction - layer.kinetic_friction)
 
 
 def relative(one, other) -> float:
@@ -216,14 +190,14 @@ def nondimensional_form(layer, tau, random):
     height, time = layer.thickness, layer.time_scale
     ratios = []
     for boundary, halved in (("displacement", 2.0), ("stress", 1.0)):
-        slip = layer.slip_scale(boundary)
+        slip = layer.slip_scale[boundary]
         inertia = layer.density * height * slip / time**2 / halved
         shear = random.uniform(0.0, 1.0) * layer.normal_stress
         driving = shear - layer.kinetic_friction * layer.normal_stress
         ratios += [
             layer.modulus * height / halved * slip / height**2 / inertia,
             1.0 + driving / inertia - driving / layer.friction_drop,
-            1.0 + layer.prestress(shear) - driving / layer.friction_drop,
+            1.0 + prestress(layer, shear) - driving / layer.friction_drop,
         ]
         if boundary == "displacement":
             ratios.append(layer.shear_modulus / height * slip / inertia / layer.gamma)
@@ -272,7 +246,7 @@ def dimensional_lengths(layer, tau, factor=1.0) -> np.ndarray:
 def dimensional_peak_velocity(layer, tau, random):
     """Twice the peak as printed in section IV A, and that of the paper's pulse by the scales."""
     printed = layer.friction_drop / np.sqrt(2.0 * layer.shear_modulus * layer.density)
-    scaled = layer.slip_scale("displacement") / layer.time_scale / np.sqrt(layer.gamma)
+    scaled = layer.slip_scale["displacement"] / layer.time_scale / np.sqrt(layer.gamma)
     return [2.0 * printed / scaled]
 
 
@@ -289,7 +263,7 @@ def damage_zone_in_series(layer, tau, random):
 def burridge_knopoff_identity(layer, tau, random):
     """Forces of springs on blocks at distance H, and those of the scheme at dx = 1."""
     slip, load = random.normal(size=32), random.uniform(-1.0, 1.0, size=32)
-    scale, mass = layer.slip_scale("displacement"), 0.5 * layer.density * layer.thickness**2
+    scale, mass = layer.slip_scale["displacement"], 0.5 * layer.density * layer.thickness**2
     force = scale * (0.5 * layer.modulus * second_difference(slip) - layer.shear_modulus * slip)
     force += layer.thickness * layer.friction_drop * load
     scheme = second_difference(slip) - layer.gamma * slip + load
@@ -301,7 +275,7 @@ FORMULAS += (prestress_is_initial_displacement, units_wave_speed, pulse_algebra)
 FORMULAS += (transition_estimate_algebra, burridge_knopoff_identity, dimensional_peak_velocity)
 ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
     # Equation (7) at the static strength, forwards.
-    "static_threshold": lambda one, *_: [one.prestress(one.static_friction * one.normal_stress)],
+    "static_threshold": lambda one, *_: [prestress(one, one.static_friction * one.normal_stress)],
     "dimensional_transition_length": lambda rock, tau, _: dimensional_lengths(rock, tau)[:1],
     "dimensional_width": lambda rock, tau, _: dimensional_lengths(rock, tau)[1:],
     "transition_length_scales_with_H": lambda one, tau, _: dimensional_lengths(one, tau, 2.0) / 2.0,

@@ -37,8 +37,8 @@ SLOW = {
         ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
     ),
 }
-COMMANDS = [pytest.param(*case, id=name) for name, case in COMMANDS.items()]
-COMMANDS += [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
+CASES = [pytest.param(*case, id=name) for name, case in COMMANDS.items()]
+CASES += [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
 SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
 ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
 
@@ -58,7 +58,7 @@ def said(command, folder, code, environment=None) -> str:
     return result.stdout + result.stderr
 
 
-@pytest.mark.parametrize(("overlay", "arguments", "refusal"), COMMANDS)
+@pytest.mark.parametrize(("overlay", "arguments", "refusal"), CASES)
 def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal):
     (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
     text = said([*SNAKEMAKE, *arguments.split(" ")], folder, 1)
