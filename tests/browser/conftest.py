@@ -88,6 +88,14 @@ def explorer(tmp_path_factory):
     return path
 
 
+@pytest.fixture
+def page(explorer, opened) -> Iterator[Page]:
+    """The explorer on a wide screen, when it has drawn."""
+    with opened(explorer, 1440) as page:
+        settled(page)
+        yield page
+
+
 def settled(page: Page) -> None:
     """Wait until the page has drawn what it was told."""
     page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")

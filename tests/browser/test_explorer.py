@@ -36,27 +36,26 @@ def log_uniform(random: np.random.Generator, smallest: float, largest: float) ->
     return float(np.exp(random.uniform(np.log(smallest), np.log(largest))))
 
 
-def test_its_numbers_are_those_of_the_library(explorer, opened):
+def test_its_numbers_are_those_of_the_library(page):
     random = np.random.default_rng(16)
     scenes = [random_scene(random, k) for k in range(400)]
-    with opened(explorer) as page:
-        laws = page.evaluate(
-            """scenes => scenes.map((s) => {
-                const v = 1 / frontLaw(DATA.law, s.ratio, s.release)(1 - s.right);
-                const pulse = steadyPulse({ ...s, right: s.left, beta: 0.1 * s.ratio }, v);
-                return [v, pulse.slip, pulse.width];
-            })""",
-            scenes,
-        )
-        ruptures = page.evaluate(
-            """scenes => scenes.map((scene) => {
-                const rupture = new Rupture(scene, DATA.law);
-                const first = rupture.transition();
-                const pulse = rupture.pulse(3 * first.transitionTime, first.firstStick);
-                return { ...first, ...pulse, slipCentre: rupture.slip(0, rupture.stick(0)) };
-            })""",
-            scenes[:200],
-        )
+    laws = page.evaluate(
+        """scenes => scenes.map((s) => {
+            const v = 1 / frontLaw(DATA.law, s.ratio, s.release)(1 - s.right);
+            const pulse = steadyPulse({ ...s, right: s.left, beta: 0.1 * s.ratio }, v);
+            return [v, pulse.slip, pulse.width];
+        })""",
+        scenes,
+    )
+    ruptures = page.evaluate(
+        """scenes => scenes.map((scene) => {
+            const rupture = new Rupture(scene, DATA.law);
+            const first = rupture.transition();
+            const pulse = rupture.pulse(3 * first.transitionTime, first.firstStick);
+            return { ...first, ...pulse, slipCentre: rupture.slip(0, rupture.stick(0)) };
+        })""",
+        scenes[:200],
+    )
     for scene, (speed, *sizes) in zip(scenes, laws, strict=True):
         exact = front_speed(scene["right"], scene["ratio"], scene["release"])
         assert speed == pytest.approx(exact, rel=EXPLORER_SPEED), scene
@@ -79,22 +78,21 @@ def test_its_numbers_are_those_of_the_library(explorer, opened):
         assert {name: numbers[name] for name in exact} == pytest.approx(exact, rel=EXPLORER), scene
 
 
-def test_fronts_into_negative_pre_stress_are_those_of_the_library(explorer, opened):
+def test_fronts_into_negative_pre_stress_are_those_of_the_library(page):
     cases = [(-0.5, 0.5, 0.65, 0.0), (0.7, -0.3, 0.65, 0.0), (-0.2, -0.4, 0.65, 0.0)]
     cases += [(-0.5, 0.5, 0.65, 0.5), (-0.5, 0.0, 0.0, 0.0), (-0.3, -0.5, 0.0, 0.0)]
     cases.append((-0.5, 0.2, 0.0, 0.5))
     names = ("left", "right", "gamma", "alpha")
     scenes = [SCENE | dict(zip(names, case, strict=True)) | {"end": 12.0} for case in cases]
-    with opened(explorer) as page:
-        shown = page.evaluate(
-            """scenes => scenes.map((scene) => {
-                const rupture = new Rupture(scene, DATA.law);
-                const stopped = [rupture.left, rupture.right].map(
-                    (front) => Boolean(front.slow && front.slow.stopped));
-                return [[0.3, 0.6, 1].flatMap((part) => rupture.fronts(part * scene.end)), stopped];
-            })""",
-            scenes,
-        )
+    shown = page.evaluate(
+        """scenes => scenes.map((scene) => {
+            const rupture = new Rupture(scene, DATA.law);
+            const stopped = [rupture.left, rupture.right].map(
+                (front) => Boolean(front.slow && front.slow.stopped));
+            return [[0.3, 0.6, 1].flatMap((part) => rupture.fronts(part * scene.end)), stopped];
+        })""",
+        scenes,
+    )
     for scene, (fronts, stopped) in zip(scenes, shown, strict=True):
         prestress = Prestress(scene["left"], scene["right"])
         exact = Rupture(prestress, scene["gamma"], 0.1, "total", scene["end"], 1, scene["alpha"])
@@ -103,24 +101,23 @@ def test_fronts_into_negative_pre_stress_are_those_of_the_library(explorer, open
         assert stopped == [end.reason == "stops" for end in exact.front_ends[0]]
 
 
-def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(explorer, opened):
+def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(page):
     rates = [-0.3, 0.0, 0.4, 0.7, 0.9]
-    with opened(explorer) as page:
-        times = page.evaluate(
-            """scenes => scenes.map(
-                (scene) => new Rupture(scene, DATA.law).transition().transitionTime)""",
-            [SCENE | {"alpha": alpha} for alpha in rates],
-        )
-        slip, critical, exists_below, exists_above = page.evaluate(
-            """scene => {
-                const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5);
-                const critical = criticalRate(scene.gamma, v);
-                const pulse = (alpha) => steadyPulse({ ...scene, beta: 0, alpha: alpha }, v);
-                const exists = [0.99, 1.01].map((part) => pulse(part * critical) !== null);
-                return [pulse(0.4).slip, critical, ...exists];
-            }""",
-            SCENE,
-        )
+    times = page.evaluate(
+        """scenes => scenes.map(
+            (scene) => new Rupture(scene, DATA.law).transition().transitionTime)""",
+        [SCENE | {"alpha": alpha} for alpha in rates],
+    )
+    slip, critical, exists_below, exists_above = page.evaluate(
+        """scene => {
+            const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5);
+            const critical = criticalRate(scene.gamma, v);
+            const pulse = (alpha) => steadyPulse({ ...scene, beta: 0, alpha: alpha }, v);
+            const exists = [0.99, 1.01].map((part) => pulse(part * critical) !== null);
+            return [pulse(0.4).slip, critical, ...exists];
+        }""",
+        SCENE,
+    )
     ruptures = [Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 20.0, 1, alpha) for alpha in rates]
     exact = [rupture.transition.time for rupture in ruptures]
     assert times == pytest.approx(exact, rel=EXPLORER_SPEED)
@@ -128,72 +125,67 @@ def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(ex
     assert exists_below and not exists_above
 
 
-def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(explorer, opened):
-    with opened(explorer) as page:
+def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(page):
+    def speed() -> str:
+        settled(page)
+        return page.locator("#exact tbody tr td").first.text_content()
 
-        def speed() -> str:
-            settled(page)
-            return page.locator("#exact tbody tr td").first.text_content()
+    def axes() -> list[str]:
+        texts = page.locator("#map > text, #velocity > text, #slip > text").all_text_contents()
+        return [text for text in texts if "trans" not in text]
 
-        def axes() -> list[str]:
-            texts = page.locator("#map > text, #velocity > text, #slip > text").all_text_contents()
-            return [text for text in texts if "trans" not in text]
-
-        first, drawn = speed(), axes()
-        finer, both = page.locator("[data-story]").all()[1:]
-        finer.press("Enter")
-        assert float(speed()) > float(first)
-        assert page.locator("#map .ghost").count() == 1
-        both.press("Enter")
-        assert speed() == first
-        assert page.locator("#ratio").text_content() == "0.1"
-        press(page, "#gamma", "End")
-        assert axes() == drawn
+    first, drawn = speed(), axes()
+    finer, both = page.locator("[data-story]").all()[1:]
+    finer.press("Enter")
+    assert float(speed()) > float(first)
+    assert page.locator("#map .ghost").count() == 1
+    both.press("Enter")
+    assert speed() == first
+    assert page.locator("#ratio").text_content() == "0.1"
+    press(page, "#gamma", "End")
+    assert axes() == drawn
 
 
-def test_every_slider_is_reached_by_keyboard(explorer, opened):
-    with opened(explorer) as page:
-        reached = []
-        for _ in range(40):
-            page.keyboard.press("Tab")
-            reached.append(page.evaluate("document.activeElement.id"))
+def test_every_slider_is_reached_by_keyboard(page):
+    reached = []
+    for _ in range(40):
+        page.keyboard.press("Tab")
+        reached.append(page.evaluate("document.activeElement.id"))
     assert [name for name in reached if name in SLIDERS] == SLIDERS
 
 
 @pytest.mark.parametrize("name", SLIDERS)
-def test_every_setting_works_by_keyboard_and_typed(explorer, opened, name):
-    with opened(explorer) as page:
-        slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
-        assert page.locator(f"label[for={name}]").text_content()
-        assert typed.get_attribute("aria-label")
-        values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
-        for key in ("ArrowLeft", "End", "Home"):
-            press(page, f"#{name}", key)
-            values.add(typed.input_value())
-            pictures.add(page.locator("#map").inner_html())
-            assert f"{name}={float(typed.input_value()):g}" in page.url
-        # Spacing and damping at the end of their range may give the b that there was.
-        assert len(values) == 4 and len(pictures) >= 3
-        typed.fill("0.4")
-        press(page, f"#{name}-typed", "Enter")
-        assert slider.get_attribute("aria-valuetext") == typed.input_value()
+def test_every_setting_works_by_keyboard_and_typed(page, name):
+    slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
+    assert page.locator(f"label[for={name}]").text_content()
+    assert typed.get_attribute("aria-label")
+    values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
+    for key in ("ArrowLeft", "End", "Home"):
+        press(page, f"#{name}", key)
+        values.add(typed.input_value())
+        pictures.add(page.locator("#map").inner_html())
+        assert f"{name}={float(typed.input_value()):g}" in page.url
+    # Spacing and damping at the end of their range may give the b that there was.
+    assert len(values) == 4 and len(pictures) >= 3
+    typed.fill("0.4")
+    press(page, f"#{name}-typed", "Enter")
+    assert slider.get_attribute("aria-valuetext") == typed.input_value()
 
 
-def test_an_address_holds_every_setting(explorer, opened):
-    with opened(explorer) as page:
-        address = "left=0.32&right=0.32&width=1&gamma=0.5&beta=0.001&dx=0.01&alpha=0&end=12"
-        page.goto(f"{explorer.as_uri()}#{address}&release=elastic&held=false")
-        page.reload()
-        settled(page)
-        assert page.locator("[name=held]:checked").get_attribute("value") == "false"
-        assert not page.locator("#simulated").is_visible()
-        page.locator("[name=held][value=true]").check()
-        page.locator("[name=release][value=total]").check()
-        settled(page)
-        assert "here 0.32" in page.locator("#nearest").text_content()
-        press(page, "#visit", "Enter")
-        shown = [page.locator(f"#{name}-typed").input_value() for name in SLIDERS[:6]]
-        assert shown == ["0.001", "0.01", "0.3", "0.3", "1", "0.5"]
+def test_an_address_holds_every_setting(page, explorer):
+    address = "left=0.32&right=0.32&width=1&gamma=0.5&beta=0.001&dx=0.01&alpha=0&end=12"
+    page.goto(f"{explorer.as_uri()}#{address}&release=elastic&held=false")
+    page.reload()
+    settled(page)
+    assert page.locator("[name=held]:checked").get_attribute("value") == "false"
+    assert not page.locator("#simulated").is_visible()
+    page.locator("[name=held][value=true]").check()
+    page.locator("[name=release][value=total]").check()
+    settled(page)
+    assert "here 0.32" in page.locator("#nearest").text_content()
+    press(page, "#visit", "Enter")
+    shown = [page.locator(f"#{name}-typed").input_value() for name in SLIDERS[:6]]
+    assert shown == ["0.001", "0.01", "0.3", "0.3", "1", "0.5"]
 
 
 def test_only_runs_that_the_page_can_compute_are_shown():

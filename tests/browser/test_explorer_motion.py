@@ -66,45 +66,39 @@ def test_dragging_changes_the_pre_stress(explorer, opened, width):
         assert left < right == both[1]
 
 
-def test_a_dragged_level_into_negative_pre_stress_moves_nothing_else(explorer, opened):
-    with opened(explorer, 1440) as page:
-        settled(page)
-        page.locator("#alike").uncheck()
-        with still(page):
-            drag(page, inside(page, "prestress", 0.85, 0.8), inside(page, "prestress", 0.45, 0.8))
-            drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.45, 0.2))
-            assert max(levels(page)) < 0.0
+def test_a_dragged_level_into_negative_pre_stress_moves_nothing_else(page):
+    page.locator("#alike").uncheck()
+    with still(page):
+        drag(page, inside(page, "prestress", 0.85, 0.8), inside(page, "prestress", 0.45, 0.8))
+        drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.45, 0.2))
+        assert max(levels(page)) < 0.0
 
 
-def test_the_pointer_reads_the_map(explorer, opened):
-    with opened(explorer, 1440) as page:
-        settled(page)
-        with still(page):
-            said = []
-            for across, down in ((0.1, 0.15), (0.2, 0.5), (0.9, 0.45)):
-                page.mouse.move(*inside(page, "map", across, down))
-                said.append(reading(page))
-        assert "not yet released" in said[0]
-        assert re.search(r"slides, slip velocity \d", said[1])
-        assert "stuck again" in said[2]
-        page.mouse.move(5, 5)
-        assert reading(page) not in said
-        page.mouse.click(*inside(page, "map", 0.2, 0.5))
-        page.mouse.move(5, 5)
-        assert reading(page) == said[1]
+def test_the_pointer_reads_the_map(page):
+    with still(page):
+        said = []
+        for across, down in ((0.1, 0.15), (0.2, 0.5), (0.9, 0.45)):
+            page.mouse.move(*inside(page, "map", across, down))
+            said.append(reading(page))
+    assert "not yet released" in said[0]
+    assert re.search(r"slides, slip velocity \d", said[1])
+    assert "stuck again" in said[2]
+    page.mouse.move(5, 5)
+    assert reading(page) not in said
+    page.mouse.click(*inside(page, "map", 0.2, 0.5))
+    page.mouse.move(5, 5)
+    assert reading(page) == said[1]
 
 
-def test_the_keyboard_reads_the_map(explorer, opened):
-    with opened(explorer) as page:
-        settled(page)
-        page.locator("#time").press("Home")
-        assert "t = 0, x = 0: not yet released" in reading(page)
-        for _ in range(3):
-            page.locator("#time").press("PageUp")
-        assert "slides" in reading(page)
-        page.locator("#place").press("Home")
-        assert "not yet released" in reading(page)
-        assert page.locator("#place").get_attribute("aria-valuetext") in reading(page)
+def test_the_keyboard_reads_the_map(page):
+    page.locator("#time").press("Home")
+    assert "t = 0, x = 0: not yet released" in reading(page)
+    for _ in range(3):
+        page.locator("#time").press("PageUp")
+    assert "slides" in reading(page)
+    page.locator("#place").press("Home")
+    assert "not yet released" in reading(page)
+    assert page.locator("#place").get_attribute("aria-valuetext") in reading(page)
 
 
 def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(explorer, opened):
@@ -143,43 +137,40 @@ def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(
     assert heights == sorted(heights, reverse=True)
 
 
-def test_play_advances_pauses_and_begins_anew(explorer, opened):
-    with opened(explorer, 1440) as page:
-        settled(page)
-        page.locator("#time").press("End")
-        drawn = page.locator("#blocks").inner_html()
-        play = page.locator("#play")
-        with still(page):
-            play.press("Enter")
-            assert play.text_content() == "Pause"
-            page.wait_for_function("Number(document.getElementById('time').value) > 100")
-            assert page.locator("#blocks").inner_html() != drawn
-            play.press("Enter")
-            assert play.text_content() == "Play"
-            paused = time_of(page)
-            page.wait_for_timeout(200)
-            assert paused == time_of(page) < 1000
-        page.locator("#time").fill("990")
+def test_play_advances_pauses_and_begins_anew(page):
+    page.locator("#time").press("End")
+    drawn = page.locator("#blocks").inner_html()
+    play = page.locator("#play")
+    with still(page):
         play.press("Enter")
-        page.wait_for_function("document.getElementById('play').textContent === 'Play'")
-        assert time_of(page) == 1000
+        assert play.text_content() == "Pause"
+        page.wait_for_function("Number(document.getElementById('time').value) > 100")
+        assert page.locator("#blocks").inner_html() != drawn
+        play.press("Enter")
+        assert play.text_content() == "Play"
+        paused = time_of(page)
+        page.wait_for_timeout(200)
+        assert paused == time_of(page) < 1000
+    page.locator("#time").fill("990")
+    play.press("Enter")
+    page.wait_for_function("document.getElementById('play').textContent === 'Play'")
+    assert time_of(page) == 1000
 
 
-def test_little_motion_is_asked_for_and_given(explorer, opened):
-    with opened(explorer) as page:
-        page.emulate_media(reduced_motion="reduce")
-        page.reload()
-        settled(page)
-        page.evaluate(
-            """() => {
-                window.times = [];
-                const drawn = drawBlocks;
-                drawBlocks = (found, time) => { window.times.push(time); drawn(found, time); };
-            }"""
-        )
-        page.locator("#play").press("Enter")
-        page.wait_for_timeout(1800)
-        times = page.evaluate("window.times")
+def test_little_motion_is_asked_for_and_given(page):
+    page.emulate_media(reduced_motion="reduce")
+    page.reload()
+    settled(page)
+    page.evaluate(
+        """() => {
+            window.times = [];
+            const drawn = drawBlocks;
+            drawBlocks = (found, time) => { window.times.push(time); drawn(found, time); };
+        }"""
+    )
+    page.locator("#play").press("Enter")
+    page.wait_for_timeout(1800)
+    times = page.evaluate("window.times")
     assert 2 <= len(times) <= 5
 
 
