@@ -56,6 +56,7 @@ ReturnToService=2
 NodeName=localhost NodeAddr=127.0.0.1 CPUs={cores} RealMemory={megabytes} State=UNKNOWN
 PartitionName=loopback Nodes=ALL Default=YES MaxTime=60 State=UP
 """
+last_line = lambda text: (text.strip().splitlines() or ["it said nothing"])[-1]
 
 
 def unable(reason: str) -> NoReturn:
@@ -79,10 +80,6 @@ def install() -> None:
         done = subprocess.run(command, env=quiet, capture_output=True, text=True, check=False)
         if done.returncode:
             unable(f"apt-get {arguments[0]} failed: {last_line(done.stderr)}")
-
-
-def last_line(text: str) -> str:
-    return (text.strip().splitlines() or ["it said nothing"])[-1]
 
 
 def find(program: str) -> str | None:

@@ -28,16 +28,13 @@ KINDS = ["kept", "wrong", "missed", "missed_rightly", "unknown"]
 COLUMNS = ["accuracy", "scene", "family", "steps", *KINDS, "cost", "not_kept"]
 BARRIERS = 1000
 RATIOS = (0.0, 0.02, 0.05, 0.1, 0.3, 1.0)
+between = lambda chance, low, high: float(np.exp(chance.uniform(math.log(low), math.log(high))))
 
 
 def profile(left, right, width, *bumps):
     """Pre-stress that is 1 at x = 0 in spite of bumps."""
     others = sum(a * math.exp(-0.5 * (c / w) ** 2) for c, a, w in bumps)
     return sp.Prestress(left, right, width, 1.0 - others + (1e-12 if bumps else 0.0), (), bumps)
-
-
-def between(chance, low, high):
-    return float(np.exp(chance.uniform(math.log(low), math.log(high))))
 
 
 def held_displacement(chance, unit):

@@ -10,13 +10,9 @@ from matplotlib.lines import Line2D
 import slippulse as sp
 from slippulse.measurement.inference import inference, likely
 
-
-def deviation(rows, value, exact):
-    return np.abs(rows[value] / rows[exact] - 1.0)
-
-
-def rises(values) -> bool:
-    return bool((np.diff(values) > 0.0).all())
+deviation = lambda rows, value, exact: np.abs(rows[value] / rows[exact] - 1.0)
+rises = lambda values: bool((np.diff(values) > 0.0).all())
+order = lambda line, error: np.polyfit(np.log(line["dx"]), np.log(error), 1)[0]
 
 
 def select(table, **values):
@@ -31,10 +27,6 @@ def between(marks, line, value: str, along: str = "position"):
     line, marks = line.dropna(subset=value).sort_values(along), marks.dropna(subset=value)
     marks = marks[marks[along].between(line[along].min(), line[along].max())]
     return np.abs(marks[value] - np.interp(marks[along], line[along], line[value]))
-
-
-def order(line, error) -> float:
-    return np.polyfit(np.log(line["dx"]), np.log(error), 1)[0]
 
 
 def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down(draw):

@@ -26,10 +26,7 @@ CLAIM |= {"counted": True, "why": "", "beyond": False, "asked": "", "at_earlier"
 CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": []}
 UNKNOWN = ("held", "failed", "undecided", "ninety", "largest", "exact_median", "exact_largest")
 CLAIM |= dict.fromkeys(UNKNOWN)
-
-
-def read(path: Path):
-    return yaml.safe_load(path.read_text(encoding="utf-8"))
+read = lambda path: yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
 def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0) -> list[dict]:

@@ -11,10 +11,7 @@ GAMMA = 2.0 / 3.0
 # tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.
 AT_WAVE_SPEED = {0.2: 11.45, 0.5: 3.687, 0.8: 1.7205, 0.95: 1.169}
 LAST_TO_STICK = {0.2: 3.44, 0.5: 1.52, 0.8: 1.09}
-
-
-def weakening_for(tau0: float, ratio: float) -> float:
-    return tau0**2 / (GAMMA * ratio)
+weakening_for = lambda tau0, ratio: tau0**2 / (GAMMA * ratio)
 
 
 @pytest.mark.parametrize(

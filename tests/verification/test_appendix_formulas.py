@@ -19,10 +19,8 @@ from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, pape
 # The algebra of the paper: each formula over the one derived from its equations, at random layers
 # of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
 LAYERS, SEED, DEGREE = 200, 20210501, 4
-
-
-def symbol(k: complex, v: float, b: float) -> complex:
-    return 1.0 - 4.0 * np.sin(k / 2.0) ** 2 * (1.0 + 1j * b * v * k) / (v * k) ** 2
+symbol = lambda k, v, b: 1.0 - 4.0 * np.sin(k / 2.0) ** 2 * (1.0 + 1j * b * v * k) / (v * k) ** 2
+second_difference = lambda u: np.roll(u, 1) - 2.0 * u + np.roll(u, -1)
 
 
 @pytest.mark.parametrize("v", [1.05, 1.5, 4.0])
@@ -132,10 +130,6 @@ def prestress(layer, shear_stress: float) -> float:
 def relative(one, other) -> float:
     """1 + the largest difference of two fields over the largest of them."""
     return 1.0 + float(np.max(np.abs(np.subtract(one, other))) / np.max(np.abs(other)))
-
-
-def second_difference(u: np.ndarray) -> np.ndarray:
-    return np.roll(u, 1) - 2.0 * u + np.roll(u, -1)
 
 
 def wave_equation_at_zero(layer, tau, random):

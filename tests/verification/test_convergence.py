@@ -27,6 +27,8 @@ DAMPED = ("displacement, damped", "stress, damped")
 STEPS = (0.2, 0.1, 0.05)
 ORDERS = [(order, name, tol.ORDER_ABOVE) for order in (4, 6) for name in ("release_time", "slip")]
 ORDERS += [(order, "slip", math.inf) for order in (3, 5)]
+orders = lambda errors: np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
+slope = lambda steps, errors: np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 @cache
@@ -49,14 +51,6 @@ def residuals(base: str, steps=STEPS, **accuracy) -> list[float]:
     values = [data.attrs["energy_residual"] for data in runs]
     assert values == sorted(values, reverse=True)
     return values
-
-
-def orders(errors) -> np.ndarray:
-    return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-
-
-def slope(steps, errors) -> float:
-    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
 @pytest.mark.parametrize(("order", "quantity", "above"), ORDERS)

@@ -18,6 +18,7 @@ TABLES_ANEW = {"measure": 1, "study_grid": 1, "join": 3}
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}
 FILES = ("data/{}.nc", "measurements/{}.csv", "uncertainties/{}.csv")
 FILES += ("uncertainties/coarser/{}.csv",)
+targets = lambda sweep, files=FILES: [f"results/{file}".format(sweep) for file in files]
 
 
 def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
@@ -29,10 +30,6 @@ def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **chan
     overlay = {"preset": "draft", "simulations": simulations}
     (folder / name).write_text(json.dumps(overlay), encoding="utf-8")
     return name
-
-
-def targets(sweep: str, files=FILES) -> list[str]:
-    return [f"results/{file}".format(sweep) for file in files]
 
 
 @pytest.fixture(scope="module")
