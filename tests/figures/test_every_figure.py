@@ -35,8 +35,24 @@ PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_it_fits_a_page_is_labelled_and_finite_and_is_written(draw, tmp_path, name):
+def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tmp_path, name):
     table, figure = draw(name).table, draw(name).figure
+    # At the width of the journal; the labels of two axes may meet in their corner.
+    FigureCanvasAgg(figure).draw()
+    ticks, unseen = set(), set()
+    for axis in figure.findobj(Axis):
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks() + axis.get_minor_ticks():
+            labels = {tick.label1, tick.label2}
+            ticks |= labels
+            unseen |= set() if low <= tick.get_loc() <= high else labels
+    texts = {text for text in figure.findobj(Text) if text.get_visible() and text.get_text()}
+    boxes = {text: text.get_window_extent() for text in texts - unseen}
+    for (one, first), (other, second) in combinations(boxes.items(), 2):
+        across = min(first.x1, second.x1) - max(first.x0, second.x0)
+        upwards = min(first.y1, second.y1) - max(first.y0, second.y0)
+        apart = min(across, upwards) <= TOUCHING * figure.dpi
+        assert apart or {one, other} <= ticks, (one.get_text(), other.get_text())
     width, height = figure.get_size_inches()
     assert width <= PAGE + 1e-9 and height <= 9.0
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes]
@@ -50,8 +66,7 @@ def test_it_fits_a_page_is_labelled_and_finite_and_is_written(draw, tmp_path, na
     # Letters and lines have more than 20 grey levels.
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
-    texts = [text for text in figure.findobj(Text) if text.get_visible()]
-    assert min([text.get_fontsize() for text in texts if text.get_text().strip()]) > SMALLEST - 1e-9
+    assert min(text.get_fontsize() for text in texts if text.get_text().strip()) > SMALLEST - 1e-9
     page = figure.bbox.padded(1.0)
     for legend in figure.findobj(Legend):
         assert page.count_contains(legend.get_window_extent().get_points()) == 2, "cut off"
@@ -245,24 +260,3 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
     deviations = (runs["length"] / runs["paper_length"] - 1.0).abs()
     medians = deviations.groupby(runs["damping_ratio"]).median()
     assert medians[1.0] > 2.0 * medians[0.0]
-
-
-@pytest.mark.parametrize("name", DRAWN)
-def test_no_two_texts_overlap(draw, name):
-    """At the width of the journal; the labels of two axes may meet in their corner."""
-    figure = draw(name).module.draw(draw(name).table)
-    FigureCanvasAgg(figure).draw()
-    ticks, unseen = set(), set()
-    for axis in figure.findobj(Axis):
-        low, high = sorted(axis.get_view_interval())
-        for tick in axis.get_major_ticks() + axis.get_minor_ticks():
-            labels = {tick.label1, tick.label2}
-            ticks |= labels
-            unseen |= set() if low <= tick.get_loc() <= high else labels
-    texts = {text for text in figure.findobj(Text) if text.get_visible() and text.get_text()}
-    boxes = {text: text.get_window_extent() for text in texts - unseen}
-    for (one, first), (other, second) in combinations(boxes.items(), 2):
-        across = min(first.x1, second.x1) - max(first.x0, second.x0)
-        upwards = min(first.y1, second.y1) - max(first.y0, second.y0)
-        apart = min(across, upwards) <= TOUCHING * figure.dpi
-        assert apart or {one, other} <= ticks, (one.get_text(), other.get_text())

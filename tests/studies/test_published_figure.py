@@ -43,8 +43,9 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
 
 @pytest.mark.parametrize("part", READINGS)
 @pytest.mark.parametrize("release", ["total", "elastic"])
-def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, release, part):
-    best = inference(table, part=part)[release]
+def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release, part):
+    fits = inference(table, part=part)
+    best = fits[release]
     fitted = ~panel.readings["arrow"] | (part == "arrows")
     assert fitted.sum() == READINGS[part]
     ratio, dx = best["damping_ratio"], best["dx"]
@@ -57,6 +58,17 @@ def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, pane
     result = least_squares(pulls, near, x_scale=near, diff_step=0.01, xtol=1e-4)
     assert 2.0 * result.cost == pytest.approx(best["chi2"], abs=0.05)
     assert result.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
+    assert fits["best"]["chi2"] == min(fits["total"]["chi2"], fits["elastic"]["chi2"])
+    profile = table[(table["part"] == part) & (table["release"] == release)]
+    line, fitted = curve(profile), profile.loc[profile["weight"] > 0.0, "reading"].unique()
+    for level, (low, high) in best["regions"].items():
+        assert low < best["damping_ratio"] < high
+        chi_square = np.interp([low, high], line["damping_ratio"], line["chi2"])
+        assert chi_square == pytest.approx(best["chi2"] + likely(level), abs=0.15)
+    assert best["chi2"] == pytest.approx(sum(best["pulls"][name] ** 2 for name in fitted))
+    # Less three parameters.
+    assert best["dof"] == READINGS[part] - 3
+    assert [likely(0.95), likely(0.95, 2)] == pytest.approx([3.841, 5.991], abs=1e-3)
 
 
 @pytest.mark.parametrize("part", READINGS)
@@ -70,25 +82,6 @@ def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, 
         trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
         pulls = panel.exact(trial, first["damping_ratio"], "total") + correction - panel.drawn
         assert (weight * (pulls / panel.error) ** 2).sum() > smallest + 0.5
-
-
-@pytest.mark.parametrize("release", ["total", "elastic"])
-@pytest.mark.parametrize("part", READINGS)
-def test_regions_end_where_chi_square_has_risen_enough(table, release, part):
-    result = inference(table, part=part)
-    smallest = min(result["total"]["chi2"], result["elastic"]["chi2"])
-    assert result["best"]["chi2"] == smallest
-    profile = table[(table["part"] == part) & (table["release"] == release)]
-    line, fitted = curve(profile), profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    entry = result[release]
-    for level, (low, high) in entry["regions"].items():
-        assert low < entry["damping_ratio"] < high
-        chi_square = np.interp([low, high], line["damping_ratio"], line["chi2"])
-        assert chi_square == pytest.approx(entry["chi2"] + likely(level), abs=0.15)
-    assert entry["chi2"] == pytest.approx(sum(entry["pulls"][name] ** 2 for name in fitted))
-    # Less three parameters.
-    assert entry["dof"] == READINGS[part] - 3
-    assert [likely(0.95), likely(0.95, 2)] == pytest.approx([3.841, 5.991], abs=1e-3)
 
 
 def test_an_end_beyond_the_fits_is_not_known(table):

@@ -17,7 +17,7 @@ from slippulse.solver.fixed_step import LATTICES
 
 
 @pytest.mark.parametrize("scheme", LATTICES)
-def test_nothing_moves_just_below_the_threshold(scheme):
+def test_every_block_at_or_above_the_threshold_is_released_at_once_and_none_below(scheme):
     profile = sp.Prestress(0.9, 0.9, peak=math.nextafter(1.0, 0.0))
     scene = sp.Scene("stress", profile, 5.0, 0.1, scheme=scheme, resolved_blocks=1)
     run = sp.simulate(scene, sp.Samples([0.0, 1.0, 5.0], [0.0, 0.5]))
@@ -25,10 +25,6 @@ def test_nothing_moves_just_below_the_threshold(scheme):
     assert not np.isfinite(run["release_time"].values).any()
     for name in ("slip", "slip_velocity", "slip_acceleration", "sample_slip", "sample_velocity"):
         assert not run[name].values.any(), name
-
-
-@pytest.mark.parametrize("scheme", LATTICES)
-def test_every_block_at_or_above_the_threshold_is_released_at_once_and_no_other(scheme):
     for peak, blocks in ((1.0, 1), (1.3, 17)):
         profile = sp.Prestress(0.2, 0.5, peak=peak)
         run = sp.simulate(sp.Scene("stress", profile, 0.001, 0.1, scheme=scheme))
