@@ -80,6 +80,21 @@ def snakemake(
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 
+def made(folder: Path, *arguments, **how) -> subprocess.CompletedProcess:
+    """Run Snakemake, which must succeed; returns the completed process."""
+    result = snakemake(folder, *arguments, **how)
+    assert result.returncode == 0, result.stderr
+    return result
+
+
+def refused(folder: Path, *arguments, **how) -> str:
+    """Run Snakemake, which must fail in clear words; returns what it said."""
+    result = snakemake(folder, *arguments, **how)
+    text = result.stdout + result.stderr
+    assert result.returncode != 0 and "Traceback" not in text, text
+    return text
+
+
 def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
     """Rules and how often each is to run, from a dry run."""
     assert result.returncode == 0, result.stderr + result.stdout

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from pipeline_copy import OVERLAY, copy_project, imitate_steps, planned, snakemake
+from pipeline_copy import OVERLAY, copy_project, imitate_steps, made, planned, snakemake
 
 # Targets that together make all files; scenes have some that are only made by name.
 TARGETS = ("everything", "scenes")
@@ -26,7 +26,6 @@ def imitated(project, tmp_path_factory) -> Path:
     folder = copy_project(project, tmp_path_factory.mktemp("imitated") / "copy")
     imitate_steps(folder)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
-    made = snakemake(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2)
-    assert made.returncode == 0, made.stderr
+    made(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2)
     assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
     return folder

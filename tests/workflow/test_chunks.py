@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from pipeline_copy import SWEEP, copy_project, planned, snakemake
+from pipeline_copy import SWEEP, copy_project, made, planned, refused, snakemake
 
 from slippulse.data.store import load_dataset
 
@@ -37,10 +37,9 @@ def folder(project, tmp_path_factory) -> Path:
     """A copy in which a sweep was made whole, kept apart, then in two chunks, one a run longer."""
     folder = copy_project(project, tmp_path_factory.mktemp("chunks"), link=True)
     overlay = write_overlay(folder, "whole.yaml", {"in_two": None})
-    for made in (overlay, write_overlay(folder, "overlay.yaml", CHUNKS)):
-        result = snakemake(folder, "--quiet", "--", *targets("in_two"), overlay=made, cores=2)
-        assert result.returncode == 0, result.stderr
-        if made == overlay:
+    for name in (overlay, write_overlay(folder, "overlay.yaml", CHUNKS)):
+        made(folder, "--quiet", "--", *targets("in_two"), overlay=name, cores=2)
+        if name == overlay:
             shutil.copytree(folder / "results", folder / "whole")
     return folder
 
@@ -106,9 +105,8 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     # A file that the joined files were made from is not missed.
     asked = targets("in_two")
     assert planned(snakemake(folder, "--dry-run", "--", *asked, overlay="overlay.yaml")) == {}
-    result = snakemake(folder, "--", *(lost + asked), overlay="overlay.yaml", cores=2)
-    assert result.returncode == 0, result.stderr
-    assert "Simulating in_two/1-of-2" in result.stderr and "2-of-2\n" not in result.stderr
+    said = made(folder, "--", *(lost + asked), overlay="overlay.yaml", cores=2).stderr
+    assert "Simulating in_two/1-of-2" in said and "2-of-2\n" not in said
     assert [path.read_bytes() for path in joined] == before
 
 
@@ -116,9 +114,7 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     "chunk", ["two/1-of-3", "two/3-of-2", "two/0-of-2", "none/1-of-1", "one/1-of-1"]
 )
 def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
-    result = snakemake(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
-    said = result.stdout + result.stderr
-    assert result.returncode != 0 and "Traceback" not in said
+    said = refused(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
     assert f"target: 'results/data/in_{chunk}.nc'" in said
     assert "allowed: a rule of a single job" in said
 
@@ -127,8 +123,6 @@ def test_a_job_elsewhere_does_not_check_every_run_again(folder):
     wrong = "simulations: {space_time_stress: {left: [1.0]}}"
     (folder / "wrong.yaml").write_text(wrong, encoding="utf-8")
     arguments = ("--dry-run", "--", "results/figures/fig07_damage_zone.png")
-    here = snakemake(folder, *arguments, overlay="wrong.yaml")
-    assert here.returncode != 0
-    assert "space_time_stress.prestress.left: 1.0" in here.stdout + here.stderr
-    elsewhere = snakemake(folder, "--mode", "remote", *arguments, overlay="wrong.yaml")
-    assert elsewhere.returncode == 0, elsewhere.stderr
+    here = refused(folder, *arguments, overlay="wrong.yaml")
+    assert "space_time_stress.prestress.left: 1.0" in here
+    made(folder, "--mode", "remote", *arguments, overlay="wrong.yaml")

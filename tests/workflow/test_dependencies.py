@@ -9,7 +9,7 @@ from pathlib import Path
 
 import grimp
 import pytest
-from pipeline_copy import edges, planned, snakemake
+from pipeline_copy import edges, made, planned, snakemake
 from rules_by_imports import DRAWN, EVERY_SOURCE, FILES, MODULES, PACKAGE, RULES, STUDIED, rules_of
 from workflow.conftest import NAMES, TARGETS
 
@@ -25,8 +25,7 @@ EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TO
 def inputs(linked) -> dict[str, set[str]]:
     """Files that each rule takes, from one look of Snakemake at everything."""
     targets = (*TARGETS, "results/predictions/mine.csv")
-    result = snakemake(linked, "--forceall", "--filegraph", "--", *targets, overlay="overlay.yaml")
-    assert result.returncode == 0, result.stderr
+    result = made(linked, "--forceall", "--filegraph", "--", *targets, overlay="overlay.yaml")
     files = {}
     entry = r'point-size="18">(\w+)</font>(.*?)(?=point-size="18"|\Z)'
     for name, text in re.findall(entry, result.stdout, re.S):
@@ -72,8 +71,8 @@ def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(input
     listed = {file for file in inputs["write_provenance"] if file.startswith("results/")}
     assert inputs["everything"] == listed | {"results/provenance.json", "results/index.html"}
     for name in ("mine", "one", "barrier"):
-        made = (f"data/{name}.nc", f"measurements/{name}.csv", f"uncertainties/{name}.csv")
-        assert {f"results/{file}" for file in made} <= listed
+        files = (f"data/{name}.nc", f"measurements/{name}.csv", f"uncertainties/{name}.csv")
+        assert {f"results/{file}" for file in files} <= listed
     assert {f"results/scenes/one.{ending}" for ending in ("html", "png", "pdf", "csv")} <= listed
     # Data of a figure and of a claim.
     assert {"results/data/steady_stress.nc", "results/measurements/scaling_stress.csv"} <= listed

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import tolerances as tol
-from pipeline_copy import copy_project, snakemake
+from pipeline_copy import copy_project, made
 
 from slippulse import Prestress, theory
 from slippulse.configuration.read import read_overlay
@@ -18,13 +18,12 @@ def make(project, tmp_path_factory):
     """A function that makes a target with an example's overlay and returns its path."""
     folder = copy_project(project, tmp_path_factory.mktemp("examples"), link=True)
 
-    def made(name: str, target: str) -> Path:
+    def make(name: str, target: str) -> Path:
         overlay = f"config/examples/{name}.yaml"
-        result = snakemake(folder, "--config", "preset=draft", "--", target, overlay=overlay)
-        assert result.returncode == 0, result.stderr
+        made(folder, "--config", "preset=draft", "--", target, overlay=overlay)
         return folder / target
 
-    return made
+    return make
 
 
 # A function for each example checks its measured table and the path of its target.

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 from faults import digests
-from pipeline_copy import OVERLAY, planned, snakemake
+from pipeline_copy import OVERLAY, made, planned, refused, snakemake
 from workflow.conftest import TARGETS
 
 from slippulse.data.lock import take
@@ -33,9 +33,7 @@ FIGURE = "figures/fig07_damage_zone"
 
 def run(folder: Path, *targets: str, overlay: str = "overlay.yaml") -> str:
     """Run successfully, and return what the run writes to the terminal."""
-    result = snakemake(folder, "--quiet", "--", *targets, overlay=overlay, cores=2)
-    assert result.returncode == 0, result.stderr
-    return result.stderr
+    return made(folder, "--quiet", "--", *targets, overlay=overlay, cores=2).stderr
 
 
 def verify(folder: Path, overlay: str = "overlay.yaml") -> dict[str, str]:
@@ -206,10 +204,10 @@ OTHERS = {
 }
 
 
-@pytest.mark.parametrize(("command", "reasons", "overlay", "made"), OTHERS.values(), ids=OTHERS)
-def test_results_of_another_overlay_are_made_anew(folder, command, reasons, overlay, made):
+@pytest.mark.parametrize(("command", "reasons", "overlay", "like"), OTHERS.values(), ids=OTHERS)
+def test_results_of_another_overlay_are_made_anew(folder, command, reasons, overlay, like):
     change_and_verify(folder, {command: reasons}, overlay)
-    expected, names = digests(folder, made), digests(folder, "paper").keys()
+    expected, names = digests(folder, like), digests(folder, "paper").keys()
     expected = {name: digest for name, digest in expected.items() if name in names}
     assert "made anew where needed" in run(folder, *PART, overlay=overlay)
     assert expected.items() <= digests(folder).items()
@@ -251,9 +249,8 @@ OPTIONS = {
 def test_nothing_is_removed_that_is_not_made_anew(folder, case):
     (folder / "results/records/data/one.nc.json").unlink()
     before, table = digests(folder), "results/measurements/one.csv"
-    result = snakemake(folder, *OPTIONS[case].split(), "--", table, overlay="overlay.yaml")
-    assert result.returncode == 0, result.stderr
-    assert "as results/data/one.nc: no record; made anew" in result.stderr
+    said = made(folder, *OPTIONS[case].split(), "--", table, overlay="overlay.yaml").stderr
+    assert "as results/data/one.nc: no record; made anew" in said
     assert digests(folder) == before
     # What was not made anew is so by the next run, which Snakemake announces.
     jobs = planned(snakemake(folder, "--dry-run", "--", table, overlay="overlay.yaml"))
@@ -267,9 +264,8 @@ def test_short_names_are_targets_and_a_draft_is_verified_as_a_draft(folder):
         (folder / f"results/{FIGURE}.png").unlink()
         run(folder, name)
         assert (folder / f"results/{FIGURE}.png").exists(), name
-    result = snakemake(folder, "--", "fig077", overlay="overlay.yaml")
-    said = result.stdout + result.stderr
-    assert result.returncode and "target: 'fig077' (did you mean 'fig07'?)" in said
+    said = refused(folder, "--", "fig077", overlay="overlay.yaml")
+    assert "target: 'fig077' (did you mean 'fig07'?)" in said
     for name in ("claims.json", "index.html"):
         (folder / "results" / name).unlink()
     result = snakemake(folder, "--", "verify", overlay="overlay.yaml")
@@ -280,9 +276,9 @@ def test_short_names_are_targets_and_a_draft_is_verified_as_a_draft(folder):
 def test_a_run_is_not_begun_beside_another(folder):
     held = take(folder / "results/.run.lock")
     (folder / "results/kernels/localised.txt").write_text("mine")
-    result = snakemake(folder, "--", "everything", overlay="overlay.yaml")
-    assert result.returncode == 1 and "Another run is at work in this folder" in result.stderr
-    assert "Traceback" not in result.stderr and (folder / "results/kernels/localised.txt").exists()
+    said = refused(folder, "--", "everything", overlay="overlay.yaml")
+    assert "Another run is at work in this folder" in said
+    assert (folder / "results/kernels/localised.txt").exists()
     held.close()
     # A lock of Snakemake that a killed run has left is in nobody's way.
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
