@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.solver.lattice import Lattice
+from slippulse.solver.lattice import FIRST_BLOCKS, Lattice
 from slippulse.solver.solution import solve_on_lattice
 
 HOW = {"beta": 0.1 * 0.04, "max_step": 0.5}
@@ -74,12 +74,15 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 def test_rows_begin_at_different_places_of_their_pages(right):
     """In a page of 4096 bytes, any two beginnings are at least three lines of the cache apart."""
     scene = sp.Scene("displacement", sp.Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8)
-    lattice = Lattice(scene, None, 0.0)
-    for _ in range(6):
-        size = lattice.size
+    size = FIRST_BLOCKS
+    # A duration twice as long lets the lattice grow once at most.
+    for duration in 10.0 * 2.0 ** np.arange(6):
+        lattice = Lattice(replace(scene, duration=duration), None, 0.0)
+        lattice.advance_to_end(None)
         rows = (*lattice.motion.w, *lattice.motion[1:])
         positions = np.sort([row.ctypes.data % 4096 for row in rows])
         assert np.diff(positions, append=positions[0] + 4096).min() >= 3 * 64
         assert np.abs(lattice.motion.tau[-lattice.first_block] - 1.0) < 1e-12
-        lattice._grow()
-        assert 2 * size <= lattice.size < 3 * size + 512
+        assert size <= lattice.size < 3 * size + 512
+        size = lattice.size
+    assert size > 4 * FIRST_BLOCKS
