@@ -12,13 +12,23 @@ function ticks(low, high, count = 5) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
   const first = Math.ceil(low / step);
-  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => (first + k) * step);
+  const last = Math.floor(high / step + 1e-9);
+  return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
 }
 
 // A picture with axes, as wide as the page leaves it so that its letters keep their size.
 class Picture {
   constructor(element, {
-    x, y, labels, height, top: above = 12, before = 58, xTicks = ticks(...x), yTicks = ticks(...y), position = (value) => value, shown = format,
+    x,
+    y,
+    labels,
+    height,
+    top: above = 12,
+    before = 58,
+    xTicks = ticks(...x),
+    yTicks = ticks(...y),
+    position = (value) => value,
+    shown = format,
   }) {
     Object.assign(this, { element, height, ranges: [x, y] });
     element.picture = this;
@@ -31,15 +41,22 @@ class Picture {
     const [low, high] = x.map(position);
     this.x = (value) => left + (right - left) * (position(value) - low) / (high - low);
     this.y = (value) => bottom - (bottom - top) * (value - y[0]) / (y[1] - y[0]);
-    const marks = [
-      ...xTicks.map((tick) => `<text x="${this.x(tick)}" y="${bottom + 16}" text-anchor="middle">${format(tick)}</text>`
-        + `<line class="axis" x1="${this.x(tick)}" x2="${this.x(tick)}" y1="${bottom}" y2="${bottom - 4}"/>`),
-      ...yTicks.map((tick) => `<text x="${left - 6}" y="${this.y(tick) + 4}" text-anchor="end">${shown(tick)}</text>`
-        + `<line class="axis" x1="${left}" x2="${left + 4}" y1="${this.y(tick)}" y2="${this.y(tick)}"/>`),
-    ];
-    this.outside = `<path class="axis" d="M${left} ${top}V${bottom}H${right}V${top}Z"/>${marks.join("")}`
-      + `<text x="${0.5 * (left + right)}" y="${height - 8}" text-anchor="middle">${labels[0]}</text>`
-      + `<text transform="translate(13 ${0.5 * (top + bottom)}) rotate(-90)" text-anchor="middle">${labels[1]}</text>`;
+    const xMarks = xTicks.map((tick) => {
+      const across = this.x(tick);
+      return `<text x="${across}" y="${bottom + 16}" text-anchor="middle">${format(tick)}</text>`
+        + `<line class="axis" x1="${across}" x2="${across}" y1="${bottom}" y2="${bottom - 4}"/>`;
+    });
+    const yMarks = yTicks.map((tick) => {
+      const up = this.y(tick);
+      return `<text x="${left - 6}" y="${up + 4}" text-anchor="end">${shown(tick)}</text>`
+        + `<line class="axis" x1="${left}" x2="${left + 4}" y1="${up}" y2="${up}"/>`;
+    });
+    const frame = `<path class="axis" d="M${left} ${top}V${bottom}H${right}V${top}Z"/>`;
+    const below = `x="${0.5 * (left + right)}" y="${height - 8}"`;
+    const beside = `transform="translate(13 ${0.5 * (top + bottom)}) rotate(-90)"`;
+    this.outside = frame + xMarks.join("") + yMarks.join("")
+      + `<text ${below} text-anchor="middle">${labels[0]}</text>`
+      + `<text ${beside} text-anchor="middle">${labels[1]}</text>`;
   }
 
   // What the (even) axes say where the pointer is.
@@ -54,14 +71,19 @@ class Picture {
     });
   }
 
+  // Points in pixels, as text: `within` parts the two numbers of a point, `between` the points.
+  pixels(points, within, between) {
+    const rounded = points.map(([x, y]) => [this.x(x).toFixed(1), this.y(y).toFixed(1)]);
+    return rounded.map((pair) => pair.join(within)).join(between);
+  }
+
   curve(points, kind) {
-    const path = points.map(([x, y]) => `${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}`).join("L");
-    if (points.length > 1) this.inside.push(`<path class="${kind}" d="M${path}"/>`);
+    if (points.length < 2) return;
+    this.inside.push(`<path class="${kind}" d="M${this.pixels(points, " ", "L")}"/>`);
   }
 
   area(points, kind) {
-    const corners = points.map(([x, y]) => `${this.x(x).toFixed(1)},${this.y(y).toFixed(1)}`).join(" ");
-    this.inside.push(`<polygon class="${kind}" points="${corners}"/>`);
+    this.inside.push(`<polygon class="${kind}" points="${this.pixels(points, ",", " ")}"/>`);
   }
 
   dot(x, y, kind = "", radius = kind ? 5 : 4) {
@@ -70,16 +92,18 @@ class Picture {
 
   // A symbol with its subscript after "_" set as one.
   write(x, y, text, anchor = "start") {
-    const set = text.replace(/_(\w+)/g, '<tspan dy="4" font-size="9">$1</tspan><tspan dy="-4"></tspan>');
+    const subscript = '<tspan dy="4" font-size="9">$1</tspan><tspan dy="-4"></tspan>';
+    const set = text.replace(/_(\w+)/g, subscript);
     this.outside += `<text class="over" x="${x}" y="${y}" text-anchor="${anchor}">${set}</text>`;
   }
 
   // An image between two corners of the axes, cut along an outline.
   image(address, [x0, x1], [y0, y1], outline) {
-    const points = outline.map(([x, y]) => `${this.x(x).toFixed(1)},${this.y(y).toFixed(1)}`).join(" ");
-    this.inside.push(`<clipPath id="outline"><polygon points="${points}"/></clipPath>`
-      + `<image href="${address}" x="${this.x(x0)}" y="${this.y(y1)}" width="${this.x(x1) - this.x(x0)}"`
-      + ` height="${this.y(y0) - this.y(y1)}" preserveAspectRatio="none" clip-path="url(#outline)"/>`);
+    const [left, right, top, bottom] = [this.x(x0), this.x(x1), this.y(y1), this.y(y0)];
+    const corners = this.pixels(outline, ",", " ");
+    this.inside.push(`<clipPath id="outline"><polygon points="${corners}"/></clipPath>`
+      + `<image href="${address}" x="${left}" y="${top}" width="${right - left}"`
+      + ` height="${bottom - top}" preserveAspectRatio="none" clip-path="url(#outline)"/>`);
   }
 
   // A scale of colours above the axes.
@@ -87,8 +111,11 @@ class Picture {
     const { left, right } = this.box;
     // On a phone there must be room for the text.
     const wide = Math.min(128, 0.25 * (right - left)) / 64;
-    this.outside += Array.from({ length: 64 }, (_, k) => `<rect x="${left + wide * k}" y="6" width="${wide + 0.5}" height="10"`
-      + ` fill="rgb(${colours[Math.floor(colours.length * k / 64)]})"/>`).join("");
+    this.outside += Array.from({ length: 64 }, (_, k) => {
+      const colour = colours[Math.floor(colours.length * k / 64)];
+      return `<rect x="${left + wide * k}" y="6" width="${wide + 0.5}" height="10"`
+        + ` fill="rgb(${colour})"/>`;
+    }).join("");
     this.write(left + 64 * wide + 8, 15, text);
   }
 
@@ -98,12 +125,15 @@ class Picture {
     const clip = `clip-${this.element.id}`;
     this.element.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
     this.element.setAttribute("aria-label", text);
-    this.element.innerHTML = `<clipPath id="${clip}"><rect x="${left}" y="${top}" width="${right - left}"`
-      + ` height="${bottom - top}"/></clipPath><g clip-path="url(#${clip})">${this.inside.join("")}<g class="moment"></g></g>${this.outside}`;
+    const box = `<rect x="${left}" y="${top}" width="${right - left}" height="${bottom - top}"/>`;
+    const inside = `${this.inside.join("")}<g class="moment"></g>`;
+    this.element.innerHTML = `<clipPath id="${clip}">${box}</clipPath>`
+      + `<g clip-path="url(#${clip})">${inside}</g>${this.outside}`;
   }
 }
 
-// At even positions between the fronts of a time: arrival, times, slip velocities and slips from there on, end of sliding.
+// At even positions between the fronts of a time: arrival, times, slip velocities and slips from
+// there on, and the end of sliding.
 function columns(rupture, end, count = 121) {
   const [low, high] = rupture.fronts(end);
   const half = (count - 1) / 2;
@@ -115,7 +145,8 @@ function columns(rupture, end, count = 121) {
       continue;
     }
     const { times, values, stick } = rupture.history(y, end);
-    found.push({ y, start: Math.min(times[0], end), stick, stop: Math.min(stick, end), times, values, slips: sums(times, values) });
+    const [start, stop] = [Math.min(times[0], end), Math.min(stick, end)];
+    found.push({ y, start, stick, stop, times, values, slips: sums(times, values) });
   }
   return found;
 }
@@ -129,7 +160,8 @@ function sums(times, values) {
   });
 }
 
-// The columns as an image, time to the right and position upward; a few pixels beyond where anything slides.
+// The columns as an image, time to the right and position upward; a few pixels beyond where
+// anything slides.
 function velocityImage(found, end, largest, colours, pixels = 300) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [pixels, found.length];
@@ -150,7 +182,8 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
       // A block that sticks where it is released has one time twice.
       const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m] || 1), 0), 1);
       const value = times.length > 1 ? values[m] + fraction * (values[m + 1] - values[m]) : 0;
-      const [red, green, blue] = colours[Math.min(Math.floor(colours.length * Math.max(value, 0) / largest), colours.length - 1)];
+      const shade = Math.floor(colours.length * Math.max(value, 0) / largest);
+      const [red, green, blue] = colours[Math.min(shade, colours.length - 1)];
       shades[(found.length - 1 - k) * pixels + n] = red | green << 8 | blue << 16 | 255 << 24;
     }
   });
@@ -163,6 +196,7 @@ function smoothed(colours, count = 256) {
   return Array.from({ length: count }, (_, n) => {
     const position = (colours.length - 1) * n / (count - 1);
     const k = Math.min(Math.floor(position), colours.length - 2);
-    return colours[k].map((part, i) => Math.round(part + (position - k) * (colours[k + 1][i] - part)));
+    const next = colours[k + 1];
+    return colours[k].map((part, i) => Math.round(part + (position - k) * (next[i] - part)));
   });
 }

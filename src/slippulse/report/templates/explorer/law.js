@@ -1,6 +1,8 @@
-// The front law: the speed v of a front into pre-stress tau at b = beta/dx, from a table of ln(tau/(1 - tau)).
+// The front law: the speed v of a front into pre-stress tau at b = beta/dx, from a table of
+// ln(tau/(1 - tau)).
 
-// A table of numbers on an even grid, which begins at position 0, between its entries: six of them around the position.
+// A table of numbers on an even grid, which begins at position 0, between its entries: six of them
+// around the position.
 function between(values, position) {
   const first = Math.min(Math.max(Math.floor(position) - 2, 0), values.length - 6);
   let sum = 0;
@@ -12,7 +14,8 @@ function between(values, position) {
   return sum;
 }
 
-// First index k with values[k] <= target < values[k + 1], for rising values (falling ones with sign -1).
+// First index k with values[k] <= target < values[k + 1], for rising values (falling ones with
+// sign -1).
 function cell(values, target, sign = 1) {
   let low = 0;
   let high = values.length - 1;
@@ -34,7 +37,8 @@ function hermite(fraction, length, value0, value1, slope0, slope1) {
 // Laws that were asked for, since they take longer to make than to use.
 const LAWS = new Map();
 
-// 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release rule.
+// 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release
+// rule.
 function frontLaw(table, ratio, release) {
   const key = `${release} ${ratio}`;
   if (!LAWS.has(key)) LAWS.set(key, makeLaw(table, ratio, release));
@@ -47,7 +51,10 @@ function makeLaw(table, ratio, release) {
   const count = table[release][0].length;
   const { first, step } = table.excess;
   const level = [];
-  for (let k = 0; k < count; k++) level.push(between(table[release].map((row) => row[k]), position));
+  for (let k = 0; k < count; k++) {
+    const column = table[release].map((row) => row[k]);
+    level.push(between(column, position));
+  }
   // d ln(v - 1) / d level at the inner nodes, from five of them.
   const slope = level.map((_, k) => 12 * step
     / (level[k - 2] - 8 * level[k - 1] + 8 * level[k + 1] - level[k + 2]));

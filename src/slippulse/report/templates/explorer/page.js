@@ -7,9 +7,11 @@ const NAMES = ["beta", "dx", "left", "right", "width", "gamma", "alpha", "end"];
 const SLIDERS = Object.fromEntries(NAMES.map((name) => [name, at(name)]));
 // Exact values: a slider has steps between which a preset, a typed number or a run may lie.
 const settings = { release: "total", held: true };
-// What the axes and colours reach, which only `fit` changes; the fronts before the last move; what was shown last.
+// What the axes and colours reach, which only `fit` changes.
 let view = null;
+// The fronts before the last move.
 let ghost = null;
+// What was shown last.
 let shown = null;
 let moving = false;
 let compared = null;
@@ -29,7 +31,9 @@ function valueOf(slider) {
 function set(name, value) {
   const slider = SLIDERS[name];
   const [low, high] = ends(slider);
-  const fraction = slider.dataset.kind === "even" ? (value - low) / (high - low) : Math.log(value / low) / Math.log(high / low);
+  const fraction = slider.dataset.kind === "even"
+    ? (value - low) / (high - low)
+    : Math.log(value / low) / Math.log(high / low);
   slider.value = Math.round(200 * Math.max(fraction, 0));
   settings[name] = value;
   note(name);
@@ -40,24 +44,43 @@ function note(name) {
   SLIDERS[name].setAttribute("aria-valuetext", format(settings[name]));
 }
 
+// How b and the front speed have changed since a reference with the same pre-stress on the right.
+function changeSince(reference, { scene, exact }) {
+  const [ratio, speed] = [format(scene.ratio), format(exact.speed)];
+  if (Math.abs(exact.speed / reference.exact.speed - 1) <= 5e-5) {
+    return `b is still ${ratio}, and nothing has changed: v = ${speed}.`;
+  }
+  const [ratioThen, speedThen] = [format(reference.scene.ratio), format(reference.exact.speed)];
+  return `b went from ${ratioThen} to ${ratio}, and v from ${speedThen} to ${speed}.`;
+}
+
+// The speed of the right front, and where the left one is if it is slower than the waves.
+function aboutFronts({ scene, exact, rupture }) {
+  const sentences = [];
+  if (scene.right > 0) {
+    const [speed, paper] = [format(exact.speed), format(paperSpeed(scene.right))];
+    sentences.push(`At b = ${format(scene.ratio)} the right front runs at v = ${speed},`
+      + ` where the paper’s formula, b = 0, says ${paper}.`);
+  }
+  const { slow } = rupture.left;
+  if (slow) {
+    const [x, time] = [format(-slow.x.at(-1)), format(slow.time.at(-1))];
+    sentences.push(slow.stopped
+      ? `The left front stops at x = ${x} at t = ${time}.`
+      : `The left front is at x = ${x} at the end of the map.`);
+  }
+  return sentences.join(" ");
+}
+
 function report(found, reference) {
-  const [ratio, speed] = [found.scene.ratio, found.exact.speed];
   const alike = reference && reference.scene.right === found.scene.right;
-  const before = alike && { ratio: reference.scene.ratio, speed: reference.exact.speed };
-  const change = before && Math.abs(speed / before.speed - 1) > 5e-5
-    ? `b went from ${format(before.ratio)} to ${format(ratio)}, and v from ${format(before.speed)} to ${format(speed)}.`
-    : before && `b is still ${format(ratio)}, and nothing has changed: v = ${format(speed)}.`;
-  const { left } = found.rupture;
-  const [x, time] = left.slow ? [-left.slow.x.at(-1), left.slow.time.at(-1)] : [];
-  at("finding").textContent = change || [
-    found.scene.right > 0 && `At b = ${format(ratio)} the right front runs at v = ${format(speed)}, where the paper’s formula, b = 0, says ${format(1 / Math.sqrt(1 - found.scene.right ** 2))}.`,
-    left.slow && (left.slow.stopped ? `The left front stops at x = ${format(x)} at t = ${format(time)}.` : `The left front is at x = ${format(x)} at the end of the map.`),
-  ].filter(Boolean).join(" ");
+  at("finding").textContent = alike ? changeSince(reference, found) : aboutFronts(found);
 }
 
 let waiting = 0;
 
-// Draw what is set at the next frame, with new axes if they shall fit it, compared with a reference.
+// Draw what is set at the next frame, with new axes if they shall fit it, and compare it with a
+// reference.
 function redraw({ fitted = false, reference = null } = {}) {
   cancelAnimationFrame(waiting);
   compared = reference;
@@ -97,7 +120,9 @@ function haunt() {
 // Set some settings at once.
 function choose(values, options = {}) {
   haunt();
-  for (const name of NAMES) if (name in values && Number.isFinite(values[name])) set(name, values[name]);
+  for (const name of NAMES) {
+    if (Number.isFinite(values[name])) set(name, values[name]);
+  }
   at("alike").checked = settings.left === settings.right;
   for (const name of ["release", "held"]) {
     if (name in values) settings[name] = values[name];
@@ -138,7 +163,10 @@ at("alike").addEventListener("change", () => {
   if (at("alike").checked) choose({ left: settings.right });
 });
 for (const input of document.querySelectorAll("[name=release], [name=held]")) {
-  input.addEventListener("change", () => choose({ [input.name]: input.name === "held" ? input.value === "true" : input.value }, { fitted: input.name === "held" }));
+  input.addEventListener("change", () => {
+    const held = input.name === "held";
+    choose({ [input.name]: held ? input.value === "true" : input.value }, { fitted: held });
+  });
 }
 for (const preset of document.querySelectorAll("[data-scene]")) {
   preset.addEventListener("click", () => {
@@ -157,7 +185,8 @@ addEventListener("resize", () => {
   redraw({ reference: compared });
 });
 function visit() {
-  const words = Object.fromEntries(location.hash.slice(1).split("&").map((word) => word.split("=")));
+  const pairs = location.hash.slice(1).split("&").map((word) => word.split("="));
+  const words = Object.fromEntries(pairs);
   const values = Object.fromEntries(NAMES.filter((name) => name in words).map((name) => {
     const [low, high] = ends(SLIDERS[name]);
     return [name, Math.min(Math.max(Number(words[name]), name === "beta" ? 0 : low), high)];

@@ -1,4 +1,5 @@
-// The pictures: the map of slip velocity, the pulse behind the right front, and the front speed against b.
+// The pictures: the map of slip velocity, the pulse behind the right front, and the front speed
+// against b.
 
 const RATIO_TICKS = [0, 0.1, 1];
 
@@ -15,9 +16,17 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
   const { end } = scene;
   const [low, high] = rupture.fronts(end);
   const map = new Picture(at("map"), {
-    x: [0, view.end], y: view.reach, labels: ["time t", ""], shown: () => "", height: mapHeight(), top: 26, before: 6,
+    x: [0, view.end],
+    y: view.reach,
+    labels: ["time t", ""],
+    shown: () => "",
+    height: mapHeight(),
+    top: 26,
+    before: 6,
   });
-  const edge = found.filter(({ y, stick }) => stick <= end && known(y, stick - 1e-9)).map(({ y, stick }) => [stick, y]);
+  const edge = found
+    .filter(({ y, stick }) => stick <= end && known(y, stick - 1e-9))
+    .map(({ y, stick }) => [stick, y]);
   const sticks = Number.isFinite(exact.transitionTime);
   if (sticks) {
     const k = edge.findIndex(([, y]) => y > exact.firstStick);
@@ -26,7 +35,9 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
   }
   map.image(velocityImage(found, end, view.largest, COLOURS), [0, end], [low, high],
     [...frontsOf(found), ...found.map(({ y, stop }) => [stop, y]).reverse()]);
-  for (const { x, time } of limits) map.area([[time, x], [end, x + end - time], [end, x - end + time]], "unknown");
+  for (const { x, time } of limits) {
+    map.area([[time, x], [end, x + end - time], [end, x - end + time]], "unknown");
+  }
   for (const kind of ghost ? ["ghost", "ghostly"] : []) map.curve(ghost, kind);
   map.curve(frontsOf(found), "front");
   if (scene.left > 0 && scene.right > 0) {
@@ -49,19 +60,27 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
   }
   map.scale(COLOURS, `slip velocity, 0 to ${format(view.largest, 3)}`);
   const ending = sticks ? `first sticks at time ${format(exact.transitionTime)}` : "sticks nowhere";
-  const late = pulse && steady && deviates(pulse, steady) ? " The pulse is not yet steady at the end of the map."
-    : scene.gamma > 0 && scene.right > 0 && !steady ? " α is beyond αc: no pulse is steady, and the part that slides becomes ever wider." : "";
-  at("state").textContent = `The rupture ${ending}${sticks ? "" : ` until t = ${format(end)}`}.${late}`;
-  if (limits.length) at("state").textContent += " Blank wedges: not known, since the trailing edge there becomes slower than the waves.";
-  map.show(`Slip velocity in time and space: a rupture with fronts of speed ${format(exact.speed)} on the right and`
-    + ` ${format(exact.speedLeft)} on the left ${ending}.`);
+  const state = [`The rupture ${ending}${sticks ? "" : ` until t = ${format(end)}`}.`];
+  if (pulse && steady && deviates(pulse, steady)) {
+    state.push("The pulse is not yet steady at the end of the map.");
+  } else if (scene.gamma > 0 && scene.right > 0 && !steady) {
+    state.push("α is beyond αc: no pulse is steady, and the part that slides becomes ever wider.");
+  }
+  if (limits.length) {
+    state.push("Blank wedges: not known,"
+      + " since the trailing edge there becomes slower than the waves.");
+  }
+  at("state").textContent = state.join(" ");
+  const speeds = `${format(exact.speed)} on the right and ${format(exact.speedLeft)} on the left`;
+  map.show(`Slip velocity in time and space: a rupture with fronts of speed ${speeds} ${ending}.`);
 }
 
 function drawPulse({ scene, rupture, known, front, pulse, paper, steady }) {
   const { end } = scene;
   const back = rupture.fronts(end)[0];
   const length = Math.min(pulse ? pulse.width : front - back, view.span);
-  const points = Array.from({ length: 41 }, (_, k) => length * k / 40).filter((x) => known(front - x, end));
+  const points = Array.from({ length: 41 }, (_, k) => length * k / 40)
+    .filter((x) => known(front - x, end));
   const along = Array.from({ length: 61 }, (_, k) => k / 60);
   const panels = {
     velocity: {
@@ -77,36 +96,55 @@ function drawPulse({ scene, rupture, known, front, pulse, paper, steady }) {
   };
   for (const [name, { label, top, exact, cosine, limit }] of Object.entries(panels)) {
     const picture = new Picture(at(name), {
-      x: [0, view.span], y: [0, top], labels: ["distance behind the right front", label], height: 260,
+      x: [0, view.span],
+      y: [0, top],
+      labels: ["distance behind the right front", label],
+      height: 260,
     });
-    if (paper) picture.curve(along.map((part) => [paper.width * part, cosine(Math.PI * part)]), "paper");
-    if (limit) picture.curve(along.map((part) => [steady.width * part, limit(steady.width * part)]), "steady");
+    const most = [`at most ${format(Math.max(...exact, 0))}`];
+    if (paper) {
+      const cosines = along.map((part) => cosine(Math.PI * part));
+      picture.curve(along.map((part, k) => [paper.width * part, cosines[k]]), "paper");
+      most.push(`the paper's, at most ${format(Math.max(...cosines))}`);
+    }
+    if (limit) {
+      const distances = along.map((part) => steady.width * part);
+      picture.curve(distances.map((x) => [x, limit(x)]), "steady");
+    }
     picture.curve(points.map((x, k) => [x, exact[k]]), "exact");
-    picture.show(`${label} behind the right front at the end of the map, at most ${format(Math.max(...exact, 0))}`
-      + `${paper ? `; the paper's, at most ${format(Math.max(...along.map((part) => cosine(Math.PI * part))))}` : ""}.`);
+    picture.show(`${label} behind the right front at the end of the map, ${most.join("; ")}.`);
   }
 }
 
 function drawSpeeds({ scene, exact }) {
   const position = (b) => Math.asinh(b / 0.02);
-  const ratios = Array.from({ length: 61 }, (_, k) => 0.02 * Math.sinh(position(DATA.largest_ratio) * k / 60));
-  const speeds = (tau, release) => ratios.map((b) => [b, 1 / frontLaw(DATA.law, b, release)(1 - tau)]);
+  const last = position(DATA.largest_ratio);
+  const ratios = Array.from({ length: 61 }, (_, k) => 0.02 * Math.sinh(last * k / 60));
   const tau = scene.right > 0 ? scene.right : scene.left;
   at("speeds").parentElement.classList.toggle("absent", !(tau > 0));
   if (!(tau > 0)) return;
-  const paper = 1 / Math.sqrt(1 - tau * tau);
-  const runs = DATA.runs.map(runOf).filter((run) => run.release === scene.release && run.speed !== null && Math.abs(run.left - tau) < 0.02);
+  const paper = paperSpeed(tau);
+  const runs = DATA.runs.map(runOf).filter((run) => run.release === scene.release
+    && run.speed !== null && Math.abs(run.left - tau) < 0.02);
   // Always as high as 5, on a logarithmic axis, so that it stands still.
   const picture = new Picture(at("speeds"), {
-    x: [0, DATA.largest_ratio], y: [0, Math.log(5)], xTicks: RATIO_TICKS, yTicks: [1, 1.5, 2, 3, 5].map(Math.log), position,
-    shown: (value) => format(Math.exp(value)), labels: ["b = β/dx", "front speed v"], height: 260,
+    x: [0, DATA.largest_ratio],
+    y: [0, Math.log(5)],
+    xTicks: RATIO_TICKS,
+    yTicks: [1, 1.5, 2, 3, 5].map(Math.log),
+    position,
+    shown: (value) => format(Math.exp(value)),
+    labels: ["b = β/dx", "front speed v"],
+    height: 260,
   });
+  const speeds = (release) => ratios.map((b) => [b, 1 / frontLaw(DATA.law, b, release)(1 - tau)]);
   const logs = (points) => points.map(([b, v]) => [b, Math.log(v)]);
   picture.curve(logs([[0, paper], [DATA.largest_ratio, paper]]), "paper");
-  picture.curve(logs(speeds(tau, scene.release === "total" ? "elastic" : "total")), "thin");
+  picture.curve(logs(speeds(scene.release === "total" ? "elastic" : "total")), "thin");
   for (const run of runs) picture.dot(run.ratio, Math.log(run.speed));
-  picture.curve(logs(speeds(tau, scene.release)), "exact");
+  picture.curve(logs(speeds(scene.release)), "exact");
   const speed = scene.right > 0 ? exact.speed : exact.speedLeft;
   picture.dot(scene.ratio, Math.log(speed), "here");
-  picture.show(`Front speed against b: ${format(speed)} at b = ${format(scene.ratio)}, where the paper's formula says ${format(paper)}.`);
+  picture.show(`Front speed against b: ${format(speed)} at b = ${format(scene.ratio)},`
+    + ` where the paper's formula says ${format(paper)}.`);
 }

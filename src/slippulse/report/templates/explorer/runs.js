@@ -17,9 +17,11 @@ function distance(run, scene) {
 }
 
 function fill(table, rows) {
-  table.tBodies[0].innerHTML = rows.map(([name, value, other]) => `<tr><th scope="row">${name}</th>`
-    + `<td class="n">${format(value)}</td><td class="n">${format(other)}</td>`
-    + `<td class="n">${value === null || other === null ? "–" : format(value / other)}</td></tr>`).join("");
+  table.tBodies[0].innerHTML = rows.map(([name, value, other]) => {
+    const ratio = value === null || other === null ? null : value / other;
+    const cells = [value, other, ratio].map((number) => `<td class="n">${format(number)}</td>`);
+    return `<tr><th scope="row">${name}</th>${cells.join("")}</tr>`;
+  }).join("");
 }
 
 const EXACT = new Map();
@@ -40,10 +42,18 @@ function showNearest(scene) {
     ["slip of the steady pulse", named.slip, steadyPulse(named, exact.speed)?.slip ?? null],
   ]);
   const words = [
-    ["τ₀", named.left, scene.right], ["γ", named.gamma, scene.gamma], ["W", named.width, scene.width], ["b", named.ratio, scene.ratio],
-  ].map(([name, there, here]) => `${name} = ${format(there)}${Math.abs(there - here) > 1e-9 ? ` (here ${format(here)})` : ""}`);
-  at("nearest").textContent = `${words.join(", ")}, rule “${named.release}”: ${far < 1e-9 ? "these very settings." : `not these settings, but near.`}`;
+    ["τ₀", named.left, scene.right],
+    ["γ", named.gamma, scene.gamma],
+    ["W", named.width, scene.width],
+    ["b", named.ratio, scene.ratio],
+  ].map(([name, there, here]) => {
+    const other = Math.abs(there - here) > 1e-9 ? ` (here ${format(here)})` : "";
+    return `${name} = ${format(there)}${other}`;
+  });
+  const nearness = far < 1e-9 ? "these very settings." : "not these settings, but near.";
+  at("nearest").textContent = `${words.join(", ")}, rule “${named.release}”: ${nearness}`;
   at("visit").onclick = () => {
-    choose({ ...named, alpha: 0, held: true, dx: named.ratio > 0 ? named.beta / named.ratio : settings.dx });
+    const dx = named.ratio > 0 ? named.beta / named.ratio : settings.dx;
+    choose({ ...named, alpha: 0, held: true, dx });
   };
 }

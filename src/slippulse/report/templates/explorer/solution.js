@@ -1,9 +1,11 @@
-// The exact rupture in the continuum limit dx -> 0 at fixed b = beta/dx, held (gamma > 0) or under a stress (gamma = 0),
-// with a term -alpha du/dt of friction that strengthens (alpha > 0) or weakens with slip rate.
+// The exact rupture in the continuum limit dx -> 0 at fixed b = beta/dx, held (gamma > 0) or under
+// a stress (gamma = 0), with a term -alpha du/dt of friction that strengthens (alpha > 0) or
+// weakens with slip rate.
 //
-// Where tau > 0 fronts are at t = T(x), the integral of 1/v(tau, b). Behind them, with k^2 = gamma - alpha^2/4,
-//   du/dt = 1/2 Int tau(x) exp(-alpha (t - T(x))/2) J0( k sqrt((t - T(x))^2 - (x - y)^2) ) dx over the past of (y, t),
-// and y sticks at the first zero of du/dt. Where tau < 0 a front is slower than the waves and du/dt = 0 on it.
+// Where tau > 0 fronts are at t = T(x), the integral of 1/v(tau, b). Behind them
+//   du/dt = 1/2 Int tau(x) exp(-alpha late/2) J0( k sqrt(late^2 - (x - y)^2) ) dx
+// over the past of (y, t), with late = t - T(x) and k^2 = gamma - alpha^2/4, and y sticks at the
+// first zero of du/dt. Where tau < 0 a front is slower than the waves and du/dt = 0 on it.
 
 // Nodes and weights of Gauss and Legendre on [-1, 1].
 function gauss(count) {
@@ -13,7 +15,9 @@ function gauss(count) {
     let slope = 1;
     for (let turn = 0; turn < 20; turn++) {
       let [before, value] = [1, x];
-      for (let n = 2; n <= count; n++) [before, value] = [value, ((2 * n - 1) * x * value - (n - 1) * before) / n];
+      for (let n = 2; n <= count; n++) {
+        [before, value] = [value, ((2 * n - 1) * x * value - (n - 1) * before) / n];
+      }
       slope = count * (x * value - before) / (x * x - 1);
       x -= value / slope;
     }
@@ -28,12 +32,14 @@ const MANY = gauss(32);
 
 function integral(integrand, low, high, nodes = NODES) {
   const half = 0.5 * (high - low);
-  return half * nodes.reduce((sum, node) => sum + node.weight * integrand(low + half * (1 + node.x)), 0);
+  const part = ({ x, weight }) => weight * integrand(low + half * (1 + x));
+  return half * nodes.reduce((sum, node) => sum + part(node), 0);
 }
 
 // The root of a function between two points where its signs differ (secants that keep the bracket).
 function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
-  for (let turn = 0; turn < 60 && Math.abs(high - low) > 1e-10 * (Math.abs(high) + Math.abs(low)); turn++) {
+  const apart = () => Math.abs(high - low) > 1e-10 * (Math.abs(high) + Math.abs(low));
+  for (let turn = 0; turn < 60 && apart(); turn++) {
     const middle = (low * atHigh - high * atLow) / (atHigh - atLow);
     const value = f(middle);
     if (value === 0) return middle;
@@ -44,7 +50,8 @@ function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
   return high;
 }
 
-// J0(sqrt z), for z < 0 I0(sqrt(-z)), tabulated with its slope by z: means over an angle, up to |z| = 60^2.
+// J0(sqrt z), for z < 0 I0(sqrt(-z)), tabulated with its slope by z: means over an angle, up to
+// |z| = 60^2.
 const BESSEL = { step: 0.25, last: 3600, value: [], slope: [] };
 for (let z = -BESSEL.last; z <= BESSEL.last; z += BESSEL.step) {
   const root = Math.sqrt(Math.abs(z));
@@ -71,8 +78,8 @@ function bessel(z) {
     + f * f * ((1 + 2 * rest) * VALUES[k + 1] - 0.25 * rest * SLOPES[k + 1]);
 }
 
-// The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a value. Its nodes reach
-// as far as it outruns the waves; where tau < 0 `Rupture.march` adds more.
+// The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a
+// value. Its nodes reach as far as it outruns the waves; where tau < 0 `Rupture.march` adds more.
 class Front {
   constructor(level, width, law) {
     Object.assign(this, { level, width, cells: 240 });
@@ -88,14 +95,19 @@ class Front {
     for (let k = 0; k < this.cells; k++) {
       this.time.push(this.time[k] + integral(slowness, this.x[k], this.x[k + 1], FEW));
     }
-    this.sums = { 1: this.time.map((t, k) => t + this.x[k]), [-1]: this.time.map((t, k) => t - this.x[k]) };
-    this.slow = level < 0 ? { x: [this.extent], time: [this.time[this.cells]], stopped: false } : null;
+    this.sums = {
+      1: this.time.map((t, k) => t + this.x[k]),
+      [-1]: this.time.map((t, k) => t - this.x[k]),
+    };
+    const last = this.time[this.cells];
+    this.slow = level < 0 ? { x: [this.extent], time: [last], stopped: false } : null;
   }
 
   within(k, x) {
+    const { time, slope } = this;
     const length = this.x[k + 1] - this.x[k];
     const fraction = (x - this.x[k]) / length;
-    return hermite(fraction, length, this.time[k], this.time[k + 1], this.slope[k], this.slope[k + 1]);
+    return hermite(fraction, length, time[k], time[k + 1], slope[k], slope[k + 1]);
   }
 
   arrival(x) {
@@ -114,7 +126,10 @@ class Front {
     const direction = sign < 0 ? -1 : 1;
     const beyond = target - sums[this.cells];
     if (direction * beyond >= 0) {
-      if (!this.slow) return this.extent + (this.slowness + sign === 0 ? 0 : beyond / (this.slowness + sign));
+      if (!this.slow) {
+        const slope = this.slowness + sign;
+        return this.extent + (slope === 0 ? 0 : beyond / slope);
+      }
       const { x, time } = this.slow;
       const last = x.length - 1;
       if (sign < 0 || last === 0) return this.extent;
@@ -144,7 +159,8 @@ class Front {
 }
 
 class Rupture {
-  // left, right: levels below 1; gamma, 0 under a stress; width of the peak; ratio b; release rule; alpha; until a time.
+  // left, right: levels below 1; gamma, 0 under a stress; width of the peak; ratio b; release rule;
+  // alpha; until a time.
   constructor({ left, right, gamma, width, ratio, release, alpha = 0, end = Infinity }, table) {
     const law = frontLaw(table, ratio, release);
     Object.assign(this, { gamma, width, alpha, squared: gamma - 0.25 * alpha * alpha });
@@ -162,9 +178,11 @@ class Rupture {
     if (this.left.slow || this.right.slow) this.march();
   }
 
-  // Where tau < 0: the positions at which du/dt = 0 at a time, from step to step; a front stops where nothing slides on.
+  // Where tau < 0: the positions at which du/dt = 0 at a time, from step to step; a front stops
+  // where nothing slides on.
   march(count = 200) {
-    const sides = (this.symmetric ? [[this.right, 1]] : [[this.left, -1], [this.right, 1]]).filter(([front]) => front.slow);
+    const fronts = this.symmetric ? [[this.right, 1]] : [[this.left, -1], [this.right, 1]];
+    const sides = fronts.filter(([front]) => front.slow);
     const start = Math.min(...sides.map(([front]) => front.time[front.cells]));
     for (let n = 1; n <= count; n++) {
       // Short steps first, where a front still runs at the speed of the waves.
@@ -187,10 +205,13 @@ class Rupture {
           slow.x.length = slow.time.length = last + 1;
           continue;
         }
-        let x = from + step * (last ? (from - slow.x[last - 1]) / (slow.time[last] - slow.time[last - 1]) : 0.9);
+        const speed = last === 0 ? 0.9
+          : (from - slow.x[last - 1]) / (slow.time[last] - slow.time[last - 1]);
+        let x = from + step * speed;
         for (let turn = 0; turn < 8; turn++) {
           const rate1 = rate(x);
-          const next = rate1 === rate0 ? x : Math.min(Math.max(x - rate1 * (x - x0) / (rate1 - rate0), from), from + step);
+          const root = x - rate1 * (x - x0) / (rate1 - rate0);
+          const next = rate1 === rate0 ? x : Math.min(Math.max(root, from), from + step);
           [x0, rate0] = [x, rate1];
           if (Math.abs(next - x) < 1e-7 * step) break;
           x = next;
@@ -220,9 +241,11 @@ class Rupture {
     const { alpha, squared, breaks } = this;
     // Without leaf springs and rate term the kernel is 1.
     const flat = alpha === 0 && squared === 0;
-    // With a rate term the kernel changes like an exponential of alpha x, and with strong leaf springs it oscillates too.
+    // With a rate term the kernel changes like an exponential of alpha x, and with strong leaf
+    // springs it oscillates too.
     const longest = alpha === 0 ? Infinity : (squared > 0 ? 2 : 8) / Math.abs(alpha);
-    // The kernel is largest at the nearer end, where a front passed last, and nothing beside it where one passed long before.
+    // The kernel is largest at the nearer end, where a front passed last, and nothing beside it
+    // where one passed long before.
     const latest = Math.min(y - from, to - y) + (alpha > 0 && squared > 0 ? 40 / alpha : Infinity);
     let sum = 0;
     let low = from;
@@ -255,7 +278,8 @@ class Rupture {
     return 0.5 * sum;
   }
 
-  // Slip velocity at y at rising times from its release on, until it sticks (infinite if not until a time).
+  // Slip velocity at y at rising times from its release on, until it sticks (infinite if not until
+  // a time).
   history(y, until = this.end) {
     const [times, values, start] = [[this.arrival(y)], [0], this.arrival(y)];
     const front = this.side(y);
@@ -270,8 +294,9 @@ class Rupture {
       time = Math.min(time + step, until);
       const value = this.velocity(y, time);
       if (value <= -error && slid) {
-        const before = values.at(-1);
-        const stick = before > 0 ? rootBetween((t) => this.velocity(y, t), times.at(-1), time, before, value) : times.at(-1);
+        const [last, before] = [times.at(-1), values.at(-1)];
+        const velocity = (t) => this.velocity(y, t);
+        const stick = before > 0 ? rootBetween(velocity, last, time, before, value) : last;
         return { times: [...times, stick], values: [...values, 0], stick };
       }
       // Just behind a slow front velocities are as small as the error.
@@ -281,7 +306,10 @@ class Rupture {
       step = Math.min(1.15 * step, Math.max(longest, (time - start) / 24));
     }
     // Where a front stops nothing slides.
-    return slid || !front.slow?.stopped ? { times, values, stick: Infinity } : { times: [start, start], values: [0, 0], stick: start };
+    if (!slid && front.slow?.stopped) {
+      return { times: [start, start], values: [0, 0], stick: start };
+    }
+    return { times, values, stick: Infinity };
   }
 
   stick(y, until = this.end) {
@@ -293,8 +321,8 @@ class Rupture {
     return time <= start ? 0 : integral((t) => this.velocity(y, t), start, time, nodes);
   }
 
-  // The first sticking: at the centre of a symmetric scene, else where the stick time is least, near the best of every
-  // other column; null if there is none.
+  // The first sticking: at the centre of a symmetric scene, else where the stick time is least,
+  // near the best of every other column; null if there is none.
   firstStick(found) {
     if (this.symmetric) {
       const time = this.stick(0);
@@ -302,7 +330,8 @@ class Rupture {
     }
     const sought = found.filter((_, k) => k % 2).map(({ y, stick }) => ({ x: y, time: stick }));
     let step = sought[1].x - sought[0].x;
-    let best = sought.reduce((least, next) => (next.time < least.time ? next : least), { x: 0, time: this.stick(0) });
+    const earlier = (least, next) => (next.time < least.time ? next : least);
+    let best = sought.reduce(earlier, { x: 0, time: this.stick(0) });
     // Parabolas through three neighbours.
     for (let turn = 0; turn < 4 && Number.isFinite(best.time); turn++, step *= 0.35) {
       const [before, after] = [best.x - step, best.x + step].map((x) => this.stick(x));
@@ -315,7 +344,8 @@ class Rupture {
     return Number.isFinite(best.time) ? best : null;
   }
 
-  // Speeds, the first sticking, and how far apart the fronts are then; no times where nothing sticks.
+  // Speeds, the first sticking, and how far apart the fronts are then; no times where nothing
+  // sticks.
   transition(found = this.symmetric ? [] : columns(this, this.end)) {
     const first = this.firstStick(found);
     const [left, right] = first ? this.fronts(first.time) : [NaN, NaN];
@@ -328,7 +358,8 @@ class Rupture {
     };
   }
 
-  // The right pulse at a time after the first sticking at a position: its front and trailing edge, and the slip there.
+  // The right pulse at a time after the first sticking at a position: its front and trailing edge,
+  // and the slip there.
   pulse(time, from) {
     const front = this.fronts(time)[1];
     const late = (x) => Math.min(this.stick(x, 1.5 * time), 1.5 * time) - time;
@@ -337,25 +368,31 @@ class Rupture {
   }
 }
 
-// The steady pulse at finite damping, u = (tau/gamma) (1 - exp(p xi) (cos q xi - p/q sin q xi)) behind its front, where p +- i q
-// are the complex roots of beta v z^3 + (v^2 - 1) z^2 - alpha v z + gamma = 0; null where there are none.
+// The steady pulse at finite damping, behind its front
+//   u = (tau/gamma) (1 - exp(p xi) (cos q xi - p/q sin q xi)),
+// where p +- i q are the complex roots of beta v z^3 + (v^2 - 1) z^2 - alpha v z + gamma = 0; null
+// where there are none.
 function steadyPulse({ right: tau, gamma, beta, alpha = 0 }, speed) {
   const [damping, stiffness, rate] = [beta * speed, speed * speed - 1, alpha * speed];
   let [p, squared] = [0.5 * rate / stiffness, gamma / stiffness];
   if (damping > 0) {
     const cubic = (z) => ((damping * z + stiffness) * z - rate) * z + gamma;
-    const reach = (stiffness + Math.sqrt(Math.abs(rate * damping))) / damping + Math.cbrt(gamma / damping);
+    const reach = (stiffness + Math.sqrt(Math.abs(rate * damping))) / damping
+      + Math.cbrt(gamma / damping);
     const real = rootBetween(cubic, -2 * reach, Math.min(0, 0.5 * rate / stiffness));
     [p, squared] = [-0.5 * (stiffness / damping + real), -gamma / (damping * real)];
   }
   if (!(squared > p * p)) return null;
   const q = Math.sqrt(squared - p * p);
   const scale = tau / gamma;
+  const decay = (distance) => Math.exp(-p * distance);
+  const cosine = (distance) => Math.cos(q * distance) + p / q * Math.sin(q * distance);
   return {
     width: Math.PI / q,
     slip: scale * (1 + Math.exp(-Math.PI * p / q)),
-    velocityAt: (distance) => speed * scale * (squared / q) * Math.exp(-p * distance) * Math.sin(q * distance),
-    slipAt: (distance) => scale * (1 - Math.exp(-p * distance) * (Math.cos(q * distance) + p / q * Math.sin(q * distance))),
+    velocityAt: (distance) => (
+      speed * scale * (squared / q) * decay(distance) * Math.sin(q * distance)),
+    slipAt: (distance) => scale * (1 - decay(distance) * cosine(distance)),
   };
 }
 
