@@ -25,12 +25,11 @@ path, planned = Path("results/text"), {{}}
 path.write_text("as planned")
 planned["results/text"] = file_digest(path)
 for text in ("as planned", "edited"):
-    reading.watch(planned)
-    path.write_text(text)
-    {read}
-    path.write_text("as planned")
     try:
-        reading.check(planned)
+        with reading.expected(planned):
+            path.write_text(text)
+            {read}
+            path.write_text("as planned")
         print("read", text)
     except reading.FileChanged as error:
         print(error)

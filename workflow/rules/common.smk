@@ -119,9 +119,7 @@ def made(kind, names):
 
 
 # Changes by an overlay or the command line; None where nothing can have changed.
-ALTERED = None
-if OVERLAYS or said:
-    ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
+ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG) if OVERLAYS or said else None
 
 
 def note_of(needs, *keys):
@@ -154,14 +152,12 @@ def settings_of(job):
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
+    coarser = [{**sweep, "coarser": float(factor)} for factor in ACCURACY["coarser"]]
     return {
         # Where an accuracy is asked for, the sweep has the spacing of each run.
         "sweep": promised(sweep),
         # The sweep on the coarser lattices of the preset, by factor of the spacing.
-        "sweeps": {
-            factor: promised({**sweep, "coarser": factor})
-            for factor in map(float, ACCURACY["coarser"])
-        },
+        "sweeps": {one["coarser"]: promised(one) for one in coarser},
         "measure": {**config["measure"], "share": share},
         # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),

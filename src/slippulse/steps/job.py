@@ -29,11 +29,10 @@ def run_job(
         inputs = {}
         for result, record in origin.inputs.items():
             inputs[result] = read_record(Path("results", record)).outputs[result]
-        expected = {**origin.files, **{f"results/{key}": inputs[key] for key in inputs}}
-        reading.watch(expected)
-        step = import_module(f"slippulse.steps.{origin.step}")
-        step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
-        reading.check(expected)
+        results = {f"results/{result}": digest for result, digest in inputs.items()}
+        with reading.expected({**origin.files, **results}):
+            step = import_module(f"slippulse.steps.{origin.step}")
+            step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
         seconds = time.monotonic() - began
         write_record(origin, inputs, {"seconds": round(seconds, 2), "options": origin.options})
     if not sys.stderr.isatty():

@@ -6,14 +6,15 @@ Modules are compiled from their sources, since a file in ``__pycache__`` may be 
 import hashlib
 import os
 import sys
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
 
 from .reach import PACKAGE, ROOT
 
 # SHA-256 of each file at each time when it was read, by its real path.
-_read: dict[str, set[str]] = {}
+_read: defaultdict[str, set[str]] = defaultdict(set)
 # Texts and results that the present job may read.
 _watched: set[str] = set()
 
@@ -25,7 +26,7 @@ class FileChanged(RuntimeError):
 class _FromSource(SourceFileLoader):
     def get_code(self, fullname: str):
         source = self.get_data(self.path)
-        _add(os.path.realpath(self.path), hashlib.sha256(source).hexdigest())
+        _read[os.path.realpath(self.path)].add(hashlib.sha256(source).hexdigest())
         return self.source_to_code(source, self.path)
 
 
@@ -46,16 +47,14 @@ def begin() -> None:
                 _add_now(os.path.realpath(str(module.__file__)))
 
 
-def watch(paths: Iterable[str]) -> None:
-    """Take digests of what a job may read, and forget what the last job has read."""
+@contextmanager
+def expected(planned: Mapping[str, str]) -> Iterator[None]:
+    """Let a job read files, by path with SHA-256; raise FileChanged if it read other content."""
     _watched.clear()
-    _watched.update(path for path in map(_real, paths) if not path.endswith(".py"))
+    _watched.update(path for path in map(_real, planned) if not path.endswith(".py"))
     for path in _watched:
         _read.pop(path, None)
-
-
-def check(planned: Mapping[str, str]) -> None:
-    """Raise FileChanged unless all that was read is as planned, by path and SHA-256."""
+    yield
     for path, digest in planned.items():
         real = _real(path)
         # Another program may have read it.
@@ -85,8 +84,4 @@ def _note(event: str, arguments: tuple) -> None:
 def _add_now(real: str) -> None:
     # This way to open a file has no mode, and so is not noted.
     with suppress(OSError), os.fdopen(os.open(real, os.O_RDONLY), "rb") as file:
-        _add(real, hashlib.file_digest(file, "sha256").hexdigest())
-
-
-def _add(real: str, digest: str) -> None:
-    _read.setdefault(real, set()).add(digest)
+        _read[real].add(hashlib.file_digest(file, "sha256").hexdigest())
