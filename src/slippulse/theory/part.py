@@ -47,7 +47,7 @@ class Part:
 
     def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """du/dt at points that slide."""
-        return self.past(x, time).slip_velocity()
+        return self.past(x, time).slip_velocity() if x.size else np.zeros(0)
 
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """A field at points that slide."""
@@ -56,6 +56,8 @@ class Part:
 
     def search(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions, from release on, without help from other positions."""
+        if not x.size:
+            return np.zeros(0)
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
         search = StickSearch(self.velocity, SEARCH * self.scale / self.refinement, self.until)

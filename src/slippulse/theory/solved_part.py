@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ..model.roots import roots_between
 from .curve import Point
 from .part import Part
 from .trailing_edge import TrailingEdge
@@ -13,8 +14,8 @@ from .trailing_edge import TrailingEdge
 # The grid for the largest velocity has DENSER positions for each knot, where knots are farther
 # apart than this fraction of `Part.scale`.
 DENSER, SAME_GRID = 3, 0.01
-# Where a finer grid finds more, the next one is wider by this factor, and else narrower by this.
-WIDER, NARROWER = 1.2, 0.4
+# Positions and times of each grid, and the last interval of positions, in units of `Part.scale`.
+FINER, NARROWEST = 17, 1e-6
 # Slip is checked at positions this far apart, in units of `Part.scale`, to this fraction of itself.
 CHECKED, FALL = 0.25, 1e-6
 
@@ -65,47 +66,41 @@ class SolvedPart(Part):
         falls = np.minimum(middle, end - middle) < -FALL * np.max(end, initial=0.0)
         return [Point(*point) for point in np.stack([x, release], axis=1)[falls].tolist()]
 
-    def largest_velocity(self, end: float, horizon: Callable) -> float:
-        """Largest slip velocity until an end and before a horizon."""
-
-        def sampled(x: np.ndarray, fraction: np.ndarray) -> np.ndarray:
-            release = self.curve.arrival(x)[:, None]
-            last = np.minimum(self.edge.about(x), np.minimum(horizon(x), end))
-            time = release + (last[:, None] - release) * fraction
-            after, values = np.nonzero(time > release), np.zeros(time.shape)
-            values[after] = self.velocity(x[after[0]], time[after])
-            return values
-
-        # The grid is one of positions and fractions of the time from release on.
+    def largest_velocity(self, until: float, horizon: Callable) -> float:
+        """Largest slip velocity until a time and before a horizon."""
         x = self._positions_by_knots()
-        fraction = np.tile(np.linspace(0.0, 1.0, 17), (x.size, 1))
-        values = sampled(x, fraction)
-        row, column = np.unravel_index(np.argmax(values), values.shape)
-        largest = values[row, column]
-        centre_x, centre_fraction = x[row], fraction[row, column]
-        nearest = np.diff(x)[max(row - 1, 0) : row + 1]
-        reach_x = float(np.max(nearest, initial=SAME_GRID * self.scale))
-        reach_fraction = float(fraction[0, 1])
-        window = np.linspace(-1.0, 1.0, 7)
-        slope, factor = 0.0, WIDER
-        # Beyond this fraction the largest value changes by rounding only.
-        while factor * reach_fraction > 1e-8:
-            x = (centre_x + reach_x * window).clip(*self.edge.knots.x[[0, -1]])
-            fraction = centre_fraction + reach_fraction * window + slope * (x - centre_x)[:, None]
-            fraction = fraction.clip(0.0, 1.0)
-            reach_x, reach_fraction = factor * reach_x, factor * reach_fraction
-            values = sampled(x, fraction)
-            row, column = np.unravel_index(np.argmax(values), values.shape)
-            # The largest value may lie on a ridge across the grid: later grids are turned along it.
-            ridge = fraction[np.arange(x.size), np.argmax(values, axis=1)]
-            away = x - np.mean(x)
-            slope = float(away @ ridge / max(away @ away, 1e-300))
-            value = values[row, column]
-            factor = WIDER if value > largest * (1.0 + 1e-10) else NARROWER
-            if value > largest:
-                largest = value
-                centre_x, centre_fraction = x[row], fraction[row, column]
-        return float(largest)
+        largest = 0.0
+        while True:
+            highest = self._highest(x, np.minimum(horizon(x), until))
+            row = int(np.argmax(highest))
+            largest = max(largest, float(highest[row]))
+            start, end = x[max(row - 1, 0)], x[min(row + 1, x.size - 1)]
+            # The largest value in a shorter interval differs by rounding only.
+            if end - start <= NARROWEST * self.scale:
+                return largest
+            x = np.linspace(start, end, FINER)
+
+    def _highest(self, x: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """Largest slip velocity at each position before it sticks and before a last time."""
+        release, last = self.curve.arrival(x), np.minimum(self.edge.about(x), last)
+        time = np.linspace(release, np.maximum(release, last), FINER, axis=1)
+        values = self.velocity(np.repeat(x, FINER), time.ravel()).reshape(time.shape)
+        row, column = np.arange(x.size), np.argmax(values, axis=1)
+        start = time[row, np.maximum(column - 1, 0)]
+        end = time[row, np.minimum(column + 1, FINER - 1)]
+
+        def acceleration(time: np.ndarray, which: np.ndarray) -> np.ndarray:
+            return np.add(*self.past(x[which], time).velocity_slopes())
+
+        rise, fall = acceleration(start, row), acceleration(end, row)
+        row = np.flatnonzero((rise > 0.0) & (fall < 0.0))
+        start, end, rise, fall = np.array([start, end, rise, fall])[:, row]
+        peak = roots_between(
+            lambda time, k: acceleration(time, row[k]), start, end, rise, fall, 1e-7 * self.scale
+        )
+        out = values.max(axis=1)
+        out[row] = np.maximum(out[row], self.velocity(x[row], peak))
+        return out
 
     def _positions_by_knots(self) -> np.ndarray:
         """Positions as dense as the knots of the trailing edge, and between them."""

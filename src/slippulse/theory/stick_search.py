@@ -18,6 +18,8 @@ MOST_TIMES = 10**8
 FINE = 24
 # Error of a root in time.
 TIME = 1e-12
+# Fractions of a bracket at which du/dt is looked at, the latest first.
+HALVES = 0.5 ** np.arange(41)
 # Slip velocities on a slow front are below this, and would be 0.
 QUIET = 1e-12
 
@@ -150,15 +152,14 @@ class StickSearch:
     def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:
         """Move starts of flat brackets, in place, to where du/dt has risen; return those left."""
         # On a slow front that is about to stop du/dt rises for a short while only.
-        for _ in range(40):
-            if not flat.size:
-                break
-            middle = 0.5 * (brackets.start[flat] + brackets.end[flat])
-            velocity = self.velocity(brackets.x[flat], middle)
-            risen = velocity > QUIET
-            brackets.start[flat[risen]] = middle[risen]
-            brackets.velocity_at_start[flat[risen]] = velocity[risen]
-            flat = flat[~risen]
-            brackets.end[flat] = middle[~risen]
-            brackets.velocity_at_end[flat] = velocity[~risen]
-        return flat
+        start, end = brackets.start[flat, None], brackets.end[flat, None]
+        samples = self._sampled(brackets.x[flat], start + (end - start) * HALVES)
+        risen = samples.velocity > QUIET
+        # The first column, the end, has not risen; where none has, the last one is the end.
+        latest, row = np.argmax(risen, axis=1), np.arange(flat.size)
+        brackets.end[flat] = samples.time[row, latest - 1]
+        brackets.velocity_at_end[flat] = samples.velocity[row, latest - 1]
+        row = np.flatnonzero(latest)
+        brackets.start[flat[row]] = samples.time[row, latest[row]]
+        brackets.velocity_at_start[flat[row]] = samples.velocity[row, latest[row]]
+        return np.delete(flat, row)

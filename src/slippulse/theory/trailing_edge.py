@@ -13,9 +13,8 @@ middle does not show has begun within half an interval of the end, and du/dt at 
 0 there, where `Knots.dips` looks.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +32,8 @@ MARGIN, LEVEL = 0.5, 0.01
 # The shortest interval that is halved, and that in which the edge reaches the end, or a front that
 # has stopped, in units of `Part.scale`.
 SHORTEST, AT_END = 1e-3, 0.01
+# Distance of knots from where a wave from a mark meets the edge, in units of `Part.scale`.
+LANDED = 1e-5
 # Panels of the curve give one knot at most in a cell of this length, in units of `Part.scale`.
 CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
@@ -90,6 +91,10 @@ class Knots(NamedTuple):
         """Mask of the intervals whose two ends have these kinds in any order."""
         left, right = self.kind[k], self.kind[k + 1]
         return ((left == one) & (right == other)) | ((left == other) & (right == one))
+
+    def around(self, x: np.ndarray, distance: float, k: np.ndarray) -> np.ndarray:
+        """Positions on both sides of some in intervals, within these."""
+        return np.clip([x - distance, x + distance], self.x[k], self.x[k + 1]).ravel()
 
     def brief(self, k: np.ndarray) -> np.ndarray:
         """Mask of the intervals with an end that slid too briefly."""
@@ -171,15 +176,21 @@ class TrailingEdge:
         x = np.unique([left, *edges, *self.part.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.part.until)]
         x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
-        search = self.part.search
-        knots = self._knots_of(x, search(x))
+        # Knots halfway are found together with the others, and as independently.
+        halfway = 0.5 * (x[:-1] + x[1:])
+        x = np.sort(np.append(x, halfway))
+        knots = self._knots_of(x, self.part.search(x))
         if x.size < 2:
             return knots
-        x = self._landings(knots)
-        knots = knots.joined(self._knots_of(x, search(x)))
-        knots, todo = self._refined(knots, knots.x[:-1], search)
-        while todo.size:
-            knots, todo = self._refined(knots, todo, partial(self._stick_time, knots))
+        apart = Knots._make(values[::2] for values in knots)
+        predicted = apart.predict(np.arange(halfway.size), Knots._make(v[1::2] for v in knots))
+        again = ~np.repeat(predicted, 2)
+        left = x[:-1][again | knots.dips(np.arange(x.size - 1))]
+        x = np.union1d(self._landings(knots), self._near_end(knots))
+        left = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval(x)]])
+        knots = knots.joined(self._knots_of(x, self.part.search(x)))
+        while left.size:
+            knots, left = self._refined(knots, left)
         return knots
 
     def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
@@ -195,7 +206,7 @@ class TrailingEdge:
         return Knots(x, time, kind, velocity, by_xi, by_eta)
 
     def _landings(self, knots: Knots) -> np.ndarray:
-        """Positions where waves from the marks meet the trailing edge."""
+        """Positions on both sides of those where waves from the marks meet the trailing edge."""
         marks = np.array(self.part.marks)
         arrival = self.part.curve.arrival(marks)
         out = []
@@ -210,12 +221,26 @@ class TrailingEdge:
                 past = self.part.past(x, time)
                 x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
                 x = x.clip(knots.x[k], knots.x[k + 1])
-            out.append(x)
-        return np.unique(np.concatenate(out))
+            # The edge has a kink there.
+            out.append(knots.around(x, LANDED * self.part.scale, k))
+        return np.concatenate(out)
 
-    def _refined(
-        self, knots: Knots, left: np.ndarray, stick_time: Callable[[np.ndarray], np.ndarray]
-    ) -> tuple[Knots, np.ndarray]:
+    def _near_end(self, knots: Knots) -> np.ndarray:
+        """Positions on both sides of those where the trailing edge reaches the end."""
+
+        def velocity(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+            return self.part.velocity(x, np.full(x.size, self.part.until))
+
+        k = np.arange(knots.x.size - 1)
+        k = k[knots.of_kinds(k, FAST, SLIDES)]
+        at_left, at_right = velocity(knots.x[k], k), velocity(knots.x[k + 1], k)
+        meets = at_left * at_right < 0.0
+        k, at_left, at_right = k[meets], at_left[meets], at_right[meets]
+        near = 0.4 * AT_END * self.part.scale
+        x = roots_between(velocity, knots.x[k], knots.x[k + 1], at_left, at_right, xtol=0.5 * near)
+        return knots.around(x, near, k)
+
+    def _refined(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
         """More knots in some intervals, and the left ends of the intervals to look at next."""
         k = self._before_jumps(knots, np.searchsorted(knots.x, left))
         jumps, at_end = knots.jumps(k), knots.of_kinds(k, FAST, SLIDES)
@@ -232,7 +257,9 @@ class TrailingEdge:
         dips = knots.dips(halved)
         middle[dips] = self._lowest(knots, halved[dips])
         x = np.append(pieces[1:].ravel(), middle)
-        new = self._knots_of(x, stick_time(x))
+        if not x.size:
+            return knots, x
+        new = self._knots_of(x, self._stick_time(knots, x))
         in_middle = Knots._make(values[x.size - middle.size :] for values in new)
         surprise = ~knots.predict(halved, in_middle)
         halves = np.append(knots.x[halved], middle)
