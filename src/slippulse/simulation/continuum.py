@@ -30,22 +30,16 @@ def solve_exactly(
         progress(0.0)
     # Without a nucleation everything stays at rest.
     rupture = exact_rupture(scene) if nucleations(scene.prestress) else None
-    x = _positions(scene, rupture)
+    # Multiples of dx over all that is released until the end, and a margin.
+    ends = [end.x for pair in rupture.front_ends for end in pair] if rupture else [0.0]
+    first, last = min(ends), max(ends)
+    check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
+    start, end = math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN
+    x = np.arange(start, end + 1) * scene.dx
     fields = _fields(rupture, x, scene.duration)
     numbers = _numbers(rupture, fields, scene.duration)
     recorded = _sampled(rupture, samples) if samples is not None else {}
     return Solution(x, scene.prestress(x), numbers=numbers, **fields | recorded)
-
-
-def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
-    """Multiples of dx over all that is released until the end, and a margin."""
-    first, last = 0.0, 0.0
-    if rupture is not None:
-        first = min(left.x for left, _ in rupture.front_ends)
-        last = max(right.x for _, right in rupture.front_ends)
-    check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
-    start, end = math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN
-    return np.arange(start, end + 1) * scene.dx
 
 
 def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:

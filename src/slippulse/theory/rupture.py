@@ -97,26 +97,19 @@ class Rupture:
         self._last = self.duration * (1.0 + SAME)
         until = self.duration * (1.0 + BEYOND)
         self.stretches, self._unknown = spread(self.law, until)
-        self._parts = [self._part(stretch, until) for stretch in self.stretches]
+        self._parts = []
+        for stretch in self.stretches:
+            curve, law = stretch.curve(), self.law
+            kinks = [piece.right for piece in law.pieces if np.isfinite(piece.right)]
+            restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
+            ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
+            marks = np.unique([0.0, *kinks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+            marks = marks[curve.covers(marks)]
+            keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
+            self._parts.append(SolvedPart(*keys))
         # A symmetric scene is solved at x >= 0.
         one_side = prestress.symmetric
         self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0 or not one_side]
-
-    def _part(self, stretch: Stretch, until: float) -> SolvedPart:
-        kinks = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
-        restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
-        ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-        curve = stretch.curve()
-        marks = np.array([0.0, *kinks, *restarts, *stretch.joins, *ends, *self.law.narrow_features])
-        return SolvedPart(
-            curve,
-            self.gamma,
-            until,
-            marks=np.unique(marks[curve.covers(marks)]),
-            refinement=self.law.refinement,
-            one_side=self.prestress.symmetric,
-            alpha=self.law.alpha,
-        )
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:

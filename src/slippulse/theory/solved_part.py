@@ -68,7 +68,11 @@ class SolvedPart(Part):
 
     def largest_velocity(self, until: float, horizon: Callable) -> float:
         """Largest slip velocity until a time and before a horizon."""
-        x = self._positions_by_knots()
+        # Positions as dense as the knots of the trailing edge, and between them.
+        knots = self.edge.knots.x
+        knots = knots[np.diff(knots, prepend=-np.inf) > SAME_GRID * self.scale]
+        index = np.arange(knots.size)
+        x = np.interp(np.linspace(0.0, index[-1], DENSER * index[-1] + 1), index, knots)
         largest = 0.0
         while True:
             highest = self._highest(x, np.minimum(horizon(x), until))
@@ -101,10 +105,3 @@ class SolvedPart(Part):
         out = values.max(axis=1)
         out[row] = np.maximum(out[row], self.velocity(x[row], peak))
         return out
-
-    def _positions_by_knots(self) -> np.ndarray:
-        """Positions as dense as the knots of the trailing edge, and between them."""
-        x = self.edge.knots.x
-        apart = x[np.diff(x, prepend=-np.inf) > SAME_GRID * self.scale]
-        index = np.arange(apart.size)
-        return np.interp(np.linspace(0.0, index[-1], DENSER * index[-1] + 1), index, apart)

@@ -84,7 +84,15 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
         stretches = _joined(stretches)
     stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
     unknown = [(point, UNKNOWN[reason]) for point, reason in stops if reason in UNKNOWN]
-    return stretches, unknown + _overrun(stretches)
+    # The motion of a front that comes to where another has stopped for good is unknown.
+    for (left, right), side in product(pairwise(stretches), SIDES):
+        stopped, moving = (left, right) if side == LEFT else (right, left)
+        x = stopped.ends[-side].x
+        if moving.panels and side * moving.ends[side].x > side * x:
+            moving.cut(side, x)
+            moving.end_reason[side] = "met"
+            unknown.append((moving.ends[side], OVERRUN))
+    return stretches, unknown
 
 
 def _nucleated(law: FastFront) -> list[Stretch]:
@@ -103,19 +111,6 @@ def _nucleated(law: FastFront) -> list[Stretch]:
             panels, _ = law.rightwards(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         out.append(stretch)
-    return out
-
-
-def _overrun(stretches: list[Stretch]) -> list[tuple[Point, str]]:
-    """Cut fronts that come to where another has stopped for good: their motion there is unknown."""
-    out = []
-    for left, right in pairwise(stretches):
-        for stopped, moving, side in ((left, right, LEFT), (right, left, RIGHT)):
-            x = stopped.ends[-side].x
-            if moving.panels and side * moving.ends[side].x > side * x:
-                moving.cut(side, x)
-                moving.end_reason[side] = "met"
-                out.append((moving.ends[side], OVERRUN))
     return out
 
 
@@ -157,34 +152,27 @@ def _joined(stretches: list[Stretch]) -> list[Stretch]:
     """The stretches, with neighbours whose fronts have met made one."""
     out = [stretches[0]]
     for right in stretches[1:]:
-        x = _meeting_position(out[-1], right)
-        if x is None:
-            out.append(right)
-        else:
-            out[-1] = _merged(out[-1], right, x)
+        merged = _merged(out[-1], right)
+        out = [*out, right] if merged is None else [*out[:-1], merged]
     return out
 
 
-def _meeting_position(left: Stretch, right: Stretch) -> float | None:
-    """The position that both fronts reach at the same time; None where they have not met."""
+def _merged(left: Stretch, right: Stretch) -> Stretch | None:
+    """One stretch of two if their fronts have met: each position belongs to the earlier front."""
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None
     first, second = left.curve(), right.curve()
 
     def lead(x: float) -> float:
-        return float(first.arrival(np.array(x)) - second.arrival(np.array(x)))
+        return float(first.arrival(x) - second.arrival(x))
 
     low = max(right.ends[LEFT].x, float(first.edges[0]))
     high = min(left.ends[RIGHT].x, float(second.edges[-1]))
     if not (lead(low) <= 0.0 <= lead(high)):
         return None
-    return root_between(lead, low, high, xtol=1e-14)
-
-
-def _merged(left: Stretch, right: Stretch, x: float) -> Stretch:
-    """One stretch of two whose fronts have met at x: each position belongs to the earlier front."""
-    nearby = np.array([[x - JUST_BEFORE, x], [x, x + JUST_BEFORE]])
-    times = np.array([left.curve().arrival(nearby[0]), right.curve().arrival(nearby[1])])
+    x = root_between(lead, low, high, xtol=1e-14)
+    before, after = np.array([x - JUST_BEFORE, x]), np.array([x, x + JUST_BEFORE])
+    times = np.array([first.arrival(before), second.arrival(after)])
     restart = [x] if np.any(np.abs(np.diff(times)) > JUST_BEFORE) else []
     left.cut(RIGHT, x)
     right.cut(LEFT, x)

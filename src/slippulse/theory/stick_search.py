@@ -24,36 +24,12 @@ HALVES = 0.5 ** np.arange(41)
 QUIET = 1e-12
 
 
-class Brackets(NamedTuple):
-    """Intervals of time at positions, and the slip velocity at both ends: at most 0 at the end."""
-
-    x: np.ndarray
-    start: np.ndarray
-    end: np.ndarray
-    velocity_at_start: np.ndarray
-    velocity_at_end: np.ndarray
-
-
 class VelocitySamples(NamedTuple):
     """Slip velocities at positions and times: one row a position, one column a time."""
 
     x: np.ndarray
     time: np.ndarray
     velocity: np.ndarray
-
-    def brackets(self, rows: np.ndarray, columns: np.ndarray) -> Brackets:
-        """The intervals of some rows that end at these columns."""
-        start, end = (rows, columns - 1), (rows, columns)
-        times = self.time[start], self.time[end]
-        return Brackets(self.x[rows], *times, self.velocity[start], self.velocity[end])
-
-    def minima(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rows and columns of the lowest of three samples, as far as a last column for each row."""
-        change = np.diff(self.velocity, axis=1)
-        early = np.arange(1, self.velocity.shape[1] - 1) < columns[:, None]
-        apart = self.time[:, 2:] > self.time[:, 1:-1]
-        rows, inner = np.nonzero((change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0) & early & apart)
-        return rows, inner + 1
 
 
 @dataclass(frozen=True)
@@ -82,13 +58,12 @@ class StickSearch:
             times = times[:, BATCH:]
             time = np.append(last_time[sliding], batch.time, axis=1)
             velocity = np.append(last_velocity[sliding], batch.velocity, axis=1)
-            samples = VelocitySamples(x[sliding], time, velocity)
-            below = batch.velocity <= 0.0
+            samples, below = VelocitySamples(x[sliding], time, velocity), batch.velocity <= 0.0
             stuck = below.any(axis=1)
             first = np.where(stuck, 2 + np.argmax(below, axis=1), time.shape[1])
             stick = self._zeros_next_to_minima(samples, first)
             rows = np.flatnonzero(stuck & ~np.isfinite(stick))
-            stick[rows] = self._zeros(samples.brackets(rows, first[rows]))
+            stick[rows] = self._zeros(samples, rows, first[rows])
             out[sliding] = stick
             last_time[sliding], last_velocity[sliding] = time[:, -2:], velocity[:, -2:]
             sliding = sliding[~np.isfinite(stick) & (time[:, -1] < self.until)]
@@ -115,51 +90,41 @@ class StickSearch:
     def _zeros_next_to_minima(self, samples: VelocitySamples, first: np.ndarray) -> np.ndarray:
         """Zeros between samples next to minima above 0, before a first column below 0; or NaN."""
         out = np.full(samples.x.shape, np.nan)
-        rows, columns = samples.minima(first)
-        low, high = samples.time[rows, columns - 1], samples.time[rows, columns + 1]
-        for _ in range(2):
-            if not rows.size:
-                break
+        change = np.diff(samples.velocity, axis=1)
+        lowest = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
+        lowest &= samples.time[:, 2:] > samples.time[:, 1:-1]
+        rows, before = np.nonzero(lowest & (np.arange(1, change.shape[1]) < first[:, None]))
+        low, high = samples.time[rows, before], samples.time[rows, before + 2]
+        for _ in range(2 if rows.size else 0):
             fine = self._sampled(samples.x[rows], np.linspace(low, high, FINE + 1, axis=1))
             below = np.argmax(fine.velocity <= 0.0, axis=1)
-            hits = np.flatnonzero(below > 0)
-            zeros = self._zeros(fine.brackets(hits, below[hits]))
+            hits = np.flatnonzero(below)
+            zeros = self._zeros(fine, hits, below[hits])
             out[rows[hits]] = np.fmin(out[rows[hits]], zeros)
             rest = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
-            lowest = np.clip(np.argmin(fine.velocity[rest], axis=1), 1, FINE - 1)
-            rows = rows[rest]
-            low, high = fine.time[rest, lowest - 1], fine.time[rest, lowest + 1]
+            middle = np.clip(np.argmin(fine.velocity[rest], axis=1), 1, FINE - 1)
+            rows, low, high = rows[rest], fine.time[rest, middle - 1], fine.time[rest, middle + 1]
         return out
 
-    def _zeros(self, brackets: Brackets) -> np.ndarray:
-        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0."""
-        # A velocity that starts at 0, at release, is followed from where it has risen.
-        from_rest = brackets.velocity_at_start <= 0.0
-        flat = self._raise_starts(brackets, np.flatnonzero(from_rest))
-        others = np.setdiff1d(np.arange(from_rest.size), flat)
-        x, start, end, at_start, at_end = (values[others] for values in brackets)
-        target = np.where(from_rest[others], QUIET, 0.0)
+    def _zeros(self, samples: VelocitySamples, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Zeros of du/dt in steps that end at some columns; about the start if it never rises."""
+        x, ends = samples.x[rows], (rows, np.array([columns - 1, columns]))
+        time, velocity, target = samples.time[ends], samples.velocity[ends], np.zeros(rows.size)
+        # A velocity that starts at 0, at release, is followed from where it has risen: next to the
+        # point where a slow front stops it does so for a short while only.
+        flat = np.flatnonzero(velocity[0] <= 0.0)
+        start, end = time[:, flat, None]
+        fine = self._sampled(x[flat], start + (end - start) * HALVES)
+        # The first column, the end of the step, has not risen.
+        risen = np.argmax(fine.velocity > QUIET, axis=1)
+        ends = np.arange(flat.size), np.array([risen, risen - 1])
+        target[flat] = QUIET
+        time[:, flat], velocity[:, flat] = fine.time[ends], fine.velocity[ends] - QUIET
+        out, rises = time[1].copy(), np.flatnonzero(velocity[0] > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
-            return self.velocity(x[which], time) - target[which]
+            return self.velocity(x[rises[which]], time) - target[rises[which]]
 
-        out = brackets.end.copy()
-        out[others] = roots_between(
-            above_target, start, end, at_start - target, at_end - target, TIME
-        )
+        (start, end), (at_start, at_end) = time[:, rises], velocity[:, rises]
+        out[rises] = roots_between(above_target, start, end, at_start, at_end, TIME)
         return out
-
-    def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:
-        """Move starts of flat brackets, in place, to where du/dt has risen; return those left."""
-        # On a slow front that is about to stop du/dt rises for a short while only.
-        start, end = brackets.start[flat, None], brackets.end[flat, None]
-        samples = self._sampled(brackets.x[flat], start + (end - start) * HALVES)
-        risen = samples.velocity > QUIET
-        # The first column, the end, has not risen; where none has, the last one is the end.
-        latest, row = np.argmax(risen, axis=1), np.arange(flat.size)
-        brackets.end[flat] = samples.time[row, latest - 1]
-        brackets.velocity_at_end[flat] = samples.velocity[row, latest - 1]
-        row = np.flatnonzero(latest)
-        brackets.start[flat[row]] = samples.time[row, latest[row]]
-        brackets.velocity_at_start[flat[row]] = samples.velocity[row, latest[row]]
-        return np.delete(flat, row)

@@ -6,11 +6,13 @@ lies in the past of a sliding one, and Riemann's formula holds up to sticking. T
 that has stuck is then d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no
 block is ever released again.
 
-The edge is known at knots: at the panels of the curve and where waves from its marks meet the edge,
-then halfway between knots as long as these do not predict what is found there. No first stick lies
-unseen between knots that slide: what sticks grows to both sides faster than the waves, so what the
-middle does not show has begun within half an interval of the end, and du/dt at the end dips below
-0 there, where `Knots.dips` looks.
+The edge is known at knots: at the panels of the curve, and on both sides of where waves from its
+marks meet the edge, then halfway between knots as long as these do not predict what is found there.
+No first stick lies unseen between knots that slide: what sticks grows to both sides faster than the
+waves, so what the middle does not show has begun within half an interval of the end, and du/dt at
+the end dips below 0 there. A cubic through its values and slopes at two knots predicts du/dt at the
+end halfway to PREDICTED_VELOCITY of itself, and what lies between is found in the same way; where
+its tangents come closer to 0 than MARGIN its lowest value is looked at (`Knots.dips`).
 """
 
 from dataclasses import dataclass
@@ -23,9 +25,9 @@ from ..model.roots import root_between, roots_between
 from .curve import SAME, Point
 from .part import Part
 
-# Stick times halfway between knots are predicted to this fraction of the interval, and their slopes
-# to this.
-PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
+# Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
+# this, and du/dt at the end to this fraction of itself.
+PREDICTED, PREDICTED_SLOPE, PREDICTED_VELOCITY = 1e-5, 0.05, 0.01
 # Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero, and
 # pace of the edge that is not level.
 MARGIN, LEVEL = 0.5, 0.01
@@ -92,6 +94,10 @@ class Knots(NamedTuple):
         left, right = self.kind[k], self.kind[k + 1]
         return ((left == one) & (right == other)) | ((left == other) & (right == one))
 
+    def outruns(self, k: np.ndarray) -> np.ndarray:
+        """Mask of the intervals in which the edge outruns the waves."""
+        return self.of_kinds(k, FAST, FAST) & ~self.jumps(k)
+
     def around(self, x: np.ndarray, distance: float, k: np.ndarray) -> np.ndarray:
         """Positions on both sides of some in intervals, within these."""
         return np.clip([x - distance, x + distance], self.x[k], self.x[k + 1]).ravel()
@@ -134,7 +140,11 @@ class Knots(NamedTuple):
         # The closer the edge is to the speed of the waves, the less it may turn unseen.
         steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
         near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        return one_kind & (near | (middle.kind != FAST))
+        slope = self.by_eta - self.by_xi
+        expected = 0.5 * (self.velocity[k] + self.velocity[k + 1])
+        expected += 0.25 * half * (slope[k] - slope[k + 1])
+        bounded = np.abs(middle.velocity - expected) <= PREDICTED_VELOCITY * middle.velocity
+        return one_kind & np.where(middle.kind == FAST, near, bounded | (middle.kind != SLIDES))
 
     def dips(self, k: np.ndarray) -> np.ndarray:
         """Mask of the intervals that slide, in which du/dt at the end may have a zero.
@@ -212,7 +222,7 @@ class TrailingEdge:
         out = []
         for side in (-1.0, 1.0):
             phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
-            fast = knots.of_kinds(np.arange(knots.x.size - 1), FAST, FAST)[:, None]
+            fast = knots.outruns(np.arange(knots.x.size - 1))[:, None]
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
             x = knots.x[k] + (knots.x[k + 1] - knots.x[k]) * before / (before - after)
@@ -225,24 +235,28 @@ class TrailingEdge:
             out.append(knots.around(x, LANDED * self.part.scale, k))
         return np.concatenate(out)
 
+    def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        return self.part.velocity(x, np.full(x.size, self.part.until))
+
     def _near_end(self, knots: Knots) -> np.ndarray:
         """Positions on both sides of those where the trailing edge reaches the end."""
-
-        def velocity(x: np.ndarray, which: np.ndarray) -> np.ndarray:
-            return self.part.velocity(x, np.full(x.size, self.part.until))
-
         k = np.arange(knots.x.size - 1)
         k = k[knots.of_kinds(k, FAST, SLIDES)]
-        at_left, at_right = velocity(knots.x[k], k), velocity(knots.x[k + 1], k)
+        at_left, at_right = (self._velocity_at_end(knots.x[ends]) for ends in (k, k + 1))
         meets = at_left * at_right < 0.0
         k, at_left, at_right = k[meets], at_left[meets], at_right[meets]
-        near = 0.4 * AT_END * self.part.scale
-        x = roots_between(velocity, knots.x[k], knots.x[k + 1], at_left, at_right, xtol=0.5 * near)
+        left, right, near = knots.x[k], knots.x[k + 1], 0.4 * AT_END * self.part.scale
+        x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
         return knots.around(x, near, k)
 
     def _refined(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
         """More knots in some intervals, and the left ends of the intervals to look at next."""
-        k = self._before_jumps(knots, np.searchsorted(knots.x, left))
+        k = np.searchsorted(knots.x, left)
+        # Nothing is known in the future of a jump, wherever it is in its interval.
+        ends, lengths = knots.fast_ends(k)
+        sides = np.array([k, k + 1])[..., None]
+        earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
+        k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
         jumps, at_end = knots.jumps(k), knots.of_kinds(k, FAST, SLIDES)
         size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
         short = np.full(k.size, SHORTEST * scale)
@@ -259,7 +273,7 @@ class TrailingEdge:
         x = np.append(pieces[1:].ravel(), middle)
         if not x.size:
             return knots, x
-        new = self._knots_of(x, self._stick_time(knots, x))
+        new = self._knots_of(x, self.stick_time(x, knots))
         in_middle = Knots._make(values[x.size - middle.size :] for values in new)
         surprise = ~knots.predict(halved, in_middle)
         halves = np.append(knots.x[halved], middle)
@@ -281,38 +295,28 @@ class TrailingEdge:
         slopes = knots.by_eta - knots.by_xi
         return roots_between(slope, knots.x[k], knots.x[k + 1], slopes[k], slopes[k + 1], xtol=STEP)
 
-    def _before_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
-        """Intervals without those in the future of a jump, wherever it is in its interval."""
-        ends, lengths = knots.fast_ends(k)
-        sides = np.array([k, k + 1])[..., None]
-        earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
-        return k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
-
     def about(self, x: np.ndarray) -> np.ndarray:
         """Stick times to a fraction of the distance of knots; the end for none."""
         knots = self.knots
         k = knots.interval(x)
-        fast = knots.of_kinds(k, FAST, FAST)
-        return np.where(fast, knots.stick_between(k, x), np.interp(x, knots.x, knots.stick))
+        return np.where(
+            knots.outruns(k), knots.stick_between(k, x), np.interp(x, knots.x, knots.stick)
+        )
 
-    def stick_time(self, x: np.ndarray) -> np.ndarray:
-        """Stick times at positions; NaN where there is none before the end."""
-        return self._stick_time(self.knots, x)
-
-    def _stick_time(self, knots: Knots, x: np.ndarray) -> np.ndarray:
-        until = self.part.until
+    def stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
+        """Stick times at positions, with the help of knots; NaN where there is none."""
+        knots = knots or self.knots
         if knots.x.size < 2:
             return self.part.search(x)
         k = knots.interval(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        fast = knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
-        out = self._between_knots(knots, x, k, inside & fast)
+        out = self._between_knots(knots, x, k, inside & knots.outruns(k))
         # A position that slides at the end, as both knots do, has not stuck.
         slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
-        slides = slides[self.part.velocity(x[slides], np.full(slides.size, until)) > 0.0]
+        slides = slides[self._velocity_at_end(x[slides]) > 0.0]
         unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
         out[unknown] = self.part.search(x[unknown])
-        return np.where(out <= until, out, np.nan)
+        return np.where(out <= self.part.until, out, np.nan)
 
     def _between_knots(
         self, knots: Knots, x: np.ndarray, k: np.ndarray, wanted: np.ndarray
@@ -363,7 +367,6 @@ class TrailingEdge:
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         k = np.arange(knots.x.size - 1)
-        fast = knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
         side = nearest - int(knots.pace[nearest] > 0.0)
         if 0 <= side < k.size and knots.of_kinds(k, FAST, SLIDES)[side]:
             # The minimum is beyond the last knot that has stuck.
@@ -372,7 +375,7 @@ class TrailingEdge:
             minimum = self._minimum(*ends.tolist())
             out = minimum if minimum and minimum.time <= out.time else out
         # A minimum may lie in each interval at whose ends the edge goes down into it.
-        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & fast
+        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & knots.outruns(k)
         lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         for low in np.flatnonzero(down & (lowest < out.time)).tolist():
             minimum = self._minimum(*knots.x[[low, low + 1]].tolist())
@@ -383,12 +386,13 @@ class TrailingEdge:
 
     def _minimum(self, left: float, right: float) -> FirstStick | None:
         """The first sticking between two positions, if the edge goes down into the interval."""
-        # Where rounding alone says that it does, the knot itself is the minimum.
-        if not self._pace(left) < 0.0 < self._pace(right):
-            return None
-        x = root_between(self._pace, left, right, xtol=STEP)
-        return FirstStick(float(self.stick_time(np.array([x]))[0]), x)
 
-    def _pace(self, position: float) -> float:
-        x = np.array([position])
-        return float(self._knots_of(x, self.stick_time(x)).pace[0])
+        def pace(position: float) -> float:
+            x = np.array([position])
+            return float(self._knots_of(x, self.stick_time(x)).pace[0])
+
+        # Where rounding alone says that it does, the knot itself is the minimum.
+        if not pace(left) < 0.0 < pace(right):
+            return None
+        x = root_between(pace, left, right, xtol=STEP)
+        return FirstStick(float(self.stick_time(np.array([x]))[0]), x)
