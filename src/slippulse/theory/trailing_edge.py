@@ -10,9 +10,8 @@ The edge is known at knots: at the panels of the curve, and on both sides of whe
 marks meet the edge, then halfway between knots as long as these do not predict what is found there.
 No first stick lies unseen between knots that slide: what sticks grows to both sides faster than the
 waves, so what the middle does not show has begun within half an interval of the end, and du/dt at
-the end dips below 0 there. A cubic through its values and slopes at two knots predicts du/dt at the
-end halfway to PREDICTED_VELOCITY of itself, and what lies between is found in the same way; where
-its tangents come closer to 0 than MARGIN its lowest value is looked at (`Knots.dips`).
+the end dips below 0 there. Intervals are halved until a cubic predicts du/dt at the end halfway to
+PREDICTED_VELOCITY of itself, and as long as its tangents come near 0 (`Knots.dips`).
 """
 
 from dataclasses import dataclass
@@ -31,8 +30,8 @@ PREDICTED, PREDICTED_SLOPE, PREDICTED_VELOCITY = 1e-5, 0.05, 0.01
 # Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero, and
 # pace of the edge that is not level.
 MARGIN, LEVEL = 0.5, 0.01
-# The shortest interval that is halved, and that in which the edge reaches the end, or a front that
-# has stopped, in units of `Part.scale`.
+# The shortest interval that is halved, and the time below which sliding is brief, in units of
+# `Part.scale`; and the shortest interval in which the edge reaches the end, or a stopped front.
 SHORTEST, AT_END = 1e-3, 0.01
 # Distance of knots from where a wave from a mark meets the edge, in units of `Part.scale`.
 LANDED = 1e-5
@@ -49,8 +48,6 @@ ROUNDING = 1e-12
 # Kinds of a knot: it slides at the end; it has stuck, where the edge outruns the waves or not; or
 # it slid too briefly to tell, next to the point where a slow front has stopped.
 SLIDES, FAST, SLOW, BRIEF = range(4)
-# Sliding is brief below this time, in units of `Part.scale`.
-SHORT = 1e-3
 
 
 class FirstStick(NamedTuple):
@@ -122,13 +119,23 @@ class Knots(NamedTuple):
         at_right = np.where(left == right, right_first, right == FAST)
         return np.where(at_right, k + 1, k), self.x[k + 1] - self.x[k]
 
+    @property
+    def slope(self) -> np.ndarray:
+        """Derivative of du/dt by position."""
+        return self.by_eta - self.by_xi
+
     def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Stick times by cubics in intervals."""
-        stick, pace, span = self.stick, self.pace, self.x[k + 1] - self.x[k]
+        return self._cubic(self.stick, self.pace, k, x)
+
+    def _cubic(
+        self, values: np.ndarray, slopes: np.ndarray, k: np.ndarray, x: np.ndarray
+    ) -> np.ndarray:
+        span = self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
-        bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
-        rise = stick[k + 1] - stick[k]
-        return stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
+        bow = span * ((1.0 - s) * slopes[k] - s * slopes[k + 1])
+        rise = values[k + 1] - values[k]
+        return values[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
     def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
         """Mask of the intervals whose ends predict the knot in the middle."""
@@ -140,18 +147,16 @@ class Knots(NamedTuple):
         # The closer the edge is to the speed of the waves, the less it may turn unseen.
         steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
         near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        slope = self.by_eta - self.by_xi
-        expected = 0.5 * (self.velocity[k] + self.velocity[k + 1])
-        expected += 0.25 * half * (slope[k] - slope[k + 1])
-        bounded = np.abs(middle.velocity - expected) <= PREDICTED_VELOCITY * middle.velocity
+        surprise = middle.velocity - self._cubic(self.velocity, self.slope, k, middle.x)
+        bounded = np.abs(surprise) <= PREDICTED_VELOCITY * middle.velocity
         return one_kind & np.where(middle.kind == FAST, near, bounded | (middle.kind != SLIDES))
 
     def dips(self, k: np.ndarray) -> np.ndarray:
         """Mask of the intervals that slide, in which du/dt at the end may have a zero.
 
-        Its tangents at the ends meet below it where it bends upwards; elsewhere they have a margin.
+        Its tangents at the ends meet below it where it bends upwards; elsewhere MARGIN has to do.
         """
-        span, slope = self.x[k + 1] - self.x[k], self.by_eta - self.by_xi
+        span, slope = self.x[k + 1] - self.x[k], self.slope
         slides = np.minimum(self.velocity[k], self.velocity[k + 1]) > ROUNDING
         valley = slides & (slope[k] < -ROUNDING) & (slope[k + 1] > ROUNDING)
         difference = self.velocity[k + 1] - self.velocity[k] - slope[k + 1] * span
@@ -212,7 +217,7 @@ class TrailingEdge:
         by_xi, by_eta = past.velocity_slopes()
         slow = (by_xi >= 0.0) | (by_eta >= 0.0)
         kind = np.where(sticks, np.where(slow, SLOW, FAST), SLIDES)
-        kind[sticks & (time - part.curve.arrival(x) <= SHORT * part.scale)] = BRIEF
+        kind[sticks & (time - part.curve.arrival(x) <= SHORTEST * part.scale)] = BRIEF
         return Knots(x, time, kind, velocity, by_xi, by_eta)
 
     def _landings(self, knots: Knots) -> np.ndarray:
@@ -261,15 +266,12 @@ class TrailingEdge:
         size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
-        short[jumps] = LOCATED * size
-        short[knots.dips(k) | knots.goes_down(k)] = LOCATED * size
+        short[jumps | knots.dips(k) | knots.goes_down(k)] = LOCATED * size
         long = knots.x[k + 1] - knots.x[k] > short
         cut = k[long & (jumps | at_end)]
         halved = k[long & ~jumps & ~at_end]
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], CUTS + 1)[:-1]
         middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
-        dips = knots.dips(halved)
-        middle[dips] = self._lowest(knots, halved[dips])
         x = np.append(pieces[1:].ravel(), middle)
         if not x.size:
             return knots, x
@@ -284,16 +286,6 @@ class TrailingEdge:
         rough = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
         again[halves.size :] |= rough[halves.size :]
         return refined, left[again]
-
-    def _lowest(self, knots: Knots, k: np.ndarray) -> np.ndarray:
-        """Where du/dt at the end is lowest in intervals into which it falls from both ends."""
-
-        def slope(x: np.ndarray, which: np.ndarray) -> np.ndarray:
-            by_xi, by_eta = self.part.past(x, np.full(x.size, self.part.until)).velocity_slopes()
-            return by_eta - by_xi
-
-        slopes = knots.by_eta - knots.by_xi
-        return roots_between(slope, knots.x[k], knots.x[k + 1], slopes[k], slopes[k + 1], xtol=STEP)
 
     def about(self, x: np.ndarray) -> np.ndarray:
         """Stick times to a fraction of the distance of knots; the end for none."""
