@@ -185,3 +185,7 @@ def test_nothing_slips_faster_than_the_largest_velocity(levels):
     times, positions = np.linspace(0.5, 10.8, 500), np.linspace(-12.0, 14.0, 800)
     largest = np.nanmax(rupture.map(times, positions, ("slip_velocity",))["slip_velocity"])
     assert largest * (1.0 - 1e-12) <= rupture.largest_velocity < 1.002 * largest
+    if levels[0] < 0.0:
+        # The ridge rises until the end.
+        at_end = rupture.slip_velocity(np.linspace(12.6, 12.8, 401), 10.8)
+        assert rupture.largest_velocity == pytest.approx(np.max(at_end), rel=1e-8)

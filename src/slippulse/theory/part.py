@@ -12,7 +12,8 @@ from .stick_search import StickSearch
 
 # Steps of a search in time, in units of `Part.scale`.
 SEARCH = 0.2
-# `Part.scale` without leaf springs and drag, as a fraction of the duration.
+# `Part.scale` without leaf springs and drag, as a fraction of the duration: no answer owes anything
+# to it, and a length of the scene would make a long search expensive.
 SCALE_WITHOUT_SPRINGS = 5.0 / 64.0
 
 

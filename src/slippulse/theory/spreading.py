@@ -102,9 +102,9 @@ def _nucleated(law: FastFront) -> list[Stretch]:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
     out = []
-    for number, (left, right) in enumerate(starts):
-        before = starts[number - 1][1] if number > 0 else -np.inf
-        after = starts[number + 1][0] if number + 1 < len(starts) else np.inf
+    befores = [-np.inf, *(right for _, right in starts)]
+    afters = [*(left for left, _ in starts[1:]), np.inf]
+    for before, (left, right), after in zip(befores, starts, afters, strict=False):
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
         stretch = Stretch(ends, {LEFT: -before, RIGHT: after})
         if left < right:

@@ -95,10 +95,6 @@ class Knots(NamedTuple):
         """Mask of the intervals in which the edge outruns the waves."""
         return self.of_kinds(k, FAST, FAST) & ~self.jumps(k)
 
-    def around(self, x: np.ndarray, distance: float, k: np.ndarray) -> np.ndarray:
-        """Positions on both sides of some in intervals, within these."""
-        return np.clip([x - distance, x + distance], self.x[k], self.x[k + 1]).ravel()
-
     def brief(self, k: np.ndarray) -> np.ndarray:
         """Mask of the intervals with an end that slid too briefly."""
         return (self.kind[k] == BRIEF) | (self.kind[k + 1] == BRIEF)
@@ -118,11 +114,6 @@ class Knots(NamedTuple):
         right_first = self.stick[k] >= self.stick[k + 1]
         at_right = np.where(left == right, right_first, right == FAST)
         return np.where(at_right, k + 1, k), self.x[k + 1] - self.x[k]
-
-    @property
-    def slope(self) -> np.ndarray:
-        """Derivative of du/dt by position."""
-        return self.by_eta - self.by_xi
 
     def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Stick times by cubics in intervals."""
@@ -147,8 +138,8 @@ class Knots(NamedTuple):
         # The closer the edge is to the speed of the waves, the less it may turn unseen.
         steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
         near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        surprise = middle.velocity - self._cubic(self.velocity, self.slope, k, middle.x)
-        bounded = np.abs(surprise) <= PREDICTED_VELOCITY * middle.velocity
+        velocity = self._cubic(self.velocity, self.by_eta - self.by_xi, k, middle.x)
+        bounded = np.abs(middle.velocity - velocity) <= PREDICTED_VELOCITY * middle.velocity
         return one_kind & np.where(middle.kind == FAST, near, bounded | (middle.kind != SLIDES))
 
     def dips(self, k: np.ndarray) -> np.ndarray:
@@ -156,18 +147,13 @@ class Knots(NamedTuple):
 
         Its tangents at the ends meet below it where it bends upwards; elsewhere MARGIN has to do.
         """
-        span, slope = self.x[k + 1] - self.x[k], self.slope
+        span, slope = self.x[k + 1] - self.x[k], self.by_eta - self.by_xi
         slides = np.minimum(self.velocity[k], self.velocity[k + 1]) > ROUNDING
         valley = slides & (slope[k] < -ROUNDING) & (slope[k + 1] > ROUNDING)
         difference = self.velocity[k + 1] - self.velocity[k] - slope[k + 1] * span
         distance = difference / np.where(valley, slope[k] - slope[k + 1], 1.0)
         least = self.velocity[k] + slope[k] * distance
         return valley & (least <= MARGIN * np.minimum(self.velocity[k], self.velocity[k + 1]))
-
-    def goes_down(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals into which the edge goes down, towards an end that slides."""
-        pace = np.where(self.kind[k] == FAST, -self.pace[k], self.pace[k + 1])
-        return self.of_kinds(k, FAST, SLIDES) & (pace > LEVEL)
 
 
 @dataclass
@@ -230,14 +216,15 @@ class TrailingEdge:
             fast = knots.outruns(np.arange(knots.x.size - 1))[:, None]
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
-            x = knots.x[k] + (knots.x[k + 1] - knots.x[k]) * before / (before - after)
+            left, right, near = knots.x[k], knots.x[k + 1], LANDED * self.part.scale
+            x = left + (right - left) * before / (before - after)
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
                 past = self.part.past(x, time)
                 x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
-                x = x.clip(knots.x[k], knots.x[k + 1])
+                x = x.clip(left, right)
             # The edge has a kink there.
-            out.append(knots.around(x, LANDED * self.part.scale, k))
+            out.append(np.clip([x - near, x + near], left, right).ravel())
         return np.concatenate(out)
 
     def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
@@ -252,7 +239,7 @@ class TrailingEdge:
         k, at_left, at_right = k[meets], at_left[meets], at_right[meets]
         left, right, near = knots.x[k], knots.x[k + 1], 0.4 * AT_END * self.part.scale
         x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
-        return knots.around(x, near, k)
+        return np.clip([x - near, x + near], left, right).ravel()
 
     def _refined(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
         """More knots in some intervals, and the left ends of the intervals to look at next."""
@@ -266,7 +253,9 @@ class TrailingEdge:
         size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
-        short[jumps | knots.dips(k) | knots.goes_down(k)] = LOCATED * size
+        # Into some intervals the edge goes down, towards an end that slides.
+        down = np.where(knots.kind[k] == FAST, -knots.pace[k], knots.pace[k + 1]) > LEVEL
+        short[jumps | knots.dips(k) | (at_end & down)] = LOCATED * size
         long = knots.x[k + 1] - knots.x[k] > short
         cut = k[long & (jumps | at_end)]
         halved = k[long & ~jumps & ~at_end]
