@@ -27,9 +27,8 @@ from .part import Part
 # Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
 # this, and du/dt at the end to this fraction of itself.
 PREDICTED, PREDICTED_SLOPE, PREDICTED_VELOCITY = 1e-5, 0.05, 0.01
-# Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero, and
-# pace of the edge that is not level.
-MARGIN, LEVEL = 0.5, 0.01
+# Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero.
+MARGIN = 0.5
 # The shortest interval that is halved, and the time below which sliding is brief, in units of
 # `Part.scale`; and the shortest interval in which the edge reaches the end, or a stopped front.
 SHORTEST, AT_END = 1e-3, 0.01
@@ -253,9 +252,7 @@ class TrailingEdge:
         size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
-        # Into some intervals the edge goes down, towards an end that slides.
-        down = np.where(knots.kind[k] == FAST, -knots.pace[k], knots.pace[k + 1]) > LEVEL
-        short[jumps | knots.dips(k) | (at_end & down)] = LOCATED * size
+        short[jumps | knots.dips(k)] = LOCATED * size
         long = knots.x[k + 1] - knots.x[k] > short
         cut = k[long & (jumps | at_end)]
         halved = k[long & ~jumps & ~at_end]
@@ -348,15 +345,9 @@ class TrailingEdge:
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         k = np.arange(knots.x.size - 1)
-        side = nearest - int(knots.pace[nearest] > 0.0)
-        if 0 <= side < k.size and knots.of_kinds(k, FAST, SLIDES)[side]:
-            # The minimum is beyond the last knot that has stuck.
-            reach = 4.0 * self.part.scale * abs(float(knots.pace[nearest]))
-            ends = (out.x + np.array([-reach, reach])).clip(knots.x[0], knots.x[-1])
-            minimum = self._minimum(*ends.tolist())
-            out = minimum if minimum and minimum.time <= out.time else out
-        # A minimum may lie in each interval at whose ends the edge goes down into it.
-        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & knots.outruns(k)
+        # A minimum may lie in each interval at whose ends the edge, or du/dt, goes down into it.
+        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0)
+        down &= knots.outruns(k) | knots.of_kinds(k, FAST, SLIDES)
         lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         for low in np.flatnonzero(down & (lowest < out.time)).tolist():
             minimum = self._minimum(*knots.x[[low, low + 1]].tolist())
