@@ -22,7 +22,7 @@ def test_two_solutions_agree_before_either_has_a_limit(number):
     assert compared.faults(other) == [], variant
 
 
-@pytest.mark.parametrize("number", [13, 28, 37, 41])
+@pytest.mark.parametrize("number", [13, 16, 23, 28, 37, 41])
 def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
     """A smooth minimum or a kink of the trailing edge, before there is a knot on either side."""
     keys = scene(number)
