@@ -13,7 +13,7 @@ LEAST = 0.01
 # Number of times that are computed together.
 BATCH = 8
 # The most times of samples, of all positions together: they take 3 GB.
-MOST_TIMES = 10**8
+MOST_TIMES = 2 * 10**8
 # Two steps in time next to a minimum of du/dt are cut into this number of parts, twice.
 FINE = 24
 # Error of a root in time.
@@ -77,11 +77,13 @@ class StickSearch:
             allowed = f"a time until which sticks are found from {MOST_TIMES:.0e} samples"
             raise ValueError(f"duration: {self.until:g} takes {count:.2g}; allowed: {allowed}")
         steps = self.step * np.arange(1, BATCH * (longest // (BATCH * self.step) + 1) + 1)
-        times = np.concatenate([release[:, None] + steps, waves], axis=1)
+        ends = np.full((release.size, BATCH), self.until)
+        times = np.concatenate([release[:, None] + steps, waves, ends], axis=1)
         # Right after the release du/dt is 0 to rounding.
         times[~(times > release[:, None] + LEAST * self.step)] = self.until
-        times = np.sort(np.minimum(times, self.until), axis=1)
-        return np.pad(times, ((0, 0), (0, BATCH)), constant_values=self.until)
+        np.minimum(times, self.until, out=times)
+        times.sort(axis=1)
+        return times
 
     def _sampled(self, x: np.ndarray, time: np.ndarray) -> VelocitySamples:
         velocity = self.velocity(np.repeat(x, time.shape[1]), time.ravel())
