@@ -33,15 +33,9 @@ def claims_page(
         altered=altered,
         tables_behind=partial(tables_behind, tables=sorted(tables)),
         command=command,
-        counted=counted,
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
         **shown(Ledger(claims), [finding["text"] for finding in findings]),
     )
-
-
-def counted(claims: Iterable[Entry]) -> int:
-    """Number of claims that count, which do not follow from others."""
-    return sum(claim.counted for claim in claims)
 
 
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:

@@ -70,8 +70,7 @@ def _compare_contents(
 
 def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
     """Compare one table of measured numbers, with the grid studies of both trees."""
-    tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
-    ours, theirs = tables
+    ours, theirs = tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
     if not ours[RUN].equals(theirs[RUN]):
         result.other.append(f"{name}: other runs")
         return
@@ -80,58 +79,45 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> Non
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
         result.other.append(f"{name}: uncertainties in one tree only")
-    common = [column for column in ours if column in theirs and column not in RUN]
-    lattice = [column for column in common if column in LATTICE]
+    common = ours.columns.intersection(theirs.columns, sort=False).difference(RUN, sort=False)
+    lattice = common.intersection(LATTICE)
     same_lattice = (ours[lattice] == theirs[lattice]).all(axis=1).to_numpy()[:, None]
-    texts, numbers = [], []
-    for column in common:
-        if "O" in (ours[column].dtype.kind, theirs[column].dtype.kind):
-            texts.append(column)
-        elif column not in LATTICE:
-            numbers.append(column)
+    plain = ["number", "bool"]
+    with_text = [*ours.select_dtypes(exclude=plain), *theirs.select_dtypes(exclude=plain)]
+    texts = common.intersection(with_text, sort=False)
+    numbers = common.difference([*with_text, *LATTICE], sort=False)
     values = [table[numbers].astype(float) for table in tables]
-    uncertainties = [*map(_uncertainties, studies, values)]
-    uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0)
-    _compare_numbers(result, name, values, uncertainty, same_lattice)
-    _compare_texts(result, name, [table[texts] for table in tables], same_lattice)
+    _compare_numbers(result, name, values, [*map(_uncertainties, studies, values)], same_lattice)
+    ours, theirs = (table[texts].astype(object).fillna("") for table in tables)
+    for row, column in np.argwhere(((ours != theirs) & same_lattice).to_numpy()):
+        pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
+        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}")
 
 
 def _compare_numbers(
     result: Comparison,
     name: str,
     values: Sequence[pd.DataFrame],
-    uncertainty: pd.DataFrame,
+    uncertainties: Sequence[pd.DataFrame],
     same_lattice: np.ndarray,
 ) -> None:
     """Compare numbers; a difference is unknown where lattices differ and no study was made."""
-    ours, theirs = values
-    no_study = uncertainty.isna()
-    allowed = uncertainty.fillna(0.0) + DIGITS * ours.abs()
-    allowed = allowed.mask(no_study & same_lattice, ROUNDING * ours.abs().clip(lower=1.0))
-    in_both, in_one = ours.notna() & theirs.notna(), ours.notna() | theirs.notna()
-    compared = in_both | (in_one & same_lattice)
-    differs = compared & ~((ours - theirs).abs() <= allowed)
+    ours, theirs = (table.to_numpy() for table in values)
+    uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0).to_numpy()
+    no_study, size = np.isnan(uncertainty), np.abs(ours)
+    allowed = np.nan_to_num(uncertainty) + DIGITS * size
+    allowed = np.where(no_study & same_lattice, ROUNDING * np.maximum(size, 1.0), allowed)
+    known = ~np.isnan([ours, theirs])
+    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice)
+    differs = compared & ~(np.abs(ours - theirs) <= allowed)
     unknown = differs & no_study & ~same_lattice
-    result.compared += _count(compared)
-    result.agree += _count(compared & ~differs)
-    result.unknown += _count(unknown)
-    for row, column in np.argwhere((differs & ~unknown).to_numpy()):
-        pair = f"{ours.iat[row, column]:.6g} against {theirs.iat[row, column]:.6g}"
-        limit = f"allowed: a difference of {allowed.iat[row, column]:.2g}"
-        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}; {limit}")
-
-
-def _compare_texts(
-    result: Comparison, name: str, texts: Sequence[pd.DataFrame], same_lattice: np.ndarray
-) -> None:
-    ours, theirs = (table.astype(object).fillna("") for table in texts)
-    for row, column in np.argwhere(((ours != theirs) & same_lattice).to_numpy()):
-        pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
-        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}")
-
-
-def _count(cells: pd.DataFrame) -> int:
-    return int(cells.to_numpy().sum())
+    result.compared += int(compared.sum())
+    result.agree += int((compared & ~differs).sum())
+    result.unknown += int(unknown.sum())
+    for row, column in np.argwhere(differs & ~unknown):
+        pair = f"{ours[row, column]:.6g} against {theirs[row, column]:.6g}"
+        limit = f"allowed: a difference of {allowed[row, column]:.2g}"
+        result.apart.append(f"{name}: point {row}, {values[0].columns[column]}: {pair}; {limit}")
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:

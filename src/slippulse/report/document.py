@@ -31,22 +31,18 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
         options = ["--to=html5", "--mathml", "--default-image-extension=png", "--toc"]
-        html = as_page(_pandoc(text, manuscript, template, [*options, "--toc-depth=2"]))
-    write_text(html, output)
-
-
-def as_page(html: str) -> str:
-    """The HTML of pandoc with headings below the title, and figures and tables made accessible."""
-    head, opening, text = html.partition('<main id="content">')
-    text = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", text)
+        html = _pandoc(text, manuscript, template, [*options, "--toc-depth=2"])
+    head, opening, body = html.partition('<main id="content">')
+    # Headings stand below the title.
+    body = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", body)
     # A phone scrolls formulas, code and tables sideways, so the keyboard must reach them.
-    text = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', text)
+    body = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', body)
     numbers = count(1)
     region = '<div class="scroll" tabindex="0" role="region" aria-label="Table {}"><table'
-    text = re.sub("<table", lambda _: region.format(next(numbers)), text)
-    text = text.replace("</table>", "</table></div>")
+    body = re.sub("<table", lambda _: region.format(next(numbers)), body)
+    body = body.replace("</table>", "</table></div>")
     # A click on a figure opens its picture, at its own size.
-    return head + opening + FIGURE.sub(_enlarging, text)
+    write_text(head + opening + FIGURE.sub(_enlarging, body), output)
 
 
 def _enlarging(figure: re.Match) -> str:

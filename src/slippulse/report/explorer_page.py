@@ -29,12 +29,8 @@ def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: 
     shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, COLOURS))
     largest = float(law["damping_ratio"].max())
     runs = chain.from_iterable(simulated_runs(table, largest) for table in measured)
-    data = {
-        "law": front_law(law),
-        "largest_ratio": largest,
-        "runs": [*runs],
-        "colours": np.rint(255.0 * shades[:, :3]).astype(int).tolist(),
-    }
+    data = {"law": front_law(law), "largest_ratio": largest, "runs": [*runs]}
+    data["colours"] = np.rint(255.0 * shades[:, :3]).astype(int).tolist()
     # A text that holds "<" could end the script that the data stand in.
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     return page("explorer.html", data=Markup(text), largest_ratio=largest)
@@ -48,9 +44,8 @@ def front_law(law: pd.DataFrame) -> dict:
     out: dict = {"ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)}}
     out["excess"] = {"first": first, "step": (last - first) / (len(excesses) - 1)}
     for release, rows in law.groupby("release", sort=False):
-        out[release] = rows.pivot(
-            index="damping_ratio", columns="excess_log", values="logit"
-        ).values.tolist()
+        grid = rows.pivot(index="damping_ratio", columns="excess_log", values="logit")
+        out[release] = grid.values.tolist()
     return out
 
 
@@ -58,18 +53,15 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     """tau_0, gamma, W, beta, b, release rule and `MEASURED` of runs with equal positive levels."""
     names = ("left", "gamma", "width", "beta", "damping_ratio", "release")
     kept = []
-    for run in table[table["boundary"] == "displacement"].to_dict("records"):
-        prestress = prestress_from(run)
-        plain = Prestress(prestress.left, prestress.left, prestress.width)
-        known = prestress == plain and friction_of(run) == COULOMB
-        if not known or not prestress.left > 0.0 or run["damping_ratio"] > largest_ratio:
+    shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
+    for run in table[shown & (table["boundary"] == "displacement")].to_dict("records"):
+        plain = Prestress(run["left"], run["left"], run["width"])
+        if prestress_from(run) != plain or friction_of(run) != COULOMB:
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
         settings = [run[name] for name in names]
-        kept.append(settings + [_short(run.get(name, math.nan)) for name in MEASURED])
+        for number in (run.get(name, math.nan) for name in MEASURED):
+            settings.append(float(f"{number:.{DIGITS}g}") if math.isfinite(number) else None)
+        kept.append(settings)
     return kept
-
-
-def _short(number: float) -> float | None:
-    return float(f"{number:.{DIGITS}g}") if math.isfinite(number) else None

@@ -53,7 +53,6 @@ def index_page(
     captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
     lines = judged_lines(summary, ledger, filled)
     in_short, accuracy = answer(lines[:1]), filled(summary["accuracy"])
-    question, symbols = summary["question"], summary["symbols"]
     exceptions = answer(lines).removeprefix(in_short).strip()
     figures = {
         # A user-defined sweep has no caption but its name.
@@ -61,24 +60,27 @@ def index_page(
         or captions["user_defined_sweep"]._replace(title=name.removeprefix("sweep_"))
         for name in chain.from_iterable(galleries.values())
     }
-    written = [question, in_short, exceptions, symbols, accuracy]
+    written = [summary["question"], in_short, exceptions, summary["symbols"], accuracy]
     for line in lines:
         written += [line.topic, line.text]
     for caption in figures.values():
         written += [caption.finding, caption.caption]
+    # The page does not jump while it loads.
+    sizes = {}
+    for name in figures:
+        with Image.open(results / f"figures/{name}.png") as picture:
+            sizes[name] = round(SCALE * picture.width), round(SCALE * picture.height)
     return page(
         "index.html",
         altered=facts["overlay"],
-        question=question,
+        texts=summary,
         answer=in_short,
         exceptions=exceptions,
-        symbols=symbols,
         lines=lines,
         accuracy=accuracy,
         figures=figures,
-        sizes={name: _size(results / f"figures/{name}.png") for name in figures},
+        sizes=sizes,
         wide=WIDE,
-        picture=summary["picture"],
         first=_existing(results, FIRST),
         others=_existing(results, OTHERS),
         galleries=galleries,
@@ -97,9 +99,3 @@ def _json(path: Path) -> Any:
 
 def _existing(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
     return {path: name for path, name in files.items() if (folder / path).exists()}
-
-
-def _size(path: Path) -> tuple[int, int]:
-    """Width and height of a figure on the page, so that the page does not jump while it loads."""
-    with Image.open(path) as picture:
-        return round(SCALE * picture.width), round(SCALE * picture.height)

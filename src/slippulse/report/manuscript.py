@@ -109,10 +109,9 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
-    altered = changes(inputs.shipped, config)
+    altered, misprints = changes(inputs.shipped, config), read_errata(folder / "errata.yaml")
     # A number is a link to its claim or finding, and the tables behind it.
     cite = "[{1}](../claims.html#{0})".format
-    misprints = read_errata(folder / "errata.yaml")
     names: dict[str, object] = {
         **FILTERS,
         "config": config,

@@ -53,18 +53,17 @@ def table(head: str, rows: Iterable[Sequence[object]]) -> str:
     head : for each column title, side (l or r) and relative width, as in "claim l34 | runs r10"
     """
     columns = [column.strip().rpartition(" ") for column in head.split("|")]
-    titles = [title for title, _, _ in columns]
     total = sum(int(form[1:]) for _, _, form in columns)
     rules = []
     for _, _, form in columns:
         dashes = "-" * max(3, round(FULL * int(form[1:]) / total))
         rules.append(f":{dashes}" if form[0] == "l" else f"{dashes}:")
-    return "\n".join(map(_row, [titles, rules, *rows]))
-
-
-def _row(cells: Iterable[object]) -> str:
-    """A line of a table; a cell of several lines becomes one line."""
-    return "| " + " | ".join(" ".join(str(cell).split()) for cell in cells) + " |"
+    lines = []
+    for row in ([title for title, _, _ in columns], rules, *rows):
+        # A cell of several lines becomes one line.
+        cells = [" ".join(str(cell).split()) for cell in row]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def plain(text: str) -> str:
@@ -143,9 +142,8 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
 def found_list(ledger: Ledger) -> str:
     """Every finding, as a list."""
-    return "\n".join(
-        f"- {' '.join(finding['text'].split())}" for finding in ledger.findings.values()
-    )
+    texts = [" ".join(finding["text"].split()) for finding in ledger.findings.values()]
+    return "\n".join(f"- {text}" for text in texts)
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
@@ -201,9 +199,8 @@ def sticking(examples: pd.DataFrame) -> str:
     if examples["value"].isna().all():
         return ""
     numbers = examples.pivot(index="x", columns="quantity", values="value")[columns]
-    rows = []
-    for x, release, stick, slip in numbers.itertuples():
-        rows.append((setting(x), number(release, 5), number(stick, 5), number(slip, 5)))
+    texts = numbers.map(lambda value: number(value, 5))
+    rows = [(setting(x), *row) for x, *row in texts.itertuples()]
     head = r"$x$ r10 | release $T$ r15 | stick $t_\mathrm{s}$ r15 | slip $u(x,t_\mathrm{s})$ r15"
     return table(head, rows)
 

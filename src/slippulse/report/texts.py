@@ -143,21 +143,16 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         claims = [ledger(id) for id in entry["claims"]]
         worst = min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
         said = fill(entry.get("said", {}).get(worst.verdict, ""))
-        told = told_verdicts(entry["claims"] | entry.get("beside", {}), ledger)
+        names = entry["claims"] | entry.get("beside", {})
+        groups: dict[str, list[str]] = {}
+        for id in names:
+            groups.setdefault(ledger(id).verdict, []).append(id)
+        told = []
+        for ids in groups.values():
+            words = listed([*dict.fromkeys(names[id] for id in ids)])
+            told.append((ledger(ids[0]), f"({words})" if len(groups) > 1 else ""))
         lines.append(Line(entry["topic"], entry["named"], said, fill(entry["text"]), worst, told))
     return lines
-
-
-def told_verdicts(names: Mapping[str, str], ledger: Ledger) -> list[tuple[Entry, str]]:
-    """The first claim of each verdict, and in brackets what has it if there are several."""
-    groups: dict[str, list[str]] = {}
-    for id in names:
-        groups.setdefault(ledger(id).verdict, []).append(id)
-    told = []
-    for ids in groups.values():
-        words = listed([*dict.fromkeys(names[id] for id in ids)])
-        told.append((ledger(ids[0]), f"({words})" if len(groups) > 1 else ""))
-    return told
 
 
 def answer(lines: Sequence[Line]) -> str:
