@@ -55,7 +55,12 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     for number, entries in enumerate(product(*_axes(simulation))):
         if wanted is None or number in wanted:
             release, *shape, gamma, dx, damping, law = entries
-            yield Run(release, _profile(*shape), gamma, dx, damping, friction_from(law))
+            if "profiles" in simulation:
+                profile = Prestress(**shape[0])
+            else:
+                left, right, width, steps = shape
+                profile = Prestress(left, left if right is None else right, width, steps=steps)
+            yield Run(release, profile, gamma, dx, damping, friction_from(law))
 
 
 def run_count(simulation: Mapping) -> int:
@@ -79,12 +84,6 @@ def _axes(simulation: Mapping) -> list[Sequence]:
     damping = simulation.get("beta", simulation["damping_ratio"])
     laws = simulation.get("friction", [COULOMB.mapping()])
     return [releases, *shapes, gamma, dx, damping, laws]
-
-
-def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
-    if isinstance(left, Mapping):
-        return Prestress(**left)
-    return Prestress(left=left, right=left if right is None else right, width=width, steps=steps)
 
 
 def _scene(simulation: Mapping, run: Run, index: int) -> Scene:

@@ -12,10 +12,6 @@ from .numerals import FILTERS, number
 class Prose(Environment):
     """The rules of the expressions: an unknown name is an error, an attribute of None is None."""
 
-    def __init__(self) -> None:
-        super().__init__(undefined=StrictUndefined, finalize=_text)
-        self.filters |= FILTERS
-
     def getattr(self, obj: object, attribute: str) -> object:
         return None if obj is None else super().getattr(obj, attribute)
 
@@ -30,7 +26,8 @@ def _text(value: object) -> object:
     return number(None) if value is None else value
 
 
-PROSE = Prose()
+PROSE = Prose(undefined=StrictUndefined, finalize=_text)
+PROSE.filters |= FILTERS
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:

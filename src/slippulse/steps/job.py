@@ -74,19 +74,15 @@ def logged(path: str | Path) -> Iterator[TextIO]:
     except KeyboardInterrupt:
         raise SystemExit("stopped") from None
     except Exception as error:
-        # A full disk has no room for the traceback either.
+        # A full disk has no room for the traceback either; HDF5 describes it in several lines.
         with suppress(OSError):
             details.write_text(traceback.format_exc(), encoding="utf-8")
-        raise SystemExit(f"{_reason(error)} (details: {details})") from None
+        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
+        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
+            remedy = "the unfinished file is removed; make room and run again"
+            reason = f"{os.strerror(error.errno)}: {remedy}"
+        raise SystemExit(f"{reason} (details: {details})") from None
     finally:
         sys.stderr = terminal
         with suppress(OSError):
             log.close()
-
-
-def _reason(error: Exception) -> str:
-    """Describe an error in one line; HDF5 describes a full disk in several."""
-    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
-        remedy = "the unfinished file is removed; make room and run again"
-        return f"{os.strerror(error.errno)}: {remedy}"
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"
