@@ -26,7 +26,7 @@ def plane_wave_error(cells: int) -> float:
     flat = Prestress(0.0, 0.0, 1.0, 0.0)
     scene = LayerScene("stress", GAMMA, flat, 1.0, 3.0, nucleation=20.0, cells=cells)
     h, x = 1.0 / cells, np.arange(10 * cells) / cells
-    fields, fault = layer.still_layer(cells, x.size), layer.new_fault(scene, x, h)
+    elastic, fields, fault = layer.layer_at_rest(scene, x, 0.5)
     wave = lambda position: np.exp(-0.5 * ((position - 3.0) / 0.5) ** 2)
     # Velocities stand half a step before the stresses, which stand half a cell to the right.
     fields.vx[:] = wave(x + 0.25 * h)
@@ -34,7 +34,7 @@ def plane_wave_error(cells: int) -> float:
     fields.syy[:] = (1.0 - GAMMA) * fields.sxx
     fault.sliding[:] = True
     ends = (0, 6 * cells), (x.size // 2, x.size)
-    layer.advance_layer(layer.elastic_layer(scene, 0.5), fields, fault, 0.5 * h, *ends)
+    layer.advance_layer(elastic, fields, fault, 0.5 * h, *ends)
     return float(np.max(np.abs(fields.vx[cells // 2] - wave(x + 0.25 * h - 3.0))))
 
 

@@ -8,7 +8,6 @@ from .checks import check_choice, short_repr
 from .friction_laws.law import Coulomb, Friction
 from .friction_laws.rate import BoundedRate, LinearRate, RateWeakening
 from .friction_laws.weakening import ExponentialWeakening, SlipWeakening
-from .recorded_law import law_of
 
 # A new law is one more line here.
 LAWS: tuple[type[Friction], ...] = (
@@ -71,8 +70,3 @@ def friction_from(mapping: Mapping[str, Any]) -> Friction:
     if "law" not in mapping:
         raise ValueError(f"law: missing; allowed: {', '.join(NAMES)}")
     return friction(**mapping)
-
-
-def friction_of(attributes: Mapping[str, Any]) -> Friction:
-    """The law of a run's attributes."""
-    return friction_from(law_of(attributes))

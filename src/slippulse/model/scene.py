@@ -9,8 +9,9 @@ from numbers import Real
 from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
-from .friction import COULOMB, Friction, friction_of
+from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, prestress_from
+from .recorded_law import law_of
 from .stability import MARGIN, largest_step
 
 BOUNDARIES = ("displacement", "stress")
@@ -130,7 +131,13 @@ class Scene:
             check_number(name, getattr(self, name), **bounds)
             # Single-precision or integer numbers would be computed with as such, and compiled for.
             object.__setattr__(self, name, float(getattr(self, name)))
-        self._check_resolution()
+        width = self.prestress.width
+        if width < self.dx:
+            allowed = f">= dx = {self.dx:g}, which must see the peak"
+            raise ValueError(f"prestress.width: {width!r}; allowed: {allowed}")
+        farthest = FARTHEST_BUMP * self.dx
+        for centre, _, width in self.prestress.bumps:
+            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=farthest)
         self._check_step()
 
     def _check_physics(self) -> None:
@@ -144,15 +151,6 @@ class Scene:
             schemes = " or ".join(self.friction.schemes)
             allowed = f"{schemes}, with friction law {self.friction.law!r}"
             raise ValueError(f"scheme: {self.scheme!r}; allowed: {allowed}")
-
-    def _check_resolution(self) -> None:
-        width = self.prestress.width
-        if width < self.dx:
-            allowed = f">= dx = {self.dx:g}, which must see the peak"
-            raise ValueError(f"prestress.width: {width!r}; allowed: {allowed}")
-        farthest = FARTHEST_BUMP * self.dx
-        for centre, _, width in self.prestress.bumps:
-            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=farthest)
 
     def _check_step(self) -> None:
         stiffness = self.gamma * self.dx**2
@@ -240,7 +238,7 @@ class Scene:
             for name, kind in KINDS.items():
                 largest = 1 if kind is bool else None
                 check_number(name, attributes[name], integer=True, at_least=0, at_most=largest)
-            values = dict(attributes) | {"friction": friction_of(attributes)}
+            values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
             values["prestress"] = prestress_from(attributes)
             values |= {name: kind(values[name]) for name, kind in KINDS.items()}
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})

@@ -14,8 +14,8 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from ..model.friction import COULOMB, friction_of
 from ..model.prestress import Prestress, prestress_from
+from ..model.recorded_law import law_of
 from .html import page
 
 # Numbers of a run that are shown where they were measured.
@@ -56,7 +56,7 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
     for run in table[shown & (table["boundary"] == "displacement")].to_dict("records"):
         plain = Prestress(run["left"], run["left"], run["width"])
-        if prestress_from(run) != plain or friction_of(run) != COULOMB:
+        if prestress_from(run) != plain or law_of(run)["law"] != "coulomb":
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan

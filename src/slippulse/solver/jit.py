@@ -36,14 +36,11 @@ def source_digest(folder: Path = SOURCES) -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder() -> Path:
-    """Folder of compiled kernels: in SLIPPULSE_CACHE or the user's cache, by digest of sources."""
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
-    return Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
-
-
+# Compiled kernels lie in SLIPPULSE_CACHE or the user's cache, by the digest of their sources.
 if not os.environ.get("NUMBA_CACHE_DIR"):
-    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
+    folder = Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
+    numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
 
 # Sums may be reordered so that they vectorise. NaN keeps its meaning, since it shows a blow-up.
 REORDER = {"reassoc", "contract", "nsz"}

@@ -124,14 +124,9 @@ class Lattice:
         state = (self.medium, self.motion, self.segments, self.scratch, self.history, self.recorder)
         return taylor.advance(*state, limits)
 
-    def _unstable(self, time: float, reason: str) -> UnstableRun:
-        scene = self.scene
-        settings = f"dx = {scene.dx:g}, beta = {self.medium.beta:g}, max_step = {scene.max_step:g}"
-        return UnstableRun(f"the run became unstable at t = {time:.6g}: {reason} ({settings})")
-
     def advance_to_end(self, progress: Callable[[float], None] | None) -> int:
         """Advance to the end of the scene, or raise UnstableRun. Returns why the kernel stopped."""
-        scene = self.scene
+        scene, reason = self.scene, ""
         step = scene.max_step * scene.dx
         while True:
             before = float(self.tally.time)
@@ -147,11 +142,15 @@ class Lattice:
                 self._extend(left, right)
             elif status == arrays.UNSTABLE:
                 reason = "slip velocity is not finite or beyond anything the pre-stress can drive"
-                raise self._unstable(self.tally.time, reason)
             elif status != arrays.CONTINUE:
                 return status
             elif self.tally.time - before < steps * taylor.SIMULTANEOUS * step:
                 reason = "it no longer advances, blocks stick and are released over and over"
-                raise self._unstable(before, f"{reason} at one instant")
+            if reason:
+                settings = f"dx = {scene.dx:g}, beta = {self.medium.beta:g}"
+                raise UnstableRun(
+                    f"the run became unstable at t = {self.tally.time:.6g}: {reason}"
+                    f" ({settings}, max_step = {scene.max_step:g})"
+                )
             if progress is not None:
                 progress(float(min(1.0, self.tally.time / scene.duration)))

@@ -229,8 +229,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     half = reach + int(steps * dt / h) + 2 * MARGIN
     centre = 1 if scene.symmetric else half
     x = (np.arange(centre + half) - centre) * h
-    elastic, fields = elastic_layer(scene, dt / h), still_layer(scene.cells, x.size)
-    fault = new_fault(scene, x, h)
+    elastic, fields, fault = layer_at_rest(scene, x, dt / h)
     advance_layer(elastic, fields, fault, dt, (0, steps - 1), (centre, reach))
     # The energy is balanced at velocities between two instants of the stresses.
     earlier = Fields._make(array.copy() for array in fields)
@@ -247,8 +246,8 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     )
 
 
-def elastic_layer(scene: LayerScene, ratio: float) -> Elastic:
-    """Constants of a scene's layer for steps of ``ratio`` times the spacing."""
+def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elastic, Fields, Fault]:
+    """A scene's layer at nodes x before t = 0, for steps of ``ratio`` times the spacing."""
     inside = np.ones(scene.cells + 1)
     inside[0] = scene.bottom == "held"
     inside[-1] = scene.top == "held"
@@ -256,7 +255,7 @@ def elastic_layer(scene: LayerScene, ratio: float) -> Elastic:
     above[[0, -1]] = 2.0, 0.0
     below[[0, -1]] = 0.0, 2.0
     lateral = 1.0 - scene.gamma
-    return Elastic(
+    elastic = Elastic(
         ratio=ratio,
         shear=0.5 * scene.gamma,
         mirror=scene.symmetric,
@@ -269,19 +268,11 @@ def elastic_layer(scene: LayerScene, ratio: float) -> Elastic:
         lateral=lateral * inside,
         normal=inside,
     )
-
-
-def still_layer(cells: int, columns: int) -> Fields:
-    """Fields of a layer at rest."""
-    rows = (cells + 1, cells, cells + 1, cells + 1, cells)
-    return Fields._make(np.zeros((count, columns)) for count in rows)
-
-
-def new_fault(scene: LayerScene, x: np.ndarray, h: float) -> Fault:
-    """The bottom at rest, under the pre-stress at its nodes, before t = 0."""
-    return Fault(
+    rows = {name: scene.cells + (name not in ("vy", "sxy")) for name in Fields._fields}
+    fields = Fields(**{name: np.zeros((count, x.size)) for name, count in rows.items()})
+    fault = Fault(
         tau=scene.prestress(x),
-        nucleus=np.abs(x) <= scene.nucleation + 0.25 * h,
+        nucleus=np.abs(x) <= scene.nucleation + 0.25 / scene.cells,
         sliding=np.zeros(x.size, dtype=bool),
         slip=np.zeros(x.size),
         slip_at_release=np.zeros(x.size),
@@ -289,6 +280,7 @@ def new_fault(scene: LayerScene, x: np.ndarray, h: float) -> Fault:
         stick_time=np.full(x.size, np.nan),
         work=np.zeros(2),
     )
+    return elastic, fields, fault
 
 
 def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:

@@ -34,8 +34,7 @@ class Solution:
 
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays by name."""
-        values = vars(self)
-        return {name: values[name] for name in values if isinstance(values[name], np.ndarray)}
+        return {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
 
 
 def energies(lattice: Lattice, totals: dict) -> dict:
