@@ -60,9 +60,7 @@ def friction(law: str, **parameters: float) -> Friction:
     for name in {*needed} ^ {*parameters}:
         value = f"{name}: {short_repr(parameters[name]) if name in parameters else 'missing'}"
         raise ValueError(f"{value}; allowed: law {law!r} with {', '.join(needed) or 'nothing'}")
-    chosen = kind(**parameters)
-    # Whole numbers would be computed with as such, and compiled for.
-    return kind(**{name: float(getattr(chosen, name)) for name in needed})
+    return kind(**parameters)
 
 
 def friction_from(mapping: Mapping[str, Any]) -> Friction:

@@ -20,9 +20,8 @@ def constants_of(
 ) -> tuple[float, int, float, float, float | None]:
     """The constants alpha, law, first, second and d_c of `Medium`."""
     if localised or "continuum" in friction.schemes:
-        return float(friction.traits.linear_rate), 0, 0.0, 0.0, friction.traits.linear_weakening
-    first, second = friction.constants
-    return 0.0, LAWS.index(type(friction)), float(first), float(second), None
+        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.linear_weakening
+    return 0.0, LAWS.index(type(friction)), *friction.constants, None
 
 
 def choose(laws: Sequence[type[Friction]]):

@@ -2,8 +2,11 @@
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import asdict, astuple, dataclass
 from typing import Any, ClassVar, NamedTuple
+
+from ..checks import check_number
 
 
 class Traits(NamedTuple):
@@ -21,13 +24,20 @@ class Traits(NamedTuple):
 class Friction(ABC):
     """Friction of a sliding block: 0 at the kinetic, 1 at the static friction of the paper.
 
-    A law is a subclass. Its fields are its parameters, and ``__post_init__`` refuses those out of
-    range. `friction` is compiled into the textbook scheme; it gets the slip since the release, the
+    A law is a subclass. Its fields are its parameters, with ``bounds`` as `check_number` takes
+    them. `friction` is compiled into the textbook scheme; it gets the slip since the release, the
     slip velocity and the first two parameters, 0 where there are fewer.
     """
 
     law: ClassVar[str]
     schemes: ClassVar[tuple[str, ...]] = ("fixed_step",)
+    bounds: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+
+    def __post_init__(self) -> None:
+        for name, value in asdict(self).items():
+            check_number(name, value, **self.bounds.get(name, {}))
+            # Whole numbers would be computed with as such, and compiled for.
+            object.__setattr__(self, name, float(value))
 
     @staticmethod
     @abstractmethod

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..checks import check_number
 from .law import Friction, Traits
 
 
@@ -15,9 +14,6 @@ class LinearRate(Friction):
 
     law: ClassVar = "linear_rate"
     schemes: ClassVar = ("localised", "fixed_step", "continuum")
-
-    def __post_init__(self) -> None:
-        check_number("alpha", self.alpha)
 
     @staticmethod
     def friction(slip, velocity, alpha, second):
@@ -38,10 +34,7 @@ class BoundedRate(Friction):
     v_0: float
 
     law: ClassVar = "bounded_rate"
-
-    def __post_init__(self) -> None:
-        check_number("limit", self.limit)
-        check_number("v_0", self.v_0, above=0.0)
+    bounds: ClassVar = {"v_0": {"above": 0.0}}
 
     @staticmethod
     def friction(slip, velocity, limit, v_0):
@@ -62,10 +55,7 @@ class RateWeakening(Friction):
     limit: float
 
     law: ClassVar = "rate_weakening"
-
-    def __post_init__(self) -> None:
-        check_number("slope", self.slope, at_least=0.0)
-        check_number("limit", self.limit, at_least=0.0)
+    bounds: ClassVar = {"slope": {"at_least": 0.0}, "limit": {"at_least": 0.0}}
 
     @staticmethod
     def friction(slip, velocity, slope, limit):

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..checks import check_number
 from .law import Friction, Traits
 
 # The longest step over sqrt(d_c), the time by which slip grows e-fold where friction weakens.
@@ -23,10 +22,7 @@ class SlipWeakening(Friction):
 
     law: ClassVar = "slip_weakening"
     schemes: ClassVar[tuple[str, ...]] = ("localised", "fixed_step")
-
-    def __post_init__(self) -> None:
-        check_number("d_c", self.d_c, above=0.0)
-        check_number("nucleation", self.nucleation, at_least=0.0)
+    bounds: ClassVar = {"d_c": {"above": 0.0}, "nucleation": {"at_least": 0.0}}
 
     @staticmethod
     def friction(slip, velocity, d_c, nucleation):
