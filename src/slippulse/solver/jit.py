@@ -36,11 +36,14 @@ def source_digest(folder: Path = SOURCES) -> str:
     return digest.hexdigest()[:16]
 
 
-# Compiled kernels lie in SLIPPULSE_CACHE or the user's cache, by the digest of their sources.
-if not os.environ.get("NUMBA_CACHE_DIR"):
+def cache_folder() -> Path:
+    """Folder of compiled kernels: in SLIPPULSE_CACHE or the user's cache, by digest of sources."""
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
-    folder = Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
-    numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]
+    return Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
+
+
+if not os.environ.get("NUMBA_CACHE_DIR"):
+    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
 
 # Sums may be reordered so that they vectorise. NaN keeps its meaning, since it shows a blow-up.
 REORDER = {"reassoc", "contract", "nsz"}
