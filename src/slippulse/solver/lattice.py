@@ -146,6 +146,7 @@ class Lattice:
                 return status
             elif self.tally.time - before < steps * taylor.SIMULTANEOUS * step:
                 reason = "it no longer advances, blocks stick and are released over and over"
+                reason += " at one instant"
             if reason:
                 settings = f"dx = {scene.dx:g}, beta = {self.medium.beta:g}"
                 raise UnstableRun(
