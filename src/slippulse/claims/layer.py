@@ -13,10 +13,10 @@ QUANTITIES = ("speed", "pulse_width", "pulse_slip")
 CROSSINGS = np.pi / np.sqrt(8.0)
 
 
-def station(evidence: Evidence, back: int = 0) -> pd.DataFrame:
-    """Rows of the study, of all grids, at the station nearest to the front, or some before it."""
+def station(evidence: Evidence, step: int = 0) -> pd.DataFrame:
+    """Rows of all grids at the station nearest to the front, or at one some steps before."""
     runs = evidence.tables["layer"].query("part != 'field'")
-    return runs[runs["station"] == np.sort(runs["station"].unique())[-1 - back]]
+    return runs[runs["station"] == np.sort(runs["station"].unique())[-1 - step]]
 
 
 def finest(runs: pd.DataFrame, part: str, step: int = 0) -> pd.DataFrame:
@@ -34,7 +34,7 @@ def change(runs: pd.DataFrame, part: str, quantity: str) -> pd.Series:
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Pulses that settle, a crack where the stress is held, and one side stopped by a barrier."""
     runs, moving = station(evidence), ["speed", "pulse_slip"]
-    pulses, before = finest(runs, "pulse"), finest(station(evidence, back=1), "pulse")
+    pulses, before = finest(runs, "pulse"), finest(station(evidence, step=1), "pulse")
     drift = pulses[moving] / before[moving] - 1.0
     settled = (drift.abs() < evidence.tolerance(id)).all(axis=1) & (pulses["pulse_width"] > 0.0)
     cracks = ~np.isfinite(finest(runs, "crack")["first_stick"])
