@@ -1,5 +1,7 @@
 """Parameters of the published space-time figure, inferred from readings, with their regions."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -46,16 +48,23 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and regions over the damping ratio above, and residuals below."""
     figure, (*upper, pulls) = new_panels(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
-    _draw_chi2(upper[0], table)
-    _draw_region(upper[1], table, "tau0", r"pre-stress $\tau_0$")
-    _draw_region(upper[2], table, "gamma", r"elasticity ratio $\gamma$")
+    fits = dict(iter(table.groupby(["part", "release"])))
+    _draw_chi2(upper[0], table, fits)
+    _draw_region(upper[1], fits, "tau0", r"pre-stress $\tau_0$")
+    _draw_region(upper[2], fits, "gamma", r"elasticity ratio $\gamma$")
+    ours = table[table["part"] == "ours"].iloc[0]
+    for axes, name in zip(upper[1:], ("tau0", "gamma"), strict=True):
+        axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
+    for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
+        upper[1].fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
+    upper[1].legend(loc="upper left")
     for axes in upper:
         axes.set(xscale="log", xlabel=r"damping ratio $b$")
         few_ticks(axes.xaxis, (0.05, 0.1, 0.2, 0.3))
     pulls.axhspan(-1.0, 1.0, color="0.92")
     pulls.axhline(0.0, color=BLACK, linewidth=0.6)
     for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
-        rows = _select(table, "best", release)
+        rows = fits["best", release]
         pulls.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
     edges = {name: rf"edge, $t = {name.rpartition('_')[2]}$" for name in rows["reading"]}
     labels = [NAMES.get(name, edge) for name, edge in edges.items()]
@@ -66,17 +75,13 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _select(table: pd.DataFrame, part: str, release: str) -> pd.DataFrame:
-    return table[(table["part"] == part) & (table["release"] == release)]
-
-
-def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
+def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
     """Draw the smallest chi-square over the damping ratio, as far as a fit is accepted."""
     best = table[table["part"] == "best"]
     dof = best["reading"].nunique() - 3
     accepted = likely(LEVELS[1], dof)
     for release, (colour, marker, label) in LOOKS.items():
-        line, best_fit = _select(table, "curve", release), _select(table, "best", release).iloc[0]
+        line, best_fit = fits["curve", release], fits["best", release].iloc[0]
         shown = line[line["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
         inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
@@ -97,10 +102,10 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
 
 
-def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None:
+def _draw_region(axes: Axes, fits: Mapping, name: str, label: str) -> None:
     """Draw the regions of the damping ratio and a parameter, where the third one fits best."""
     for release, (colour, marker, _) in LOOKS.items():
-        line, best = _select(table, "curve", release), _select(table, "best", release).iloc[0]
+        line, best = fits["curve", release], fits["best", release].iloc[0]
         for level, alpha in zip(LEVELS[::-1], (0.22, 0.45), strict=True):
             room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
@@ -110,10 +115,4 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             axes.fill_between(inside["damping_ratio"], low, high, linewidth=0.0, **look)
         look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
-    ours = table[table["part"] == "ours"].iloc[0]
-    axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
-    if name == "tau0":
-        for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
-            axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
-        axes.legend(loc="upper left")
     axes.set(xlim=(0.045, 0.3), ylabel=label)
