@@ -105,13 +105,14 @@ class StickSearch:
             out[rows[hits]] = np.fmin(out[rows[hits]], zeros)
             rest = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
             middle = np.clip(np.argmin(fine.velocity[rest], axis=1), 1, FINE - 1)
-            rows, low, high = rows[rest], fine.time[rest, middle - 1], fine.time[rest, middle + 1]
+            rows = rows[rest]
+            low, high = fine.time[rest, middle - 1], fine.time[rest, middle + 1]
         return out
 
     def _zeros(self, samples: VelocitySamples, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
         """Zeros of du/dt in steps that end at some columns; about the start if it never rises."""
         x, ends = samples.x[rows], (rows, np.array([columns - 1, columns]))
-        time, velocity, target = samples.time[ends], samples.velocity[ends], np.zeros(rows.size)
+        time, velocity = samples.time[ends], samples.velocity[ends]
         # A velocity that starts at 0, at release, is followed from where it has risen: next to the
         # point where a slow front stops it does so for a short while only.
         flat = np.flatnonzero(velocity[0] <= 0.0)
@@ -120,6 +121,7 @@ class StickSearch:
         # The first column, the end of the step, has not risen.
         risen = np.argmax(fine.velocity > QUIET, axis=1)
         ends = np.arange(flat.size), np.array([risen, risen - 1])
+        target = np.zeros(rows.size)
         target[flat] = QUIET
         time[:, flat], velocity[:, flat] = fine.time[ends], fine.velocity[ends] - QUIET
         out, rises = time[1].copy(), np.flatnonzero(velocity[0] > 0.0)

@@ -26,7 +26,8 @@ from .part import Part
 
 # Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
 # this, and du/dt at the end to this fraction of itself.
-PREDICTED, PREDICTED_SLOPE, PREDICTED_VELOCITY = 1e-5, 0.05, 0.01
+PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
+PREDICTED_VELOCITY = 0.01
 # Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero.
 MARGIN = 0.5
 # The shortest interval that is halved, and the time below which sliding is brief, in units of
@@ -209,13 +210,13 @@ class TrailingEdge:
         """Positions on both sides of those where waves from the marks meet the trailing edge."""
         marks = np.array(self.part.marks)
         arrival = self.part.curve.arrival(marks)
-        out = []
+        out, near = [], LANDED * self.part.scale
         for side in (-1.0, 1.0):
             phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
             fast = knots.outruns(np.arange(knots.x.size - 1))[:, None]
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
-            left, right, near = knots.x[k], knots.x[k + 1], LANDED * self.part.scale
+            left, right = knots.x[k], knots.x[k + 1]
             x = left + (right - left) * before / (before - after)
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
@@ -233,10 +234,11 @@ class TrailingEdge:
         """Positions on both sides of those where the trailing edge reaches the end."""
         k = np.arange(knots.x.size - 1)
         k = k[knots.of_kinds(k, FAST, SLIDES)]
-        at_left, at_right = (self._velocity_at_end(knots.x[ends]) for ends in (k, k + 1))
-        meets = at_left * at_right < 0.0
-        k, at_left, at_right = k[meets], at_left[meets], at_right[meets]
-        left, right, near = knots.x[k], knots.x[k + 1], 0.4 * AT_END * self.part.scale
+        velocity = np.array([self._velocity_at_end(knots.x[ends]) for ends in (k, k + 1)])
+        meets = velocity[0] * velocity[1] < 0.0
+        at_left, at_right = velocity[:, meets]
+        left, right = knots.x[k[meets]], knots.x[k[meets] + 1]
+        near = 0.4 * AT_END * self.part.scale
         x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
         return np.clip([x - near, x + near], left, right).ravel()
 
