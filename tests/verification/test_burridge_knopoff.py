@@ -60,20 +60,16 @@ def test_every_event_and_every_slip_agrees(case):
     assert max(differences(figure, chain).values()) < tol.CHAIN_ORDER_4
 
 
-def random_scene(random: np.random.Generator) -> dict:
-    gamma, beta = random.uniform(0.05, 1.5), random.choice([0.0, 0.05, 0.2])
-    bumps = tuple(tuple(random.uniform((-20, -0.5, 1), (20, 0.5, 4))) for _ in range(3))
-    boundary = str(random.choice(["displacement", "stress"]))
-    profile = sp.Prestress(*random.uniform((-0.5, -0.3), 0.5), bumps=bumps)
-    gamma *= boundary == "displacement"
-    return {"boundary": boundary, "gamma": gamma, "beta": beta, "prestress": profile}
-
-
 @pytest.mark.parametrize("step", [0.5, 0.2])
 def test_no_event_is_stepped_over(step):
     random, names = np.random.default_rng(1), ("releases", "sticks", "re_releases")
     for number in range(200):
-        scene = random_scene(random)
+        gamma, beta = random.uniform(0.05, 1.5), random.choice([0.0, 0.05, 0.2])
+        bumps = tuple(tuple(random.uniform((-20, -0.5, 1), (20, 0.5, 4))) for _ in range(3))
+        boundary = str(random.choice(["displacement", "stress"]))
+        profile = sp.Prestress(*random.uniform((-0.5, -0.3), 0.5), bumps=bumps)
+        gamma *= boundary == "displacement"
+        scene = {"boundary": boundary, "gamma": gamma, "beta": beta, "prestress": profile}
         scene |= {"duration": 25.0, "dx": 1.0, "order": 8, "resolved_blocks": 1}
         long = sp.simulate(sp.Scene(**scene, max_step=step)).attrs
         short = sp.simulate(sp.Scene(**scene, max_step=0.02)).attrs

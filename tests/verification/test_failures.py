@@ -51,25 +51,13 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
         lattice.advance_to_end(at_most(20))
 
 
-def arrest(left: float, **values) -> sp.Scene:
-    return displacement(left, 60.0, beta=0.01, **values)
-
-
-def steep(dx: float) -> sp.Scene:
-    """The pre-stress is positive over a seventh of the Gaussian's width on each side."""
-    return stress(-100.0, 0.0, 4.0, dx, beta=0.1 * dx, friction_ratio=60.0)
-
-
-def textbook(max_step: float) -> sp.Scene:
-    """The front runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps."""
-    return displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=max_step)
-
-
-def below(friction_ratio: float) -> sp.Scene:
-    """The level -1.5 is below the threshold of reverse sliding for ratios below 0.25."""
-    return stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=friction_ratio)
-
-
+arrest = lambda left, **values: displacement(left, 60.0, beta=0.01, **values)
+# The pre-stress is positive over a seventh of the Gaussian's width on each side.
+steep = lambda dx: stress(-100.0, 0.0, 4.0, dx, beta=0.1 * dx, friction_ratio=60.0)
+# The front runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps.
+textbook = lambda step: displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=step)
+# The level -1.5 is below the threshold of reverse sliding for ratios below 0.25.
+below = lambda ratio: stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=ratio)
 FLAGS = {
     "a pulse of few blocks": (displacement(0.3, 20.0, 0.4), "unresolved_pulse"),
     "a pulse of few blocks, allowed": (displacement(0.3, 20.0, 0.4, resolved_blocks=1), ""),

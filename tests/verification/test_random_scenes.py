@@ -68,7 +68,16 @@ def check_invariants(scene):
     reach = math.ceil(scene.duration) + 2.0
     samples = sp.Samples(np.linspace(0.0, scene.duration, 25), np.linspace(-reach, reach, 41))
     run = sp.simulate(scene, samples)
-    count_kinds(scene, run)
+    kinds = {
+        "scenes": True,
+        "in which blocks slip": np.isfinite(run["release_time"].values).any(),
+        "in which blocks stick": np.isfinite(run["stick_time"].values).any(),
+        "asymmetric": not scene.symmetric,
+        "stress boundary": scene.boundary == "stress",
+        "textbook scheme": scene.scheme == "fixed_step",
+        "strongly damped": scene.damping_ratio >= 1.0,
+    }
+    seen.update(kind for kind, held in kinds.items() if held)
     check_motion(run)
     # The energy balance is kept, or the run is flagged, by any scheme.
     flagged = "energy" in run.attrs["run_flags"]
@@ -82,19 +91,6 @@ def check_invariants(scene):
         assert not flagged or coarse or scene.damping_ratio >= 1.0
         seen["flagged for energy"] += flagged
     check_mirror(scene, run)
-
-
-def count_kinds(scene, run) -> None:
-    kinds = {
-        "scenes": True,
-        "in which blocks slip": np.isfinite(run["release_time"].values).any(),
-        "in which blocks stick": np.isfinite(run["stick_time"].values).any(),
-        "asymmetric": not scene.symmetric,
-        "stress boundary": scene.boundary == "stress",
-        "textbook scheme": scene.scheme == "fixed_step",
-        "strongly damped": scene.damping_ratio >= 1.0,
-    }
-    seen.update(kind for kind, held in kinds.items() if held)
 
 
 def check_motion(run) -> None:
