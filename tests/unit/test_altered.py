@@ -15,10 +15,9 @@ def alterations(overlay: dict) -> Alterations:
     return Alterations(read_config(SHIPPED, every_run=False), here)
 
 
-GAMMA = {"gamma": [0.3]}
 OVERLAYS = {
     "a default": ({"model": {"release": "elastic"}}, "altered: release = elastic"),
-    "a list": ({"simulations": {"steady_displacement": GAMMA}}, "altered: gamma = 0.3"),
+    "a list": ({"simulations": {"steady_displacement": {"gamma": [0.3]}}}, "altered: gamma = 0.3"),
     "a preset": ({"preset": "draft"}, ""),
     "a default that the sweep replaces": ({"model": {"damping_ratio": 0.05}}, ""),
     "another sweep": ({"simulations": {"scaling_stress": {"width": [2.0]}}}, ""),

@@ -56,8 +56,7 @@ def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(f
     assert digests(elsewhere) == digests(finished)
     how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
     folder = ("--directory", finished, "--snakefile", finished / "Snakefile")
-    result = snakemake(finished, *folder, "--dry-run", "--", SCENE, **how)
-    assert planned(result) == {}
+    assert planned(snakemake(finished, *folder, "--dry-run", "--", SCENE, **how)) == {}
 
 
 @pytest.mark.slow

@@ -18,9 +18,8 @@ from slippulse.model.cost import HOW_TO_GO_ON
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]
 KEPT += ["burridge_knopoff_stress", "steady_stress"]
-FOLDER = Path(__file__).parent
 # Each case has an overlay and its refusal: parts that the refusal must have, one a line.
-MISTAKES = read_overlay(FOLDER / "refusals.yaml")
+MISTAKES = read_overlay(Path(__file__).with_name("refusals.yaml"))
 LONG_NAME = {"simulations": {"a" * 900: {}}}
 MISTAKES["name of 900 letters"] = {"overlay": LONG_NAME, "refusal": "'aaaa\n..."}
 MANY = [0.001 * i for i in range(1, 801)]

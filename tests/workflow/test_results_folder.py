@@ -190,8 +190,7 @@ def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert change_and_verify(folder, {command: {} for command in commands}) == {}
     assert "made anew where needed" not in run(folder, *TARGETS)
     assert digests(folder, "overlay").items() <= digests(folder).items()
-    result = snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")
-    assert planned(result) == {}
+    assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
 
 
 # A command, what verify then says of some results, the overlay, and a folder with its results.
