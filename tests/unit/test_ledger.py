@@ -2,16 +2,18 @@
 
 import json
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.special import chdtri
 
 from slippulse.claims import rules
 from slippulse.claims.choices import LAST, Combination, over_choices
 from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
-from slippulse.claims.kinds import Approximate, Qualitative, Scaling
+from slippulse.claims.kinds import Approximate, Qualitative, Reading, Scaling
 from slippulse.claims.ledger import Ledger, with_texts
 from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries, read_text
@@ -23,6 +25,20 @@ YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
 NAN = float("nan")
 KNOWN = [1e-4, 1e-4]
 EQUATION, OVER_CHOICES = rules.equation, rules.verdict_over_choices
+
+
+def every(held: int, failed: int = 0, undecided: int = 0, **fields) -> str:
+    """The verdict on a qualitative claim by numbers of runs."""
+    decided = [True] * held + [False] * failed + [None] * undecided
+    return Qualitative(decided=decided, **fields).verdict()
+
+
+def reading(p: float, degrees: int, tolerance: float) -> str:
+    """The verdict on a figure that was read off, by the probability of its chi-square."""
+    fit = {"chi_square": chdtri(degrees, p), "degrees_of_freedom": degrees}
+    return Reading(tolerance=tolerance, **fit).verdict()
+
+
 # A rule, its arguments (a tolerance where it takes one), and the verdict.
 CASES = {
     "number: well within": (rules.within, (0.001, 0.0001, 0.01), YES),
@@ -49,18 +65,20 @@ CASES = {
     "worst: open": (rules.worst, ([YES, OPEN, CAVEAT],), OPEN),
     "worst: failed": (rules.worst, ([YES, NO, OPEN],), NO),
     "worst: none": (rules.worst, ([],), NONE),
-    "every: all hold": (rules.qualitative, (40, 0, 0, False), YES),
-    "every: under a condition": (rules.qualitative, (40, 0, 0, True), CAVEAT),
-    "every: few undecided": (rules.qualitative, (36, 0, 4, False), CAVEAT),
-    "every: many undecided": (rules.qualitative, (35, 0, 5, False), OPEN),
-    "every: all undecided": (rules.qualitative, (0, 0, 3, False), OPEN),
-    "every: one against": (rules.qualitative, (39, 1, 0, False), NO),
-    "every: one against, many open": (rules.qualitative, (10, 1, 29, False), NO),
-    "every: no runs": (rules.qualitative, (0, 0, 0, False), NONE),
-    "reading: likely": (rules.reading, (0.5, 7, 0.05), YES),
-    "reading: unlikely": (rules.reading, (0.04, 7, 0.05), NO),
-    "reading: too few readings": (rules.reading, (0.5, 1, 0.05), OPEN),
-    "reading: no fit": (rules.reading, (NAN, 7, 0.05), NONE),
+    "every: all hold": (every, (40, 0, 0), YES),
+    "every: under a condition": (partial(every, condition=True), (40, 0, 0), CAVEAT),
+    "every: few undecided": (every, (36, 0, 4), CAVEAT),
+    "every: many undecided": (every, (35, 0, 5), OPEN),
+    "every: all undecided": (every, (0, 0, 3), OPEN),
+    "every: one against": (every, (39, 1, 0), NO),
+    "every: one against, many open": (every, (10, 1, 29), NO),
+    "every: no runs": (every, (0, 0, 0), NONE),
+    "premise: all hold": (partial(every, premise=True), (2, 0, 0), YES),
+    "premise: one against": (partial(every, premise=True), (1, 1, 0), UNMET),
+    "reading: likely": (reading, (0.5, 7, 0.05), YES),
+    "reading: unlikely": (reading, (0.04, 7, 0.05), NO),
+    "reading: too few readings": (reading, (0.5, 1, 0.05), OPEN),
+    "reading: no fit": (reading, (NAN, 7, 0.05), NONE),
 }
 ESTIMATED = {"kind": "approximate", "tolerance": 0.2, "earlier_tolerance": 0.01, "sentences": []}
 ENTRIES = {"equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]}}
@@ -117,7 +135,6 @@ def test_one_verdict_at_every_choice_is_the_verdict():
     assert over_choices(LENGTHS[0::2]).verdict() == "not reproduced"
     unsure = over_choices([estimated("total", 0.0, 0.19, 0.05), *LENGTHS[3:]]).written()
     assert unsure["verdict"] == "reproduced with caveat" and "0" in unsure["why"]
-    assert rules.flips(LENGTHS[0].claim.verdict_at, 0.0) == []
 
 
 def test_each_claim_of_the_texts_has_a_judge_and_each_judge_a_text():
@@ -218,12 +235,10 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
 
 
 def test_a_qualitative_claim_counts_runs():
-    claim = Qualitative.counted([True] * 38 + [None] * 2).fields()
+    claim = Qualitative(decided=[True] * 37 + [None] * 2 + [np.bool_(True)]).written()
     assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
-    assert Qualitative.counted([np.bool_(True), np.bool_(False)]).verdict() == NO
-    assert Qualitative.counted([]).verdict() == NONE
-    premise = Qualitative.counted([True, False], premise=True)
-    assert premise.verdict() == UNMET and replace(premise, failed=0).verdict() == YES
+    assert claim["flips_at"] == []
+    assert Qualitative(decided=np.array([True, False])).verdict() == NO
 
 
 def test_what_must_hold_besides_decides_at_every_tolerance():

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..data.numerals import number, percent, setting
 from . import rules
-from .kinds import ByNumber, Claim, Qualitative, Scaling
+from .kinds import Claim, Qualitative, Scaling
 
 # Values of open choices, by name.
 Chosen = dict[str, float | str]
@@ -86,18 +86,15 @@ def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OverChoices(ByNumber):
+class OverChoices(Claim):
     """One claim from those at all combinations of choices, with the numbers of ``shown``."""
 
     combinations: Sequence[Combination]
     shown: Claim
 
-    def by_number(self, tolerance: float) -> str:
-        claims = [one.claim for one in self.combinations if isinstance(one.claim, ByNumber)]
-        return rules.verdict_over_choices([claim.verdict_at(tolerance) for claim in claims])
-
-    def verdict(self) -> str:
-        return rules.verdict_over_choices([one.result["verdict"] for one in self.combinations])
+    def alone(self, tolerance: float) -> str:
+        verdicts = [one.claim.verdict_at(tolerance) for one in self.combinations]
+        return rules.verdict_over_choices(verdicts)
 
     def fields(self) -> dict[str, Any]:
         """The numbers shown, a row for each combination, and the choice that moves most."""
@@ -166,9 +163,7 @@ def over_choices(
 ) -> OverChoices:
     """One claim from all combinations, with the numbers of the first or of ``shown``."""
     shown = replace(shown or combinations[0].claim, **fields)
-    # A claim by numbers of runs has no number that a tolerance is for.
-    tolerance = getattr(shown, "tolerance", 0.0)
-    return OverChoices(combinations=combinations, shown=shown, tolerance=tolerance)
+    return OverChoices(combinations=combinations, shown=shown, tolerance=shown.tolerance)
 
 
 def named(value: float | str) -> str:

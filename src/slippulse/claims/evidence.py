@@ -1,7 +1,6 @@
 """The tables that claims are computed from, and a claim of each measured kind from them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -120,21 +119,17 @@ class Evidence:
         self._lattices[simulation] = [table.assign(**columns(table)) for table in tables]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Runs on three lattices."""
-        return [self._chosen(simulations, where, lattice) for lattice in range(3)]
+        """Runs on three lattices, of which a condition is true on the finest."""
+        chosen = [evaluated(self._lattices[name][0], where) for name in simulations]
+        lattices = []
+        for tables in zip(*(self._lattices[name] for name in simulations), strict=True):
+            parts = [table[runs] for table, runs in zip(tables, chosen, strict=True)]
+            lattices.append(pd.concat(parts) if len(parts) > 1 else parts[0])
+        return lattices
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
         """Runs on the finest lattice, with extrapolated_QUANTITY and uncertainty_QUANTITY."""
-        return self._chosen(simulations, where, 0)
-
-    def _chosen(self, simulations: Sequence[str], where: str, lattice: int) -> pd.DataFrame:
-        """Runs on one lattice, of which a condition is true on the finest."""
-        parts = []
-        for name in simulations:
-            tables = self._lattices[name]
-            part = tables[lattice]
-            parts.append(part[evaluated(tables[0], where)] if where else part)
-        return pd.concat(parts) if len(parts) > 1 else parts[0]
+        return self.lattices(*simulations, where=where)[0]
 
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
@@ -155,12 +150,13 @@ class Evidence:
         deviations = [(series - 1.0).abs() for series in quotients]
         finest = deviations[0][np.isfinite(deviations[0])].to_numpy()
         left_out = len(deviations[0]) - finest.size
-        claim = Approximate(tolerance=self.tolerance(id), deviations=finest, left_out=left_out)
-        if not finest.size:
-            return claim
-        median = studied(tables, [series.median() for series in deviations])
-        ratio = studied(tables, [series.median() for series in quotients])
-        return replace(claim, median=median, ratio=ratio)
+        return Approximate(
+            tolerance=self.tolerance(id),
+            deviations=finest,
+            left_out=left_out,
+            median=studied(tables, [series.median() for series in deviations]),
+            ratio=studied(tables, [series.median() for series in quotients]),
+        )
 
     def agreed(
         self, simulation: str, where: str, holds: str, decidable: str = "", ends: Sequence[str] = ()

@@ -1,8 +1,8 @@
 """Findings: numbers of our own that stand beside the claims, without a verdict."""
 
 from collections.abc import Callable, Mapping
+from itertools import chain
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -24,10 +24,7 @@ def findings(
         if id in COMPUTED and all(parts):
             parts.append(COMPUTED[id](evidence))
         # An altered configuration may have left no runs to take some of them from.
-        values: dict[str, Any] = {}
-        if all(parts):
-            for part in parts:
-                values |= part
+        values = dict(chain.from_iterable(part.items() for part in parts)) if all(parts) else {}
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
         source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
         out.append({"id": id, "numbers": values, "text": text, "source": source})

@@ -28,7 +28,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     why += f"to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
     decided = [len(runs) > 0 or None for runs in (two_way, one_way)]
-    return Qualitative.counted(decided, condition=wide, further=further, why=why if wide else "")
+    return Qualitative(decided=decided, condition=wide, further=further, why=why if wide else "")
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -43,7 +43,7 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     further["left out, since blocks would slide back"] = float(outside.sum())
     further["left out, since fracture energy stops them"] = float(len(bounded) - len(ruptures))
     why = "Tested are friction linear in slip rate, bounded laws of it, and slip weakening."
-    return Qualitative.counted(kinds != "crack", condition=True, further=further, why=why)
+    return Qualitative(decided=kinds != "crack", condition=True, further=further, why=why)
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -60,7 +60,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     why = "Tested is one family of laws, friction that strengthens linearly with slip rate."
     answers = agreeing(laws.iloc[:, 0], laws.iloc[:, -1])
     further = {words: float((~laws).sum().max())}
-    return Qualitative.counted(answers, condition=True, further=further, why=why)
+    return Qualitative(decided=answers, condition=True, further=further, why=why)
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
@@ -81,4 +81,4 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         why += rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} "
         why += f"to {number(speeds.max())}, where the formula has {number(undamped, 4)} "
         why += "(figure study_friction_laws)."
-    return Qualitative.counted(held, condition=True, further=further, why=why)
+    return Qualitative(decided=held, condition=True, further=further, why=why)

@@ -1,42 +1,79 @@
 """Results about a claim of the paper: a dataclass for each kind of claim."""
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
+from scipy.special import chdtrc
 
 from . import rules
 from .rules import Uncertain
 
-NAN = float("nan")
+NAN = math.nan
+# The number of tolerances at which a verdict is computed, and of halvings where it changes.
+SCANNED, BISECTED = 41, 12
+# A qualitative claim stays open if a larger fraction of its runs is undecided.
+MOST_UNDECIDED = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim(ABC):
     """The result about one claim; every kind may have further numbers by name, and two texts.
 
-    ``why`` is a sentence or two on the verdict, ``note`` replaces that in manuscript/claims.yaml,
-    ``at_earlier`` is the verdict at an earlier tolerance, where no number is compared with it.
+    ``tolerance`` is 0 where no number is compared with one; ``at_earlier`` is then the verdict at
+    an earlier one. ``besides`` has the verdict, at a tolerance, on what must hold besides;
+    ``beyond`` is true if the paper does not make the claim. ``why`` is a sentence or two on the
+    verdict, ``note`` replaces that in manuscript/claims.yaml.
     """
 
+    tolerance: float = 0.0
+    besides: Callable[[float], str] | None = None
+    beyond: bool = False
     further: Mapping[str, float] = field(default_factory=dict)
     why: str = ""
     note: str = ""
     at_earlier: str = ""
 
     @abstractmethod
-    def verdict(self) -> str:
-        """The verdict at the tolerance of the claim."""
+    def alone(self, tolerance: float) -> str:
+        """The verdict on the numbers of the kind alone if the tolerance were this one."""
 
     @abstractmethod
     def fields(self) -> dict[str, Any]:
         """The verdict and the numbers of the kind, as claims.json names them."""
 
+    def verdict_at(self, tolerance: float) -> str:
+        """The verdict if the tolerance were this one."""
+        verdict = self.alone(tolerance)
+        if self.besides is not None:
+            verdict = rules.worst([verdict, self.besides(tolerance)])
+        return rules.BEYOND if self.beyond and verdict == rules.FAILED else verdict
+
+    def verdict(self) -> str:
+        """The verdict at the tolerance of the claim."""
+        return self.verdict_at(self.tolerance)
+
     def flips(self) -> list[dict]:
-        """Tolerances at which the verdict changes; none if no number is compared with one."""
-        return []
+        """Tolerances, a tenth to ten times, at which the verdict changes, and both verdicts."""
+        if not self.tolerance:
+            return []
+        factors = np.geomspace(0.1, 10.0, SCANNED)
+        verdicts = [self.verdict_at(self.tolerance * factor) for factor in factors]
+        out = []
+        for i in np.flatnonzero(np.array(verdicts[1:]) != verdicts[:-1]):
+            low, high = factors[i : i + 2]
+            for _ in range(BISECTED):
+                middle = np.sqrt(low * high)
+                if self.verdict_at(self.tolerance * middle) == verdicts[i]:
+                    low = middle
+                else:
+                    high = middle
+            sides = {"below": verdicts[i], "above": verdicts[i + 1]}
+            out.append({"tolerance": float(self.tolerance * high)} | sides)
+        return out
 
     def written(self) -> dict[str, Any]:
         """All fields in claims.json that the result sets."""
@@ -47,68 +84,43 @@ class Claim(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
-    """An always, never or every, by the numbers of runs in which it holds, fails or is open.
+    """An always, never or every, by whether it holds in each run, None where that is undecided.
 
     ``condition`` is true if it needs a condition that the paper does not state, ``premise`` if the
     paper does not say that it holds, but takes it for granted.
     """
 
-    held: int
-    failed: int = 0
-    undecided: int = 0
+    decided: Collection[bool | None]
     condition: bool = False
     premise: bool = False
 
-    @classmethod
-    def counted(cls, decided: Iterable[bool | None], **fields: Any) -> Self:
-        """The claim from whether it holds in each run, None where that is undecided."""
-        decided = list(decided)
-        held = sum(bool(answer) for answer in decided)
-        undecided = sum(answer is None for answer in decided)
-        failed = len(decided) - held - undecided
-        return cls(held=held, failed=failed, undecided=undecided, **fields)
+    def counts(self) -> dict[str, int]:
+        """Numbers of runs in which it holds, fails or is open."""
+        held = sum(bool(answer) for answer in self.decided)
+        undecided = sum(answer is None for answer in self.decided)
+        failed = len(self.decided) - held - undecided
+        return {"held": held, "failed": failed, "undecided": undecided}
 
-    def verdict(self) -> str:
-        verdict = rules.qualitative(self.held, self.failed, self.undecided, self.condition)
-        return rules.UNMET if self.premise and verdict == rules.FAILED else verdict
+    def alone(self, tolerance: float) -> str:
+        held, failed, undecided = self.counts().values()
+        if not held + failed + undecided:
+            return rules.NOT_TESTABLE
+        if failed:
+            return rules.UNMET if self.premise else rules.FAILED
+        if undecided > MOST_UNDECIDED * (held + undecided):
+            return rules.INCONCLUSIVE
+        return rules.CAVEAT if undecided or self.condition else rules.REPRODUCED
 
     def fields(self) -> dict[str, Any]:
-        runs, counts = self.held + self.failed + self.undecided, {"held": self.held}
-        counts |= {"failed": self.failed, "undecided": self.undecided}
-        out = {"verdict": self.verdict(), "predicted": runs, "measured": self.held}
-        out |= {"uncertainty": self.undecided, "deviation": self.failed / runs if runs else None}
+        runs, counts = len(self.decided), self.counts()
+        out = {"verdict": self.verdict(), "predicted": runs, "measured": counts["held"]}
+        out["uncertainty"] = counts["undecided"]
+        out["deviation"] = counts["failed"] / runs if runs else None
         return out | {"runs": runs} | counts
 
 
 @dataclass(frozen=True, kw_only=True)
-class ByNumber(Claim):
-    """A claim that compares a number with a tolerance."""
-
-    tolerance: float
-    # The verdict, at a tolerance, on what must hold besides.
-    besides: Callable[[float], str] | None = None
-    # The paper does not make it.
-    beyond: bool = False
-
-    @abstractmethod
-    def by_number(self, tolerance: float) -> str:
-        """The verdict on the number alone if the tolerance were this one."""
-
-    def verdict_at(self, tolerance: float) -> str:
-        """The verdict if the tolerance were this one."""
-        verdicts = [self.by_number(tolerance)]
-        verdict = rules.worst(verdicts + ([self.besides(tolerance)] if self.besides else []))
-        return rules.BEYOND if self.beyond and verdict == rules.FAILED else verdict
-
-    def verdict(self) -> str:
-        return self.verdict_at(self.tolerance)
-
-    def flips(self) -> list[dict]:
-        return rules.flips(self.verdict_at, self.tolerance)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Equation(ByNumber):
+class Equation(Claim):
     """An equation, by values of its runs at spacing 0: arrays [run], NaN without a value."""
 
     predicted: np.ndarray
@@ -122,7 +134,7 @@ class Equation(ByNumber):
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
         return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
 
-    def by_number(self, tolerance: float) -> str:
+    def alone(self, tolerance: float) -> str:
         return rules.equation(*self.relative(), tolerance)[0]
 
     def fields(self) -> dict[str, Any]:
@@ -139,7 +151,7 @@ class Equation(ByNumber):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Approximate(ByNumber):
+class Approximate(Claim):
     """An estimate, by the median deviation of its runs."""
 
     # |measured/predicted - 1| of the runs that have numbers, on the finest lattice.
@@ -151,7 +163,7 @@ class Approximate(ByNumber):
     # The median and largest deviation of runs at spacing 0 from the exact theory.
     from_exact: Uncertain | None = None
 
-    def by_number(self, tolerance: float) -> str:
+    def alone(self, tolerance: float) -> str:
         return rules.within(*self.median, tolerance)
 
     def fields(self) -> dict[str, Any]:
@@ -169,33 +181,45 @@ class Approximate(ByNumber):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scaling(ByNumber):
+class Scaling(Claim):
     """A proportionality, by the exponent of measured over predicted, which should be 1."""
 
     exponent: Uncertain
     runs: int
 
-    def by_number(self, tolerance: float) -> str:
+    def alone(self, tolerance: float) -> str:
         return rules.within(abs(self.exponent[0] - 1.0), self.exponent[1], tolerance)
 
     def fields(self) -> dict[str, Any]:
-        out: dict[str, Any] = {"verdict": self.verdict(), "runs": self.runs, "left_out": 0}
-        out["predicted"] = 1.0
-        out["measured"], out["uncertainty"] = self.exponent
-        return out | {"deviation": abs(self.exponent[0] - 1.0)}
+        measured, uncertainty = self.exponent
+        out = {"verdict": self.verdict(), "runs": self.runs, "left_out": 0, "predicted": 1.0}
+        out |= {"measured": measured, "uncertainty": uncertainty}
+        return out | {"deviation": abs(measured - 1.0)}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reading(ByNumber):
-    """A figure that was read off, by chi-square of its readings at the best fit."""
+class Reading(Claim):
+    """A figure that was read off, by chi-square of its readings at the best fit.
+
+    The degrees of freedom are the readings less the fitted parameters.
+    """
 
     chi_square: float
     degrees_of_freedom: int
-    p_value: float
 
-    def by_number(self, tolerance: float) -> str:
-        return rules.reading(self.p_value, self.degrees_of_freedom, tolerance)
+    def p_value(self) -> float:
+        """Probability of a larger chi-square; NaN without degrees of freedom."""
+        degrees = self.degrees_of_freedom
+        return float(chdtrc(degrees, self.chi_square)) if degrees else NAN
+
+    def alone(self, tolerance: float) -> str:
+        p = self.p_value()
+        if math.isnan(p):
+            return rules.NOT_TESTABLE
+        if self.degrees_of_freedom < 2:
+            return rules.INCONCLUSIVE
+        return rules.REPRODUCED if p >= tolerance else rules.FAILED
 
     def fields(self) -> dict[str, Any]:
         out = {"verdict": self.verdict(), "predicted": float(self.degrees_of_freedom)}
-        return out | {"measured": self.chi_square, "deviation": self.p_value}
+        return out | {"measured": self.chi_square, "deviation": self.p_value()}

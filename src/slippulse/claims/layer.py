@@ -47,7 +47,7 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
         "cracks that do not stick, stress held": float(cracks.sum()),
         "stopped on one side by a barrier, stress held": float(stopped.sum()),
     }
-    return Qualitative.counted([*settled, *cracks, *stopped], further=further)
+    return Qualitative(decided=[*settled, *cracks, *stopped], further=further)
 
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:

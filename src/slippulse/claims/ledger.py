@@ -14,14 +14,12 @@ BAND = 1.5
 
 
 class Entry(SimpleNamespace):
-    """A claim of claims.json, with its fields as attributes; its texts are those of an equation."""
+    """A claim of claims.json, with its fields as attributes; its texts are those of a number."""
 
     # Fields that only some kinds have.
     runs = left_out = 0
     largest: Any = None
     exact_largest: Any = None
-    # The form of the deviation.
-    average, absolute = "", False
 
     def predicted_text(self) -> str:
         """The prediction of the paper."""
@@ -67,10 +65,11 @@ class Entry(SimpleNamespace):
         return "; ".join(filter(None, parts))
 
     def _compared(self) -> str:
-        if self.absolute or self.predicted == 0.0:
+        # The deviation of a scaling is of an exponent, that of an estimate a median.
+        if self.kind == "scaling" or self.predicted == 0.0:
             return f"{number(self.deviation, 2)}, tolerance {setting(self.tolerance)}"
-        text = f"{self.average}{percent(self.deviation)}"
-        text += f", tolerance {setting(100.0 * self.tolerance)} %"
+        text = "median " if self.kind == "approximate" else ""
+        text += f"{percent(self.deviation)}, tolerance {setting(100.0 * self.tolerance)} %"
         return f"{text}; {self.asked}" if self.asked else text
 
     def _off(self) -> str:
@@ -87,18 +86,6 @@ class Entry(SimpleNamespace):
             ninety, largest = percent(self.ninety), percent(self.largest)
             parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
         return parts + ([f"left out, without numbers: {self.left_out}"] if self.left_out else [])
-
-
-class Estimate(Entry):
-    """An approximate claim, whose deviation is a median."""
-
-    average = "median "
-
-
-class Exponent(Entry):
-    """A scaling, whose deviation is of an exponent."""
-
-    absolute = True
 
 
 class Counts(Entry):
@@ -144,13 +131,10 @@ class ReadOff(Entry):
         return f"At the best fit {self.compared_text()} is asked."
 
 
-KINDS = {"exact": Entry, "approximate": Estimate, "scaling": Exponent}
-KINDS |= {"qualitative": Counts, "reading": ReadOff}
-
-
 def with_texts(claim: Mapping[str, Any]) -> Entry:
     """A claim of claims.json with the texts of its kind."""
-    return KINDS[claim["kind"]](**claim)
+    kinds = {"qualitative": Counts, "reading": ReadOff}
+    return kinds.get(claim["kind"], Entry)(**claim)
 
 
 class Ledger:

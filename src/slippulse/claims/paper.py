@@ -7,7 +7,7 @@ from typing import Any
 
 from . import friction_laws, layer, pulses, space_time_figure, transition
 from .evidence import Evidence
-from .kinds import ByNumber, Claim
+from .kinds import Claim
 from .ledger import with_texts
 from .reading import places_of
 
@@ -102,7 +102,7 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     out |= {"id": id} | claim.written()
     counted = not out["follows_from"] and not out["beyond"]
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
-    if "earlier_tolerance" in entry and isinstance(claim, ByNumber) and not out["at_earlier"]:
+    if "earlier_tolerance" in entry and not out["at_earlier"]:
         out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
     out = finite(out)
     return out | {"why": with_texts(out).why_text()}

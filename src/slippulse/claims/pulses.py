@@ -136,7 +136,7 @@ def always(evidence: Evidence, id: str) -> Qualitative:
     for words, where in counted.items():
         ends = evidence.finest(*row.sweeps, where=where)["regime"].value_counts()
         further |= {f"{words}: {regime}": float(count) for regime, count in ends.items()}
-    return Qualitative.counted(chain.from_iterable(decided), further=further)
+    return Qualitative(decided=[*chain.from_iterable(decided)], further=further)
 
 
 def meet(table: pd.DataFrame) -> dict[str, pd.Series]:
@@ -179,7 +179,7 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     why += rf"At $\gamma$ = {gammas} and $b$ = {ratios} it is met at {thin.sum()} of {len(thin)} "
     why += r"levels; by the formula of the width it is where $\gamma(1-\tau_0^2)/\tau_0^2$ is "
     why += f"at most {number((np.pi * allowed) ** 2)}."
-    return Qualitative.counted(thin, premise=True, further=further, why=why)
+    return Qualitative(decided=thin, premise=True, further=further, why=why)
 
 
 def within(
@@ -208,7 +208,7 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     decided: list[bool | None] = []
     for _, rows in table.groupby(["beyond", "gamma", "damping_ratio"]):
         decided += [within(*pair, allowed) for pair in pairs(rows, sizes)]
-    return Qualitative.counted(decided)
+    return Qualitative(decided=decided)
 
 
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
@@ -229,7 +229,7 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     further = {
         words: float(np.nanmax(deviations[0][slip], initial=0.0)) for words, slip in slips.items()
     }
-    return Qualitative.counted(agreeing(*settled), further=further)
+    return Qualitative(decided=agreeing(*settled), further=further)
 
 
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
@@ -238,13 +238,12 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     changes = evidence.agreed("regimes_beyond", "beyond != 0", "changed != 0")
 
     def straining(tolerance: float) -> Qualitative:
-        return Qualitative.counted(np.array(changes, object)[strain > tolerance])
+        return Qualitative(decided=np.array(changes, object)[strain > tolerance])
 
     table = evidence.finest("stress_pulses", where=UNDAMPED)
     claim = evidence.equation(id, table, "strain_left", "0")
-    counts = straining(claim.tolerance)
-    numbers = {"held": counts.held, "failed": counts.failed, "undecided": counts.undecided}
-    return replace(claim, counts=numbers, besides=lambda allowed: straining(allowed).verdict())
+    counts = straining(claim.tolerance).counts()
+    return replace(claim, counts=counts, besides=lambda allowed: straining(allowed).verdict())
 
 
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
@@ -256,7 +255,7 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     for deviation, uncertainty in pairs(table, ["pulse_peak_velocity", HALF_WIDTH]):
         alike = within(deviation, uncertainty, allowed, sure=True)
         decided.append(None if alike is None else not alike)
-    return Qualitative.counted(decided)
+    return Qualitative(decided=decided)
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
@@ -271,4 +270,4 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     peak, half_width = deviation.max()
     words = "on the lattice, with damping, off by at most"
     further = {f"peak {words}": float(peak), f"half-width {words}": float(half_width)}
-    return Qualitative.counted(decided, further=further)
+    return Qualitative(decided=decided, further=further)

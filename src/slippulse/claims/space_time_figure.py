@@ -1,13 +1,9 @@
 """Claims about the two panels of the published space-time figure."""
 
-from typing import Any
-
-from scipy.special import chdtrc
-
 from ..data.numerals import number, percent, rounded, setting
 from ..measurement.inference import inference
 from .evidence import Evidence
-from .kinds import NAN, Reading
+from .kinds import Reading
 
 # The fitted parameters of the left panel.
 SYMBOLS = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
@@ -20,7 +16,8 @@ def left(evidence: Evidence, id: str) -> Reading:
     note = "chi-square of all readings of the panel but its arrows, at their best fit, "
     note += f"{parameters}, release rule `{best['release']}`; then the readings in our own figure"
     further = read_off(evidence, "space_time_displacement")
-    return reading(evidence, id, best["chi2"], best["dof"], further=further, note=note)
+    fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
+    return Reading(tolerance=evidence.tolerance(id), **fit, further=further, note=note)
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:
@@ -45,8 +42,13 @@ def arrows(evidence: Evidence, id: str) -> Reading:
     why += f"it is {setting(drawn['arrow_length'])} long, and the drawn fronts are then "
     why += f"{number(apart)} apart. The caption calls the arrows definitions; no number of the "
     why += "paper rests on them, and the verdict is on the drawing alone."
-    rise, degrees = (fits["with"][name] - fits["without"][name] for name in ("chi2", "dof"))
-    return reading(evidence, id, rise, degrees, further=further, why=why)
+    return Reading(
+        tolerance=evidence.tolerance(id),
+        chi_square=fits["with"]["chi2"] - fits["without"]["chi2"],
+        degrees_of_freedom=fits["with"]["dof"] - fits["without"]["dof"],
+        further=further,
+        why=why,
+    )
 
 
 def arrow_and_stick(evidence: Evidence) -> str:
@@ -63,8 +65,8 @@ def right(evidence: Evidence, id: str) -> Reading:
     why = "One reading is left when its pre-stress is read off."
     note = "chi-square of its one reading, the pre-stress being read off; "
     note += "then the readings in our own figure"
-    chi_square = float((pulls**2).max())
-    return reading(evidence, id, chi_square, 1, further=further, why=why, note=note)
+    fit = {"chi_square": float((pulls**2).max()), "degrees_of_freedom": 1}
+    return Reading(tolerance=evidence.tolerance(id), **fit, further=further, why=why, note=note)
 
 
 def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
@@ -72,14 +74,3 @@ def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
     entries = [one for one in evidence.readings.values() if one["simulation"] == simulation]
     runs = evidence.finest(simulation)
     return {one["statement"]: float(runs[one["quantity"]].mean()) for one in entries}
-
-
-def reading(evidence: Evidence, id: str, chi_square: float, degrees: int, **rest: Any) -> Reading:
-    """A claim about one panel, by chi-square of its readings."""
-    return Reading(
-        tolerance=evidence.tolerance(id),
-        chi_square=chi_square,
-        degrees_of_freedom=degrees,
-        p_value=float(chdtrc(degrees, chi_square)) if degrees else NAN,
-        **rest,
-    )

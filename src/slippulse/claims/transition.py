@@ -255,7 +255,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
         over = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
         longer = [(excess > 0.0) & (excess <= most) for excess in over]
         # An exact solution is one table, which agrees with itself.
-        return Qualitative.counted(agreeing(longer[0], longer[-1]))
+        return Qualitative(decided=agreeing(longer[0], longer[-1]))
 
     runs = arrests(evidence)
     slight = partial(judge, most=float(evidence.entries[id]["earlier_tolerance"]))
@@ -311,7 +311,7 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
     words = r"mean exponent of $\gamma$ in ${}_\mathrm{{trans}}$".format
     means = np.mean(exponents[0], axis=0)
     further = {words(symbol): float(mean) for symbol, mean in zip("TL", means, strict=True)}
-    return Qualitative.counted(agreeing(*answers), further=further)
+    return Qualitative(decided=agreeing(*answers), further=further)
 
 
 def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
@@ -337,7 +337,7 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
         uncertainties = rows[unsure].rolling(2).sum()[1:]
         for step, uncertainty in zip(steps, uncertainties, strict=True):
             decided.append(bool(step > 0.0) if abs(step) > uncertainty else None)
-    return Qualitative.counted(decided)
+    return Qualitative(decided=decided)
 
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:

@@ -53,13 +53,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def judged(case: Case, window: float) -> dict[str, Any]:
-    """Run a case and judge it."""
+    """Run a case and judge it: a flag wins, then a number that is missing, then the number."""
     tolerance = TOLERANCES.get(case.family, TOLERANCES.get(case.quantity, 0.0))
     expected, error = case.expected(), math.nan
     try:
         outcome = measured(case, window)
         error = abs(outcome.value - expected) / (abs(expected) or 1.0)
-        verdict = judge(outcome, error <= tolerance)
+        # A number where theory has none is not within its tolerance.
+        verdict = "right" if error <= tolerance else "WRONG WITHOUT A FLAG"
+        if outcome.message:
+            verdict = NOT_OFFERED if outcome.message == NOT_OFFERED else "flagged"
+        elif math.isnan(outcome.value):
+            verdict = "no number"
     except UnstableRun as stopped:
         verdict, outcome = "stopped", Outcome(message=str(stopped))
     except ValueError as refusal:
@@ -68,18 +73,6 @@ def judged(case: Case, window: float) -> dict[str, Any]:
     row |= {"should": case.should, "tolerance": tolerance, "expected": expected}
     row |= {"measured": outcome.value, "error": error, "verdict": verdict}
     return row | {"message": outcome.message, "block_updates": outcome.block_updates}
-
-
-def judge(outcome: Outcome, within: bool) -> str:
-    """The verdict: a flag wins; then a number that is missing; then the number itself.
-
-    A number where theory has none is not within its tolerance.
-    """
-    if outcome.message:
-        return NOT_OFFERED if outcome.message == NOT_OFFERED else "flagged"
-    if math.isnan(outcome.value):
-        return "no number"
-    return "right" if within else "WRONG WITHOUT A FLAG"
 
 
 # The three cases of the longest run share it.

@@ -46,13 +46,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         line |= {"damping_ratio": ratio, "springs": SPRINGS}
         line["speed"] = [_speed(left, spring, 1.0, ratio, "total") for spring in SPRINGS]
         parts.append(pd.DataFrame(line))
-    return pd.concat([*parts, over_spacing(pd.concat(held))], ignore_index=True)
-
-
-def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
-    """Lines over the spacing, at a fixed damping or damping ratio, and their limits."""
+    # Lines over the spacing, at a fixed damping or damping ratio, and their limits.
     rows = []
-    for values, dx in scenes.query(REFINED).groupby(LINE)["dx"]:
+    for values, dx in pd.concat(held).query(REFINED).groupby(LINE)["dx"]:
         line = dict(zip(LINE, values, strict=True))
         left, gamma = line["left"], line["gamma"]
         if line["held"] == "beta" and line["release"] == "elastic":
@@ -63,7 +59,7 @@ def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
             speed = _speed(left, gamma, spacing, ratio, line["release"])
             point = {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed}
             rows.append(line | point)
-    return pd.DataFrame(rows)
+    return pd.concat([*parts, pd.DataFrame(rows)], ignore_index=True)
 
 
 def _speed(left: float, gamma: float, dx: float, ratio: float, release: str) -> float:

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
-from ..measurement.fronts import straight_line
+from ..measurement.fronts import fit_front
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..solver.solution import solve_on_lattice
+from ..simulation.sweep import simulate_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.pulse import steady_pulse
 
@@ -23,9 +24,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Quantity, published, localised (on the same lattice) and exact."""
     pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
-    run = solve_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
-    columns = ("x", "release_time", "stick_time", "slip")
-    localised = pd.DataFrame({name: getattr(run, name) for name in columns})
+    localised = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
     window = settings["measure"]["front_window"]
     rows = pd.DataFrame({"quantity": ["front_speed", "first_stick_time", "pulse_slip"]})
     published, ours = numbers(published_run(), window), numbers(localised, window)
@@ -33,8 +32,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return rows.assign(published=published, localised=ours, exact=exact)
 
 
-def published_run() -> pd.DataFrame:
-    """A run of a lattice whose ends are both held: x, release and stick times, slip at the end.
+def published_run() -> xr.Dataset:
+    """A run of a lattice whose ends are both held: release and stick times, slip at the end.
 
     Source: total force, released where it reaches 1 in size; Euler-Cromer steps of 1e-3, events at
     their ends.
@@ -56,13 +55,12 @@ def published_run() -> pd.DataFrame:
         velocity[stopped], sliding[stopped] = 0.0, False
         stick[stopped] = (step + 1) * STEP
         slip = slip + STEP * velocity
-    return pd.DataFrame({"x": x, "release_time": release, "stick_time": stick, "slip": slip})
+    fields = {"release_time": release, "stick_time": stick, "slip": slip}
+    return xr.Dataset({name: ("x", field) for name, field in fields.items()}, {"x": x})
 
 
-def numbers(run: pd.DataFrame, window: float) -> list[float]:
+def numbers(run: xr.Dataset, window: float) -> list[float]:
     """Speed of the right front at the end of its path, first stick, slip left behind."""
-    released = run[run["release_time"].notna()]
-    passed = released[released["x"] > (1.0 - window) * released["x"].max()]
-    left_behind = run.loc[run["stick_time"].notna() & (run["x"] > 0.0), "slip"]
-    speed, _, _ = straight_line(passed["release_time"].to_numpy(), passed["x"].to_numpy())
-    return [speed, float(run["stick_time"].min()), float(left_behind.iloc[-1])]
+    stick = run["stick_time"]
+    left_behind = run["slip"][stick.notnull() & (run["x"] > 0.0)]
+    return [fit_front(run, window)[0], float(stick.min()), float(left_behind[-1])]
