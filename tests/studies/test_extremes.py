@@ -12,15 +12,10 @@ from slippulse.studies.extreme_cases import Case
 from slippulse.studies.extremes import Outcome
 
 WRONG = "WRONG WITHOUT A FLAG"
-# Each family, its number of cases, and where its last case is.
-FAMILIES = {"level near 1": (3, "tau_0 = 0.9999"), "level near 0": (6, "tau_0 = 0.01, dx = 0.01")}
-FAMILIES |= {"gamma": (8, "gamma dx^2 = 10"), "damping": (7, "beta/dx = 100, elastic")}
-FAMILIES |= {"spacing": (7, "dx = 0.001"), "nucleation": (4, "W = 1000")}
-FAMILIES |= {"negative level": (8, "tau_l = -100, dx 0.001, b 0.1, r 60")}
-FAMILIES |= {"duration": (3, "t = 100000"), "float32": (3, "state, gamma = 0.001")}
-FAMILIES |= {"peak": (4, "1 + 0.001"), "two nucleations": (2, "20 apart")}
-FAMILIES |= {"barrier": (2, "depth 0.2"), "damping sign": (1, "as printed")}
-FAMILIES |= {"step": (2, "3 dx, fixed_step")}
+# The number of cases of each family.
+FAMILIES = {"level near 1": 3, "level near 0": 6, "gamma": 8, "damping": 7, "spacing": 7}
+FAMILIES |= {"nucleation": 4, "negative level": 8, "duration": 3, "float32": 3, "peak": 4}
+FAMILIES |= {"two nucleations": 2, "barrier": 2, "damping sign": 1, "step": 2}
 
 
 @pytest.mark.parametrize(
@@ -50,8 +45,7 @@ def test_every_case_ends_as_it_should(study):
     table = study("extremes")
     others = table[table["verdict"] != table["should"]]
     assert others.empty, others.to_string()
-    families = table.groupby("family")["value"]
-    assert {name: (len(values), values.iloc[-1]) for name, values in families} == FAMILIES
+    assert table["family"].value_counts().to_dict() == FAMILIES
     assert len(edges(table).splitlines()) == len(table) + 2
     # Refusals say the bound, flags their reason.
     messages = table.set_index("verdict")["message"]

@@ -1,5 +1,7 @@
 """Claims about the two panels of the published space-time figure."""
 
+from typing import Any
+
 from ..data.numerals import number, percent, rounded, setting
 from ..measurement.inference import inference
 from .evidence import Evidence
@@ -65,7 +67,7 @@ def right(evidence: Evidence, id: str) -> Reading:
     why = "One reading is left when its pre-stress is read off."
     note = "chi-square of its one reading, the pre-stress being read off; "
     note += "then the readings in our own figure"
-    fit = {"chi_square": float((pulls**2).max()), "degrees_of_freedom": 1}
+    fit: dict[str, Any] = {"chi_square": float((pulls**2).max()), "degrees_of_freedom": 1}
     return Reading(tolerance=evidence.tolerance(id), **fit, further=further, why=why, note=note)
 
 
