@@ -97,7 +97,7 @@ def estimated(
     """An estimate at one release rule and damping ratio, by the exact solution."""
     choice = {"release": release, "damping_ratio": ratio, "solution": "exact"} | others
     numbers = {"deviations": np.array([0.0]), "median": (deviation, uncertainty)}
-    return Combination(choice, Approximate(tolerance=0.2, left_out=0, **numbers))
+    return Combination(choice, Approximate(tolerance=0.2, **numbers))
 
 
 # The length of the transition under leaf springs, as the exact theory has it.
@@ -243,7 +243,7 @@ def test_a_qualitative_claim_counts_runs():
 
 def test_what_must_hold_besides_decides_at_every_tolerance():
     """So a claim that fails by its second condition has no tolerance at which it is reproduced."""
-    numbers = {"deviations": np.array([0.1]), "left_out": 0, "median": (0.1, 0.001)}
+    numbers = {"deviations": np.array([0.1]), "median": (0.1, 0.001)}
     claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
     assert replace(claim, beyond=True).verdict() == BEYOND

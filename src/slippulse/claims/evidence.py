@@ -40,10 +40,8 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     """The answer in each run of two lattices; None where they differ or have none."""
-    answers: list[bool | None] = []
-    for one, other in zip(first, second, strict=True):
-        answers.append(bool(one) if one is not None and one == other else None)
-    return answers
+    pairs = zip(first, second, strict=True)
+    return [bool(one) if one is not None and one == other else None for one, other in pairs]
 
 
 def studied(tables: Lattices, values: Sequence[float]) -> Uncertain:
@@ -148,12 +146,9 @@ class Evidence:
         """An estimate, from expressions over tables of lattices, or over one of exact solutions."""
         quotients = [ratios(table, measured, predicted) for table in tables]
         deviations = [(series - 1.0).abs() for series in quotients]
-        finest = deviations[0][np.isfinite(deviations[0])].to_numpy()
-        left_out = len(deviations[0]) - finest.size
         return Approximate(
             tolerance=self.tolerance(id),
-            deviations=finest,
-            left_out=left_out,
+            deviations=deviations[0].to_numpy(),
             median=studied(tables, [series.median() for series in deviations]),
             ratio=studied(tables, [series.median() for series in quotients]),
         )

@@ -154,9 +154,8 @@ class Equation(Claim):
 class Approximate(Claim):
     """An estimate, by the median deviation of its runs."""
 
-    # |measured/predicted - 1| of the runs that have numbers, on the finest lattice.
+    # |measured/predicted - 1| of each run on the finest lattice, NaN without a value.
     deviations: np.ndarray
-    left_out: int
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
     median: Uncertain = (NAN, NAN)
     ratio: Uncertain = (NAN, NAN)
@@ -168,15 +167,16 @@ class Approximate(Claim):
 
     def fields(self) -> dict[str, Any]:
         """The medians and the spread of the runs; only counts without runs."""
-        runs = self.deviations.size
-        out = {"runs": runs, "left_out": self.left_out, "verdict": self.verdict()}
+        usable = self.deviations[np.isfinite(self.deviations)]
+        out: dict[str, Any] = {"runs": usable.size, "left_out": self.deviations.size - usable.size}
+        out["verdict"] = self.verdict()
         if self.from_exact is not None:
             out["exact_median"], out["exact_largest"] = self.from_exact
-        if runs:
+        if usable.size:
             out["measured"], out["uncertainty"] = self.ratio
             out |= {"predicted": 1.0, "deviation": self.median[0]}
-            out["ninety"] = float(np.percentile(self.deviations, 90.0))
-            out["largest"] = float(self.deviations.max())
+            out["ninety"] = float(np.percentile(usable, 90.0))
+            out["largest"] = float(usable.max())
         return out
 
 

@@ -79,7 +79,6 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
-        left_out=0,
         median=(float(deviations.median()), uncertainty),
         ratio=(float(ratio.median()), uncertainty),
         beyond=True,
