@@ -12,6 +12,7 @@ from selection import small_sweep
 from slippulse.configuration.expand import expand
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.figures.style import house_style
 from slippulse.predict.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse.steps.predict import predictions
@@ -62,10 +63,10 @@ class Drawings:
     def inputs(self, needs: dict) -> tuple[dict, dict]:
         """Data and tables, as the workflow joins them."""
         data = {name: self.simulate(name)[0] for name in needs.get("data", [])}
-        tables = {name: self.simulate(name)[1] for name in needs.get("measured", [])}
-        for name, topics in needs.get("predicted", {}).items():
-            predicted = self.predict(name, topics)
-            tables[name] = tables[name].join(predicted) if name in tables else predicted
+        tables = {}
+        for name, topics in needs.get("measured", {}).items():
+            measured = self.simulate(name)[1]
+            tables[name] = measured.join(self.predict(name, topics)) if topics else measured
         for name in needs.get("studies", []):
             tables[name] = self.study(name, *self.inputs(declared(f"studies.{name}", "NEEDS")))
         if "lists" in needs:
@@ -86,6 +87,12 @@ class Drawings:
             parts = {"table": table, "figure": figure, "measured": tables, "module": module}
             self.drawn[name] = SimpleNamespace(**parts)
         return self.drawn[name]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def in_house_style():
+    with house_style():
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -200,25 +200,24 @@ def test_the_arrows_are_the_measured_transition(draw):
         assert times == pytest.approx(measured["time"].to_numpy(), rel=0.02)
 
 
-def offsets(axes, gid: str) -> np.ndarray:
-    groups = [group.get_offsets() for group in axes.collections if group.get_gid() == gid]
-    return np.ma.getdata(np.concatenate(groups))
+def drawn_runs(axes, runs: pd.DataFrame, quantity: str):
+    """The marks of a panel, which are the sound runs at their measured heights, and these runs."""
+    (group,) = [group for group in axes.collections if group.get_gid() == "runs"]
+    sound, heights = runs[runs["run_flags"].isna()], np.ma.getdata(group.get_offsets())[:, 1]
+    measured = np.sort(sound[f"transition_{quantity}"].dropna())
+    assert len(heights) == len(sound)
+    assert np.sort(heights[np.isfinite(heights)]) == pytest.approx(measured, rel=1e-6)
+    return group, sound
 
 
 def test_every_run_is_drawn_in_the_collapse_in_two_colours(draw):
     drawn = draw("fig05_scaling")
     for index, (quantity, boundary) in enumerate(product(("length", "time"), BOUNDARIES)):
-        axes, runs = drawn.figure.axes[index], drawn.measured[f"scaling_{boundary}"]
-        sound = runs[runs["run_flags"].isna()]
-        expected = np.sort(sound[f"transition_{quantity}"].dropna())
-        marks = offsets(axes, "runs")
-        assert len(marks) == len(sound)
-        heights = np.sort(marks[np.isfinite(marks).all(axis=1), 1])
-        assert heights == pytest.approx(expected, rel=1e-6)
+        axes = drawn.figure.axes[index]
+        group, sound = drawn_runs(axes, drawn.measured[f"scaling_{boundary}"], quantity)
         assert axes.get_xscale() == axes.get_yscale() == "log"
         (line,) = [line for line in axes.lines if line.get_gid() == "equality"]
         assert np.array_equal(line.get_xdata(), line.get_ydata())
-        group = next(group for group in axes.collections if group.get_gid() == "runs")
         other = "gamma" if boundary == "displacement" else "width"
         assert len(np.unique(group.get_facecolors(), axis=0)) == sound["left"].nunique()
         assert len(np.unique(group.get_edgecolors(), axis=0)) == sound[other].nunique()
@@ -242,18 +241,16 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
     for one, boundary in zip(drawn, BOUNDARIES, strict=True):
         runs = one.measured[f"damping_{boundary}"]
         ratios = np.sort(runs["damping_ratio"].unique())
+        colours = {to_rgba(colour) for colour in colour_scale("damping_ratio").to_rgba(ratios)}
         assert 0.0 in ratios
         for axes, quantity in zip(one.figure.axes[:2], ("length", "time"), strict=True):
-            (group,) = [group for group in axes.collections if group.get_gid() == "runs"]
-            assert len(group.get_offsets()) == runs["run_flags"].isna().sum()
-            colours = [to_rgba(colour) for colour in colour_scale("damping_ratio").to_rgba(ratios)]
-            assert {to_rgba(face) for face in group.get_facecolors()} == set(colours)
-            measured = runs.loc[runs["run_flags"].isna(), f"transition_{quantity}"].dropna()
-            shown = np.sort(np.ma.compressed(group.get_offsets()[:, 1]))
-            assert shown[np.isfinite(shown)] == pytest.approx(np.sort(measured), rel=1e-6)
+            group, _ = drawn_runs(axes, runs, quantity)
+            assert {to_rgba(face) for face in group.get_facecolors()} == colours
             # The inset has the ratio against b, with lines of exact theory for a few levels.
             (inset,) = axes.child_axes
-            assert np.allclose(np.unique(offsets(inset, "runs")[:, 0]), ratios)
+            groups = [group for group in inset.collections if group.get_gid() == "runs"]
+            marks = np.concatenate([group.get_offsets() for group in groups])
+            assert np.allclose(np.unique(marks[:, 0]), ratios)
             lines = [line for line in inset.lines if line.get_gid() == "exact"]
             assert len(lines) >= 2 and all(len(line.get_xdata()) == len(ratios) for line in lines)
     runs = drawn[0].table

@@ -174,7 +174,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
     held = sweep["boundary"] == "displacement"
     assert drawn.get_suptitle().startswith(rf"$\Gamma = {int(held)}$")
-    assert ("$b$ = " in drawn.get_suptitle()) is ("damping_ratio" not in varied)
+    assert ("$b = " in drawn.get_suptitle()) is ("damping_ratio" not in varied)
     (legend,) = drawn.legends
     texts = [text.get_text() for text in legend.get_texts()]
     assert {"simulation", "exact theory"} <= {*texts}

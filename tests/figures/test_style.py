@@ -5,6 +5,7 @@ Colour vision is simulated after Machado et al. (2009).
 
 from itertools import combinations
 
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.colors import LogNorm, to_rgb
@@ -14,7 +15,8 @@ from pypdf import PdfReader
 from slippulse.data.files import CONFIGURATION
 from slippulse.figures import style
 from slippulse.figures.fig06_burridge_knopoff import COLOURS
-from slippulse.figures.style import COLUMN, CYCLE, SCALES, colour_scale
+from slippulse.figures.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
+from slippulse.steps import draw_figure
 
 # Rows of linear red, green, blue.
 VISION = {
@@ -29,7 +31,7 @@ WHITE = TO_XYZ.sum(axis=1)
 # Distances in CIE L*a*b*: what is just seen is about 2; marks of a few points need more.
 APART, GREYS_APART = 10.0, 15.0
 # The palest level that a figure draws as a line or a mark.
-PALEST = {"tau_0": 0.8, "tau_l": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
+PALEST = {"tau_0": 0.8, "left": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
 
 
 def linear(colour) -> np.ndarray:
@@ -94,3 +96,18 @@ def test_every_panel_has_a_letter_in_the_order_of_reading(rows):
     assert panels == figure.axes
     letters = [f"({letter})" for letter in "abcdef"[: len(panels)]]
     assert [axes.get_title(loc="left") for axes in panels] == letters
+
+
+def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):
+    outputs = {ending: tmp_path / f"sketch.{ending}" for ending in ("csv", "png", "pdf")}
+    settings = {"figure": "fig01_system_sketch", "altered": ""}
+    settings["values"] = {"thickness": 1.0, "strip_width": 0.1}
+    with matplotlib.rc_context():
+        # The defaults of Matplotlib are what is left where a module is imported in a context.
+        matplotlib.rcdefaults()
+        draw_figure.run({}, outputs, settings)
+        assert matplotlib.rcParams["font.family"] != [FAMILY, "DejaVu Sans"]
+    with Image.open(outputs["png"]) as picture:
+        assert picture.info["dpi"] == pytest.approx((300.0, 300.0), abs=0.1)
+    fonts = PdfReader(outputs["pdf"]).pages[0]["/Resources"]["/Font"].values()
+    assert any(FAMILY in font.get_object().get("/BaseFont", font) for font in fonts)

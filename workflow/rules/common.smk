@@ -80,16 +80,14 @@ def plain(named):
 
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 TOPICS = declared("steps.predict", "TOPICS")
-SWEEPS = {
-    f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS
-}
+SWEEPS = {f"sweep_{name}": {"measured": {name: TOPICS}} for name in OWN_SIMULATIONS}
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
 # The front speeds are those of one level, without a grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
 # Predictions that are read: topics by simulation.
-READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
+READ = [CLAIM_PREDICTED, *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
 # Paths by kind of file, for a name; a list is named by its path.
 FILES = {
     "data": "results/data/{name}.nc",
@@ -129,13 +127,15 @@ def note_of(needs, *keys):
     names, settings = set(), [*keys, *needs.get("settings", ())]
     for needed in (needs, *(STUDY_NEEDS[study] for study in needs.get("studies", ()))):
         settings += needed.get("settings", ())
-        for kind in ("data", "measured", "predicted", "uncertainties", "sweeps"):
+        for kind in ("data", "measured", "uncertainties", "sweeps"):
             names.update(needed.get(kind, ()))
     return ALTERED.note(sorted(names), settings)
 
 
 def inputs_of(needs):
-    """Files that a figure or a study is made from, by kind."""
+    """Files that a figure or a study is made from, by kind; predictions of the topics it names."""
+    predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
+    needs = {**needs, "predicted": predicted}
     return {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
 
 

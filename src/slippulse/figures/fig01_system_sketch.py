@@ -25,12 +25,9 @@ HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "lin
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Displacement over the height since the start under each condition, and the strip's width.
-
-    Under an imposed stress the mean over the height stands for the interface. With the top held
-    the displacement falls linearly to 0, so that its mean is half of the slip.
-    Source: section II and appendix A of the paper.
-    """
+    """Displacement over the height, and the strip's width (section II, appendix A of the paper)."""
+    # Under an imposed stress the mean over the height stands for the interface. With the top held
+    # the displacement falls linearly to 0, so that its mean is half of the slip.
     panels = ["stress", "stress", "displacement", "displacement"]
     moved = {"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]}
     rows = pd.DataFrame(moved)
@@ -81,7 +78,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
         look: Look = {"color": BLUE, "linewidth": 1.5, "gid": "displacement"}
         axes.plot(REST + rows["displacement"], rows["y"], **look)
-        axes.set_title(TITLES[panel], fontsize=9)
+        axes.set_title(TITLES[panel], loc="center")
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
     return figure

@@ -14,8 +14,7 @@ from .shared.selection import spread_values
 from .style import BLACK, GREY, PAGE, Look, entry, legend_below, panel_letter
 
 NEEDS = {
-    "measured": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
-    "predicted": {
+    "measured": {
         "regimes_displacement": ["final_regime"],
         "regimes_displacement_asymmetric": ["final_regime"],
         "regimes_stress": ["final_regime"],
@@ -41,10 +40,7 @@ DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regim
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The planes of the study, and runs: all of equal levels (role symmetric), else some (run).
-
-    The regime is that at the end of the run, exact_regime the final one by exact theory.
-    """
+    """The planes of the study, and runs: all of equal levels (role symmetric), else some (run)."""
     parts = [tables["regime_plane"]]
     kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
     for name, count in DRAWN.items():
@@ -82,12 +78,11 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
         draw_plane(plane, rows[rows["role"].isin(["area", "line"])], texts[boundary])
         draw_runs(plane, rows[rows["role"] == "run"], "right")
-        plane.set_title(title, fontsize=9)
+        plane.set_title(title, loc="center")
         panel_letter(plane, letter)
     symmetric[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
-    symmetric[1].set(ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$", xlim=(-1.0, 1.0))
-    ticks = (-1, -0.5, 0, 0.5, 1)
-    symmetric[1].set(xticks=ticks, xlabel=r"pre-stress on both sides $\tau_0$")
+    symmetric[1].set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
+    symmetric[1].set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
     panel_letter(symmetric[0], "a")
     draw_profiles(strips, profiles)
     faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
@@ -143,7 +138,8 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
     panel_letter(strips[0], "d")
     end = 1.08 * pd.concat(profiles)["x"].abs().max()
     x = np.linspace(-end, end, 201)
-    strips[0].set_title(rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$", fontsize=9)
+    title = rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$"
+    strips[0].set_title(title, loc="center")
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
         colour = LOOKS[rows["regime"].iloc[0]][0]
         levels = rows[["left", "right"]].iloc[0]

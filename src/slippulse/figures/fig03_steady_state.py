@@ -8,8 +8,7 @@ from .style import PAGE, Look, new_panels
 
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
-    "measured": ["steady_displacement", "steady_stress"],
-    "predicted": {"steady_displacement": ["pulse"], "steady_stress": ["transition"]},
+    "measured": {"steady_displacement": ["pulse"], "steady_stress": ["transition"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
@@ -27,8 +26,7 @@ def draw(table: pd.DataFrame) -> Figure:
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, rows, (0.08, 0.6, 0.26, 0.29), widths)
-        axes.set_title(title(rows), loc="right")
-        axes.set_ylim(-0.03, 1.06)
+        axes.set(title=title(rows), ylim=(-0.03, 1.06))
         look: Look = {"ncols": 3, "columnspacing": 1.0}
         axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.5, -0.17), **look)
     return figure

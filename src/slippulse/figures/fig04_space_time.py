@@ -15,7 +15,7 @@ from .style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
-    "measured": ["space_time_displacement", "space_time_stress"],
+    "measured": {"space_time_displacement": [], "space_time_stress": []},
     "studies": ["exact_space_time"],
     "settings": ["measure.share"],
 }
@@ -25,11 +25,10 @@ COLUMNS = ["panel", "role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of `run_rows` for the first run of both sweeps, with exact edges and the transition.
+    """Rows of `run_rows` of the first run of both sweeps, exact edges, and the transition by role.
 
-    Roles measured, paper and last_release (where the left front has one) have both fronts (series)
-    at a time, with the length between them; fraction is that of |x_minus|, which the left front has
-    covered at T_trans under held stress.
+    measured, paper, last_release : both fronts (series) at a time, and the length between them
+    fraction : that of |x_minus| which the left front has covered at T_trans under held stress
     """
     parts = []
     for panel in PANELS:

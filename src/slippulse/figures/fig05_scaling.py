@@ -10,8 +10,7 @@ from .shared.selection import spread_values
 from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, colour_scale, new_panels
 
 NEEDS = {
-    "measured": ["scaling_displacement", "scaling_stress"],
-    "predicted": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
+    "measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
 }
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
@@ -33,11 +32,11 @@ def draw(table: pd.DataFrame) -> Figure:
         narrow = narrow[narrow["left"].isin(spread_values(runs["left"], DRAWN))]
         levels = list(run_colours(narrow, "left"))
         prestress_inset(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, levels, 6.0)
-        panels[column].set_title(title, fontsize=9)
+        panels[column].set_title(title, loc="center")
         for quantity in (LEVEL[boundary], other):
             look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-            # The scale of tau_l is stretched, and ticks at equal distances would overlap.
-            look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
+            # The scale of left is stretched, and ticks at equal distances would overlap.
+            look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "left" else None
             bar = figure.colorbar(colour_scale(quantity), ax=panels[column::2], **look)
             bar.set_label(f"${SYMBOLS[quantity]}$")
     return figure

@@ -41,14 +41,11 @@ TITLES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """First run of each sweep, one row a panel, instant and block; x is the position at rest.
-
-    Source: the paper's discussion of the Burridge-Knopoff model.
-    """
+    """First run of each sweep, one row a panel, instant and block; x is the position at rest."""
     panels = []
     for name in PITCH:
         run = point(data[f"burridge_knopoff_{name}"], 0)
-        parts: list[pd.DataFrame] = []
+        parts = []
         low, high = window(run)
         # The springs of one more block on each side reach into view.
         shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
@@ -85,11 +82,7 @@ def window(run: xr.Dataset) -> tuple[float, float]:
 
 
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
-    """Names and sample numbers of the instants drawn.
-
-    They are the start, half of the time to the first stick, the first stick, and two later ones
-    while all that slips is in view.
-    """
+    """Names and samples drawn: start, first stick, half of its time, two more with all in view."""
     low, high = window(run)
     x, slip, velocity = (
         run[name].values for name in ("sample_position", "sample_slip", "sample_velocity")
@@ -128,7 +121,7 @@ def draw(table: pd.DataFrame) -> Figure:
         strip.tick_params(axis="x", length=0, labelbottom=False)
         strip.tick_params(axis="y", labelsize=7)
         strip.spines[["right", "top", "bottom"]].set_visible(False)
-        strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
+        strip.set_title(TITLES[name].format(**rows.iloc[0]), loc="center")
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [entry(name, markerfacecolor=colour, **square) for name, colour in COLOURS.items()]

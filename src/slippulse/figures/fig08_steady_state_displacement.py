@@ -5,8 +5,7 @@ from .shared.pulses import plot_fields, pulse_table
 draw, table = plot_fields, pulse_table
 NEEDS = {
     "data": ["steady_displacement"],
-    "measured": ["steady_displacement"],
-    "predicted": {"steady_displacement": ["pulse"]},
+    "measured": {"steady_displacement": ["pulse"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }

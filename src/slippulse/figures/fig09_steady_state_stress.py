@@ -5,8 +5,7 @@ from .shared.pulses import plot_fields, pulse_table
 draw, table = plot_fields, pulse_table
 NEEDS = {
     "data": ["steady_stress"],
-    "measured": ["steady_stress"],
-    "predicted": {"steady_stress": ["transition"]},
+    "measured": {"steady_stress": ["transition"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }

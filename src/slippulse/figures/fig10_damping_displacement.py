@@ -3,7 +3,4 @@
 from .shared.scaling import damping_figure, transition_table
 
 draw, table = damping_figure, transition_table
-NEEDS = {
-    "measured": ["damping_displacement"],
-    "predicted": {"damping_displacement": ["transition"]},
-}
+NEEDS = {"measured": {"damping_displacement": ["transition"]}}

@@ -2,10 +2,12 @@
 
 import io
 
-import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+
+from .shared import space_time
+from .style import BLUE, PAGE, by_role, house_style
 
 DRAWN = ("prestress", "release_time", "stick_time", "slip")
 
@@ -52,18 +54,11 @@ def plot(run: xr.Dataset) -> Picture:
     known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
     if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
-    # The house style is not forced on the caller's own figures.
-    with matplotlib.rc_context():
-        from .style import RC
-
-        matplotlib.rcParams.update(RC)
+    with house_style():
         return _draw(run)
 
 
 def _draw(run: xr.Dataset) -> Picture:
-    from .shared import space_time
-    from .style import BLUE, PAGE, by_role
-
     figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     roles = {"prestress": space_time.prestress_profile(run)}

@@ -55,9 +55,8 @@ def draw(table: pd.DataFrame) -> Figure:
             axes.plot(work, error, gid=role, **look)
         for preset in rows[rows["role"] == "preset"].itertuples():
             axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
-        axes.set(xscale="log", yscale="log", ylabel=f"relative error of {title}")
-        axes.set_xlabel("stencil passes over a block")
-        axes.set_title(r"$\Gamma = 1$", loc="right")
+        axes.set(xscale="log", yscale="log", xlabel="stencil passes over a block")
+        axes.set(ylabel=f"relative error of {title}", title=r"$\Gamma = 1$")
     # On dx/(n dt) fronts lock.
     rows = table[table["part"] == "locking"]
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
@@ -74,8 +73,7 @@ def draw(table: pd.DataFrame) -> Figure:
     speeds.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     # The legend stands above the marks.
     speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
-    speeds.set_ylabel("front speed")
-    speeds.set_title(r"$\Gamma = 0$", loc="right")
+    speeds.set(ylabel="front speed", title=r"$\Gamma = 0$")
     speeds.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)
     handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
     figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)

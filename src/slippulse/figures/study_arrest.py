@@ -12,8 +12,7 @@ from .style import GREY, MARKERS, OPEN, ORANGE, PAGE, Look, entry
 
 NEEDS = {
     "data": ["arrest"],
-    "measured": ["arrest"],
-    "predicted": {"arrest": ["transition"]},
+    "measured": {"arrest": ["transition"]},
     "studies": ["arrest_path"],
     "settings": ["measure.share"],
 }
@@ -23,11 +22,9 @@ PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Times in units of |x_minus|, by role: path (of the left front at the finest spacing),
-    exact_path, and run (its last release, and when it has gone the fraction that is arrest).
-    """
+    """The path of each left front (roles path and exact_path), and when runs come to rest (run)."""
     runs = tables["arrest"]
-    # The paper estimates the time of the transition by |x_minus|.
+    # Times are in units of |x_minus|, by which the paper estimates the time of the transition.
     scale = runs["paper_transition_time"]
     numbers = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
@@ -69,14 +66,15 @@ def draw(table: pd.DataFrame) -> Figure:
     handles += [entry(label, color=GREY, **look) for label, look in looks.items()]
     style.legend_below(figure, handles, 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
-    path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
-    left, right, width = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
-    path_axes.set_title(style.conditions(False, tau_l=left, tau_r=right, width=width), loc="right")
+    levels = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
+    scene = style.conditions(False, **levels)
+    path_axes.set(ylabel=r"still to go, $1-|x|/|x_{-}|$", title=scene)
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
-    low, high = spacing_axes.get_ylim()
-    spacing_axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-    words = ("last release: does not converge", f"{fraction_label}: converges to the exact time")
-    for height, word, va in zip((0.98, 0.02), words, ("top", "bottom"), strict=True):
-        spacing_axes.text(0.98, height, word, transform=spacing_axes.transAxes, ha="right", va=va)
+    # Room for the words above and below.
+    spacing_axes.margins(y=0.16)
+    look = {"transform": spacing_axes.transAxes, "ha": "right"}
+    spacing_axes.text(0.98, 0.98, "last release: does not converge", va="top", **look)
+    words = f"{fraction_label}: converges to the exact time"
+    spacing_axes.text(0.98, 0.02, words, va="bottom", **look)
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure

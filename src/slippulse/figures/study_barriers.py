@@ -41,10 +41,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def _interpolated(
     rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
 ) -> pd.DataFrame:
-    """Depths over FINE barriers at some levels, from those at gamma = 1 on a grid of the study.
-
-    ``powers`` has the columns, each with the power of 1/gamma to which its depth is proportional.
-    """
+    """Depths over FINE barriers; ``powers`` of 1/gamma to which those of each column scale."""
     # The logarithm of the depth is nearly straight over tau_0 and log |tau_b|.
     tau0, log_barrier = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
     y = np.linspace(log_barrier[0], log_barrier[-1], FINE)
@@ -79,16 +76,15 @@ def draw(table: pd.DataFrame) -> Figure:
             look = {"c": depth, "edgecolors": _ink(depth), "s": 26.0, "linewidths": 0.9} | shades
             axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
         axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$")
-        axes.set_ylabel(r"barrier $-\tau_\text{b}$")
+        axes.set(ylabel=r"barrier $-\tau_\text{b}$", title=conditions(True, damping_ratio=ratio))
         few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
-        axes.set_title(conditions(True, damping_ratio=ratio), loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOURS)
     largest = ratios[-1]
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest)]
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
-    curve_axes.set_title(conditions(True, damping_ratio=largest), loc="right")
+    curve_axes.set_title(conditions(True, damping_ratio=largest))
     # The depth on lattices over the exact one, a line a scene.
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
         look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
@@ -99,8 +95,7 @@ def draw(table: pd.DataFrame) -> Figure:
         convergence.lines[-1].set_label(rf"$b = {ratio:g}$")
     convergence.axhline(1.0, color=BLACK, linewidth=0.8)
     convergence.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth")
-    convergence.set_xlim(0.0, None)
-    convergence.set_title(rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio", loc="right")
+    convergence.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio")
     convergence.legend(loc="upper left")
     return figure
 

@@ -20,7 +20,14 @@ MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
     figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, "ab;cd")
-    _draw_map(map_axes, table[table["scene"] == next(iter(SCENES))])
+    rows = table[table["scene"] == next(iter(SCENES))]
+    draw_halves(map_axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
+    exact = rows[rows["role"] == "exact"]
+    for quantity, dashes in (("release", "-"), ("stick", "--")):
+        map_axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
+    for height, half in ((0.05, "exact"), (0.91, "lattice")):
+        map_axes.text(0.03, height, half, transform=map_axes.transAxes)
+    map_axes.set_xlim(0.0, None)
     look: Look = {"linewidth": 0.9, "markersize": 2.2, "markeredgewidth": 0.6} | OPEN
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
@@ -51,16 +58,6 @@ def draw(table: pd.DataFrame) -> Figure:
     lines = [style.entry(names[scene], color=SCENES[scene]) for scene in SCENES if scene in solved]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
-
-
-def _draw_map(axes: Axes, rows: pd.DataFrame) -> None:
-    draw_halves(axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
-    exact = rows[rows["role"] == "exact"]
-    for quantity, dashes in (("release", "-"), ("stick", "--")):
-        axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
-    for height, half in ((0.05, "exact"), (0.91, "lattice")):
-        axes.text(0.03, height, half, transform=axes.transAxes)
-    axes.set_xlim(0.0, None)
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:

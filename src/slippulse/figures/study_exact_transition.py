@@ -9,8 +9,7 @@ from .shared import scaling
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look
 
 NEEDS = {
-    "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
-    "predicted": {
+    "measured": {
         "scaling_displacement": ["transition"],
         "scaling_stress": ["transition"],
         "transition_convergence": ["transition"],
@@ -28,8 +27,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
         kept += [f"{source}_{quantity}" for quantity in QUANTITIES]
-    roles = dict(zip(NEEDS["measured"], ("sweep", "sweep", "refinement"), strict=True))
-    parts = [tables[name][kept].assign(role=role) for name, role in roles.items()]
+    roles = zip(NEEDS["measured"], ("sweep", "sweep", "refinement"), strict=True)
+    parts = [tables[name][kept].assign(role=role) for name, role in roles]
     parts.append(tables["gaussian_transition"].assign(role="gaussian"))
     return pd.concat(parts, ignore_index=True)
 
@@ -49,8 +48,8 @@ def draw(table: pd.DataFrame) -> Figure:
                 look: Look = {"color": colour, "linestyle": line, "gid": f"{boundary} {reference}"}
                 axes.ecdf(np.abs(ratio - 1.0), label=f"{boundary_name}, {name}", **look)
         symbol = scaling.QUANTITIES[quantity]
-        axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|", ylim=(0.0, 1.0))
-        axes.set_ylabel("fraction of runs that are nearer")
+        axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
+        axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs that are nearer")
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITIES.items():
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
@@ -60,8 +59,8 @@ def draw(table: pd.DataFrame) -> Figure:
         refined.plot(largest, marker=marker, color=colour, label=label)
     style.draw_first_order(refined, spacing, 0.4, BLACK)
     refined.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
+    refined.set_title(r"$\Gamma = 1$, refining")
     style.few_ticks(refined.xaxis, np.unique(spacing))
-    refined.set_title(r"$\Gamma = 1$, refining", loc="right")
     refined.legend(loc="lower right")
     style.legend_above(figure, distributions[0])
     study = roles["gaussian"]
@@ -72,7 +71,7 @@ def draw(table: pd.DataFrame) -> Figure:
         look = {"color": style.colour("gamma", gamma), "label": rf"$\gamma = {gamma:g}$"}
         gaussian.plot(rows["left"], rows["over_paper"], **look)
     gaussian.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
-    gaussian.set_ylabel(r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$")
-    gaussian.set_title(r"$\Gamma = 1$, $b = 0$, exact", loc="right")
+    title = r"$\Gamma = 1$, $b = 0$, exact"
+    gaussian.set(ylabel=r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$", title=title)
     gaussian.legend(loc="upper right", ncols=2)
     return figure

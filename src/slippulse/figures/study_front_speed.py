@@ -9,15 +9,7 @@ from . import style
 from .style import BLACK, GREY, HALO, MARKERS, OPEN, PAGE, Look, colour, few_ticks
 
 NEEDS = {
-    "measured": [
-        "front_speed",
-        "front_speed_slow",
-        "front_speed_springs",
-        "continuum_fixed_ratio",
-        "continuum_fixed_beta",
-        "front_speed_fixed_beta",
-    ],
-    "predicted": {
+    "measured": {
         "front_speed": ["front"],
         "front_speed_slow": ["front"],
         "front_speed_springs": ["front"],
@@ -36,10 +28,7 @@ COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Lines of the study front_law (role theory), and runs (role simulation) by its panels.
-
-    Runs are sound where the theory should hold; undamped is the paper's formula.
-    """
+    """Lines of the study front_law (role theory), and runs by panel, sound where it should hold."""
     lines = tables["front_law"].assign(role="theory")
     uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
     springs = tables["front_speed_springs"]
@@ -81,7 +70,7 @@ def draw(table: pd.DataFrame) -> Figure:
             axes.plot(line["left"], line["over"], **look)
             _points(axes, group, "left", "over", marker, f"{ratio:g}")
         axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
-        axes.set_title(rf"$\Gamma = 0$, release by {rule} stress", loc="right")
+        axes.set_title(rf"$\Gamma = 0$, release by {rule} stress")
     grid[0].set(yscale="log", ylim=(0.93, 30.0))
     few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
     grid[1].set_ylim(0.98, 1.45)
@@ -103,10 +92,9 @@ def draw(table: pd.DataFrame) -> Figure:
         springs.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
     springs.plot([], [], "x", color=GREY, label="no front beyond")
     springs.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN)
-    springs.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
     springs.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
+    springs.set(ylabel="front speed $v$", title=r"$\Gamma = 1$, release by total stress")
     few_ticks(springs.yaxis, (1, 1.5, 2, 3, 4, 5))
-    springs.set_ylabel("front speed $v$")
     springs.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
     _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
     style.legend_above(figure, grid[0], title="damping ratio $b$")
@@ -131,8 +119,8 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
-    axes.set_ylim(0.88 * undamped, None)
-    axes.set_title(rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
+    title = rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$"
+    axes.set(ylim=(0.88 * undamped, None), title=title)
     axes.legend(loc="upper right")
 
 

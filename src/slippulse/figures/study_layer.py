@@ -51,8 +51,7 @@ def draw(table: pd.DataFrame) -> Figure:
     bar.set_label(r"$\dot u_x$")
     map_axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
     time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
-    numbers = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
-    map_axes.set_title(numbers, loc="right")
+    map_axes.set_title(style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time))
     ratios = table[table["part"] == "ratio"]
     ends = 0.8 * ratios["ratio"].min(), 1.25 * ratios["ratio"].max()
     for axes, (quantity, name) in zip(panels, QUANTITIES.items(), strict=True):
@@ -60,8 +59,8 @@ def draw(table: pd.DataFrame) -> Figure:
             line, colour = line.sort_values("pulse_width"), style.colour("tau_0", tau0)
             axes.plot(line["pulse_width"], line["ratio"], color=colour, **LOOKS[source])
         axes.axhline(1.0, color=BLACK, linewidth=0.6)
-        axes.set(xscale="log", yscale="log", ylim=ends, xlabel=r"width $W_\mathrm{p}/H$")
-        axes.set_title(name, loc="right")
+        axes.set(xscale="log", xlabel=r"width $W_\mathrm{p}/H$", title=name)
+        axes.set(yscale="log", ylim=ends)
         style.few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
         style.few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
     panels[0].set_ylabel("one dimension / plane")

@@ -8,8 +8,7 @@ from . import style
 from .style import CYCLE, GREY, MARKERS, OPEN, PAGE, SMALL, Look, conditions
 
 NEEDS = {
-    "measured": ["pulse_damping", "continuum_fixed_ratio"],
-    "predicted": {"pulse_damping": ["pulse"]},
+    "measured": {"pulse_damping": ["pulse"], "continuum_fixed_ratio": []},
     "studies": ["damped_pulse"],
 }
 
@@ -52,9 +51,8 @@ def draw(table: pd.DataFrame) -> Figure:
             for flagged, marks in runs.groupby(runs["run_flags"].notna()):
                 look: Look = {"color": colour} | (OPEN if flagged else {})
                 axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
-        axes.set_title(conditions(True, gamma=gamma), loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
-        axes.set_xlim(-0.02, None)
+        axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, grid[0], columnspacing=1.0)
     rows = roles["refined"]
@@ -65,9 +63,8 @@ def draw(table: pd.DataFrame) -> Figure:
         label = QUANTITIES.get(quantity, "front speed")
         refined.plot(line["dx"], error, marker=marker, color=shade, label=label)
     style.draw_first_order(refined, rows["dx"], 0.4, GREY)
-    refined.set(ylabel=r"|simulation / limit $-$ 1|", ylim=(1e-6, None))
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
     scene = conditions(True, gamma=gamma, tau_0=left, damping_ratio=ratio)
-    refined.set_title(scene, loc="right")
+    refined.set(ylabel=r"|simulation / limit $-$ 1|", ylim=(1e-6, None), title=scene)
     refined.legend(loc="lower right", fontsize=SMALL, labelspacing=0.1)
     return figure

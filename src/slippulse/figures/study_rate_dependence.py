@@ -31,14 +31,14 @@ def draw(table: pd.DataFrame) -> Figure:
         pulses.plot(steady["over"], steady[column], color=colour, label=label)
         pulses.plot(runs["over"], runs[column], marker, color=colour, markersize=4.0, **OPEN)
     pulses.set(xlabel=RATE, ylabel=f"{width}, {slip}", yscale="log")
-    pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
+    pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice")
     pulses.legend(loc="upper center")
     draw_halves(maps, roles["map"], "regime")
     for regime, half in roles["map"].groupby("regime"):
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         height = 0.92 if half["position"].max() > 0.0 else 0.04
         maps.text(0.04, height, name, transform=maps.transAxes)
-    maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact", loc="right")
+    maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact")
     rows = roles["arrest"][roles["arrest"]["dx"] == roles["arrest"]["dx"].min()]
     groups = rows.groupby("rate_strengthening")
     colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
@@ -49,7 +49,7 @@ def draw(table: pd.DataFrame) -> Figure:
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
     arrest.plot(line["time"], line["largest_velocity"], "--", label="diffusion", **LINES)
     arrest.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")
-    arrest.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$", loc="right")
+    arrest.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$")
     arrest.legend(loc="lower left")
     return figure
 
@@ -71,6 +71,6 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
         handles.append(entry("open: would slide back", **look))
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
-    axes.set_title(r"$\Gamma = 1$", loc="right")
+    axes.set_title(r"$\Gamma = 1$")
     look = {"ncols": 2, "columnspacing": 0.8, "handletextpad": 0.4}
     axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.09), **look)

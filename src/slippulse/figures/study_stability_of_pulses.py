@@ -22,9 +22,7 @@ LEAST = 0.03
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Levels beyond a step, by role: exact and lattice (Gamma = 1, slip left behind over distances
-    beyond the step), velocity (Gamma = 0, the largest right of the nucleation over time).
-    """
+    """Slip beyond a step (roles exact and lattice), and velocity over time (role velocity)."""
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
     across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]
@@ -78,16 +76,15 @@ def draw(table: pd.DataFrame) -> Figure:
     handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **look))
     handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
-    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
+    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
     style.legend_below(figure, handles, 4)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     # A distance of exactly 0 is drawn at ROUNDING.
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
     rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
     rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
-    rest_axes.set_xlabel(r"distance / $W_\text{p}/(v - 1)$")
+    rest_axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", title=r"$\Gamma = 1$")
     rest_axes.set_ylabel("|slip / new steady slip $-$ 1|")
-    rest_axes.set_title(r"$\Gamma = 1$", loc="right")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure
 
@@ -109,8 +106,8 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
-    highest = rows["largest_velocity"].max()
-    axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, 2.5 * highest))
-    axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
+    axes.set_xlim(None, 1.28 * rows["time"].max())
+    axes.set_ylim(LEAST, 2.5 * rows["largest_velocity"].max())
+    axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before")
     look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 8.0}
     axes.text(0.97, 0.96, r"$\tau$ beyond", **look)

@@ -45,8 +45,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 # Symbols of parameters, by their column.
 SYMBOLS = {
     "tau_0": r"\tau_0",
-    "tau_l": r"\tau_{0,l}",
-    "tau_r": r"\tau_{0,r}",
+    "left": r"\tau_{0,l}",
+    "right": r"\tau_{0,r}",
     "gamma": r"\gamma",
     "width": "W",
     "damping_ratio": "b",
@@ -69,17 +69,17 @@ HALO = [withStroke(linewidth=2.2, foreground="white")]
 
 
 # A quantity has the same colour for the same value in every figure: a map, the part of it that is
-# seen on white, ends and their norm. That of tau_l is stretched towards 0, where most levels are.
+# seen on white, ends and their norm. That of left is stretched towards 0, where most levels are.
 Ends: TypeAlias = tuple[float, float]
 SCALES: dict[str, tuple[str, Ends, Ends, Callable[..., Normalize]]] = {
     "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
-    "tau_l": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
+    "left": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
     "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
     "damping_ratio": ("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
     "width": ("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
 # Each run has the colour of its level.
-LEVEL = {"displacement": "tau_0", "stress": "tau_l"}
+LEVEL = {"displacement": "tau_0", "stress": "left"}
 # A note below a figure: inches of a line and of the gap above, and characters an inch.
 NOTE_LINE, NOTE_GAP = 0.13, 0.08
 NOTE_DENSITY = 22
@@ -103,6 +103,8 @@ RC: dict[Any, Any] = {
     "axes.prop_cycle": matplotlib.rcsetup.cycler(color=CYCLE),
     # A fixed height of titles; a search for what they might cover takes a tenth of the time.
     "axes.titley": 1.0,
+    # The scene of a panel stands on the right; its letter is on the left.
+    "axes.titlelocation": "right",
     # The layout is found at the resolution of the PNG, so that the formulas are set once.
     "figure.dpi": 300,
     "savefig.dpi": "figure",
@@ -111,7 +113,8 @@ RC: dict[Any, Any] = {
     # Names of objects in a PDF would otherwise be random.
     "svg.hashsalt": "slippulse",
 }
-matplotlib.rcParams.update(RC)
+# Figures are made and saved in this context, which leaves settings of the caller as they are.
+house_style = partial(matplotlib.rc_context, RC)
 
 
 def as_given(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -135,7 +138,7 @@ def small_inset(axes: Axes, box: Box, title: str) -> Axes:
     """Add an inset with small letters in a box of a panel."""
     inset = axes.inset_axes(box)
     inset.tick_params(labelsize=SMALL, length=1.5, pad=1.5)
-    inset.set_title(title, fontsize=SMALL, pad=2.5)
+    inset.set_title(title, loc="center", fontsize=SMALL, pad=2.5)
     return inset
 
 
@@ -152,8 +155,8 @@ def colour_scale(quantity: str) -> ScalarMappable:
     return ScalarMappable(norm(*ends, clip=True), ListedColormap(colours))
 
 
-def colour(quantity: str, value: float) -> np.ndarray:
-    """The colour of a value of a quantity of SCALES."""
+def colour(quantity: str, value: float | np.ndarray | pd.Series) -> np.ndarray:
+    """The colour of a value of a quantity of SCALES, or of each of several."""
     return colour_scale(quantity).to_rgba(np.asarray(value))
 
 

@@ -5,38 +5,29 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
-from .style import CYCLE, GREY, PAGE, entry, legend_below, new_panels
+from .style import CYCLE, GREY, PAGE, SYMBOLS, conditions, entry, legend_below, new_panels
 
-# Columns that may vary in a sweep, with their symbols.
-AXES = {
-    "tau_0": r"$\tau_0$",
-    "left": r"$\tau_{0,l}$",
-    "right": r"$\tau_{0,r}$",
-    "gamma": r"$\gamma$",
-    "damping_ratio": "$b$",
-    "width": r"$W$",
-    "beyond": "level beyond the step",
-    "release": "release rule",
-    "dx": r"$\Delta x$",
-}
+# Columns that may vary in a sweep, and the names of those without a symbol.
+VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
+WORDS = {"beyond": "level beyond the step", "release": "release rule"}
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """`main_numbers` of each run of a sweep with its flags, axis, x, series and what is fixed.
-
-    The axis is the column with most values; the series names what else varies. A quantity that
-    equals another one in every run is left out.
-    """
+    """`main_numbers` of each run with its flags, axis, x, series (what else varies), and fixed."""
     (runs,) = tables.values()
     alike = (runs["left"] == runs["right"]).all()
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
     axis, *others = varying_columns(runs) or ["left"]
-    fixed = fixed_parameters(runs, ["tau_0"] if alike else ["left", "right"])
+    held = runs["boundary"].iloc[0] == "displacement"
+    levels = ["tau_0"] if alike else ["left", "right"]
+    fixed = runs[[*(["gamma"] if held else []), *levels, "damping_ratio", "width", "dx"]]
+    fixed = conditions(held, **fixed.loc[:, fixed.nunique() == 1].iloc[0])
     parts = []
     for _, run in runs.iterrows():
-        series = ", ".join(f"{AXES[name]} = {_text(run[name])}" for name in others)
+        series = ", ".join(f"{_name(name)} = {_text(run[name])}" for name in others)
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
+    # A quantity that equals another one in every run is left out.
     different: list[pd.DataFrame] = []
     for _, group in pd.concat(parts).groupby("quantity", sort=False):
         if not any(np.array_equal(group["value"], other["value"]) for other in different):
@@ -45,9 +36,9 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
-    """Columns of AXES that vary: numbers before texts, the one with most values first."""
+    """Columns of VARYING that do: numbers before texts, the one with most values first."""
     varying: list[str] = []
-    for name in AXES:
+    for name in VARYING:
         # A level that follows another one is no axis of its own.
         follows = any((runs[name] == runs[other]).all() for other in varying)
         if runs[name].nunique() > 1 and not follows:
@@ -55,13 +46,8 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
 
 
-def fixed_parameters(runs: pd.DataFrame, levels: list[str]) -> str:
-    """The boundary condition, and the main parameters that every run of a sweep has."""
-    held = runs["boundary"].iloc[0] == "displacement"
-    names = [*(["gamma"] if held else []), *levels, "damping_ratio", "width", "dx"]
-    shared = [name for name in names if runs[name].nunique() == 1]
-    values = [f"{AXES[name]} = {_text(runs[name].iloc[0])}" for name in shared]
-    return ", ".join([rf"$\Gamma = {int(held)}$", *values])
+def _name(column: str) -> str:
+    return WORDS.get(column) or f"${SYMBOLS[column]}$"
 
 
 def _text(value: float | str) -> str:
@@ -83,7 +69,7 @@ def draw(table: pd.DataFrame) -> Figure:
             sound, hollow = group[~flagged], group[flagged]
             axes.plot(sound["x"], sound["value"], "o", color=colour, label=series or None)
             axes.plot(hollow["x"], hollow["value"], "o", color=colour, markerfacecolor="none")
-        axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
+        axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in panels[len(quantities) :]:
         axes.set_visible(False)
     figure.suptitle(table["fixed"].iloc[0], fontsize=9.0)

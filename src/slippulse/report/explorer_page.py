@@ -1,8 +1,4 @@
-"""results/explorer.html: exact rupture, formulas and nearby simulations, recomputed by sliders.
-
-The scripts next to its template compute. The front law comes from here, since it needs the
-Wiener-Hopf factor.
-"""
+"""results/explorer.html: exact rupture, formulas and nearby simulations, recomputed by sliders."""
 
 import json
 import math
@@ -38,6 +34,7 @@ def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: 
 
 def front_law(law: pd.DataFrame) -> dict:
     """Logit of the pre-stress by release rule, damping ratio (rows) and ln(v - 1) (columns)."""
+    # The scripts of the page compute all else; this law needs the Wiener-Hopf factor.
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     first, last = float(excesses[0]), float(excesses[-1])
     scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)

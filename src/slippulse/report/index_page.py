@@ -16,27 +16,8 @@ from .claims_page import shown
 from .html import page
 from .texts import answer, judged_lines, parameters, read_captions, read_errata
 
-# A reader goes to the first files; the others follow below.
-FIRST = {
-    "manuscript/replication.html": "Report",
-    "explorer.html": "Explore a rupture with sliders",
-    "claims.html": "Every claim, with the tables behind it",
-}
-OTHERS = {
-    "manuscript/replication.pdf": "report (PDF)",
-    "manuscript/supplement.html": "supplement",
-    "manuscript/supplement.pdf": "supplement (PDF)",
-    "claims.json": "claims (JSON)",
-    "findings.json": "further findings (JSON)",
-    "provenance.json": "provenance (JSON)",
-    "codecheck.yml": "manifest of every output (CODECHECK)",
-    "checksums.txt": "checksums",
-    "scenes/index.html": "scenes",
-}
 # Pixels of the page for a pixel of a figure: a figure of one column is narrower than the page.
 SCALE = 0.4
-# A wider figure has a row of the page for itself.
-WIDE = 600
 
 
 def index_page(
@@ -73,21 +54,13 @@ def index_page(
     return page(
         "index.html",
         altered=facts["overlay"],
-        texts=summary,
-        answer=in_short,
-        exceptions=exceptions,
+        texts=summary | {"answer": in_short, "exceptions": exceptions, "accuracy": accuracy},
         lines=lines,
-        accuracy=accuracy,
         figures=figures,
         sizes=sizes,
-        wide=WIDE,
-        first=_existing(results, FIRST),
-        others=_existing(results, OTHERS),
         galleries=galleries,
-        scenes={
-            name: (title, (results / f"scenes/{name}.html").exists())
-            for name, title in scenes.items()
-        },
+        scenes=scenes,
+        exists=lambda path: (results / path).exists(),
         facts=facts,
         **shown(ledger, written),
     )
@@ -95,7 +68,3 @@ def index_page(
 
 def _json(path: Path) -> Any:
     return json.loads(path.read_text(encoding="utf-8"))
-
-
-def _existing(folder: Path, files: Mapping[str, str]) -> dict[str, str]:
-    return {path: name for path, name in files.items() if (folder / path).exists()}

@@ -26,10 +26,7 @@ def scene_page(
     attributes: Mapping,
     note: str = "",
 ) -> str:
-    """A page with its figure inside; ``attributes`` of the data, and the state of the pulse.
-
-    note : what an altered configuration changed
-    """
+    """A page with its figure inside; ``note`` says what an altered configuration changed."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         profile, parts = prestress_from(attributes), []

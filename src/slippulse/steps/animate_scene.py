@@ -3,9 +3,11 @@
 from ..data.points import point
 from ..data.store import load_dataset
 from ..figures.scene_animation import animate, save_animation
+from ..figures.style import house_style
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: gif. Settings: title."""
     data = point(load_dataset(files["data"]), 0)
-    save_animation(animate(data, settings["title"]), outputs["gif"])
+    with house_style():
+        save_animation(animate(data, settings["title"]), outputs["gif"])

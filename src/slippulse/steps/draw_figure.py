@@ -3,7 +3,7 @@
 from importlib import import_module
 
 from ..data.tables import load_table, save_table
-from ..figures.style import save_figure
+from ..figures.style import house_style, save_figure
 from .inputs import given
 
 
@@ -13,4 +13,5 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     table = module.table(*given(files), settings["values"])
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     drawn = load_table(outputs["csv"]).drop(columns="altered", errors="ignore")
-    save_figure(module.draw(drawn), outputs["png"], outputs["pdf"], note)
+    with house_style():
+        save_figure(module.draw(drawn), outputs["png"], outputs["pdf"], note)

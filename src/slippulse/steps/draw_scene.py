@@ -6,7 +6,7 @@ from ..data.store import load_dataset
 from ..data.tables import load_table, save_table
 from ..figures import scene
 from ..figures.shared.numbers import scene_numbers
-from ..figures.style import save_figure
+from ..figures.style import house_style, save_figure
 from ..report.scene_page import scene_page
 
 FILES = ("report/templates/parts.html", "report/templates/scene.html")
@@ -21,7 +21,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     save_table(numbers, outputs["numbers"])
     table = scene.table(data, numbers, row, title)
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
-    save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
+    with house_style():
+        save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
     page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
     write_text(page, outputs["html"])

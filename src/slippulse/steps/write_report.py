@@ -16,8 +16,7 @@ from .inputs import given
 FILES = ("report/templates/report.*",)
 # Tables that the report quotes.
 NEEDS = {
-    "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
-    "predicted": {
+    "measured": {
         "scaling_displacement": ["transition"],
         "space_time_displacement": ["front"],
         "space_time_stress": ["transition"],
@@ -72,9 +71,10 @@ def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[st
     project = next(path for path in (here, *here.parents) if (path / "config/config.yaml").exists())
     results = project / "results"
     folders = {"measured": "measurements", "predicted": "predictions"}
+    needed = NEEDS | {"predicted": NEEDS["measured"]}
     figures = sorted((results / "figures").glob("*.pdf"))
     files: dict[str, object] = {name: results / f"{name}.json" for name in ("claims", "findings")}
-    for kind, names in NEEDS.items():
+    for kind, names in needed.items():
         files[kind] = [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
     files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
     files |= {"figures": figures, "sources": [project / f"manuscript/{document}.md"]}

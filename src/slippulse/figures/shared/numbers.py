@@ -31,10 +31,7 @@ def with_symbols(label: str) -> str:
 
 
 def main_numbers(run: pd.Series) -> pd.DataFrame:
-    """Main numbers of a run that were measured: quantity, label, value, theory (or NaN).
-
-    ``run`` is a row of the measured table joined with the predicted one.
-    """
+    """Main measured numbers of a run: quantity, label, value, theory (NaN where there is none)."""
     numbers = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
     numbers["value"] = [run.get(name, np.nan) for name in numbers["quantity"]]
     numbers["theory"] = [run.get(f"exact_{name}", np.nan) for name in numbers["quantity"]]
@@ -42,10 +39,7 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
-    """`main_numbers` of a scene with the uncertainty of each from its grid study.
-
-    If the study has a promised accuracy, the columns promised and kept are there too.
-    """
+    """`main_numbers` of a scene, with what its grid study has: uncertainty, promised and kept."""
     numbers = main_numbers(run)
     quantity = numbers["quantity"]
     # The theory of steady pulses applies to a steady pulse alone.

@@ -1,7 +1,6 @@
 """Pulses in the frame that moves with them, simulated and exact: their table, and the drawing."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -43,11 +42,10 @@ PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
+    """Simulated pulses of each sweep at some levels, and exact ones, from the largest velocity on.
 
-    x is the distance from the largest velocity. Units under a displacement boundary are those of
-    the paper's pulse (width, slip, velocity, acceleration); under a stress boundary the width of a
-    Gaussian, the largest slip and velocity of the exact pulse far from the nucleation, and that
+    Units under a displacement boundary are those of the paper's pulse; under a stress boundary the
+    width of a Gaussian, slip and velocity of the exact pulse far from the nucleation, and that
     velocity over that width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
@@ -84,25 +82,24 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def run_looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
-    """Colour and line style of each run of one boundary, by the number of the run."""
-    boundary = table["panel"].iloc[0]
-    runs = table[table["role"] == "run"].set_index("run")
+def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
+    """The runs of one boundary, with the colour and the line style of each."""
+    boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
     styled = runs[STYLED[boundary]]
     styles = dict(zip(np.sort(styled.unique()), STYLES, strict=False))
-    colours = style.colour_scale(LEVEL[boundary]).to_rgba(runs["left"].to_numpy())
-    return dict(zip(runs.index, zip(colours, styled.map(styles), strict=True), strict=True))
+    colours = [*style.colour(LEVEL[boundary], runs["left"])]
+    return runs.assign(colour=colours, dashes=styled.map(styles))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
     """Draw a field of the pulses of one boundary: simulated ones pale, exact ones thin."""
-    flagged = set(table.loc[table["run_flags"].notna(), "run"])
-    for run, (colour, dashes) in run_looks(table).items():
-        rows = table[table["run"] == run]
+    for run in styled_runs(table).itertuples():
+        rows = table[table["run"] == run.run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
-        shade = "0.7" if run in flagged else colour
-        axes.plot(simulated["x"], simulated[field], color=shade, gid=f"simulation {run}", **PALE)
-        axes.plot(exact["x"], exact[field], dashes, color=colour, linewidth=0.8, gid=f"exact {run}")
+        look: Look = {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
+        axes.plot(simulated["x"], simulated[field], gid=f"simulation {run.run}", **PALE | look)
+        look = {"color": run.colour, "linestyle": run.dashes, "linewidth": 0.8}
+        axes.plot(exact["x"], exact[field], gid=f"exact {run.run}", **look)
     boundary = table["panel"].iloc[0]
     axes.set(xlabel=DISTANCE[boundary], ylabel=FIELDS[field][boundary])
 
@@ -112,7 +109,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
     figure, panels = style.new_panels(PAGE, 2.8, "abc")
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
-    panels[1].set_title(title(table))
+    panels[1].set_title(title(table), loc="center")
     if table["panel"].iloc[0] == "displacement":
         # The undamped lattice rings beyond the theory at the front.
         panels[2].set_ylim(-1.3, 1.3)
@@ -127,22 +124,20 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 
 def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> None:
     """Draw the pre-stress of the runs of one boundary with `prestress_inset`."""
-    runs = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"])
-    looks = run_looks(table)
-    prestress_inset(axes, box, runs, [looks[run][0] for run in runs["run"]], widths)
+    runs = styled_runs(table).drop_duplicates(["left", "right", "width"])
+    prestress_inset(axes, box, runs, runs["colour"], widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Legend entries of one boundary: the colours, the line styles and the simulation."""
-    runs, looks = table[table["role"] == "run"].set_index("run"), run_looks(table)
-    boundary = table["panel"].iloc[0]
-    level_symbol, styled = SYMBOLS[LEVEL[boundary]], STYLED[boundary]
+    runs, boundary = styled_runs(table), table["panel"].iloc[0]
+    level, styled = SYMBOLS[LEVEL[boundary]], STYLED[boundary]
     entries = []
-    for run, level in runs["left"].drop_duplicates().sort_values().items():
-        entries.append(entry(rf"${level_symbol} = {level:g}$", color=looks[run][0]))
-    for run, value in runs[styled].drop_duplicates().sort_values().items():
-        name, dashes = rf"exact, ${SYMBOLS[styled]} = {value:g}$", looks[run][1]
-        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=dashes))
+    for run in runs.drop_duplicates("left").sort_values("left").itertuples():
+        entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
+    for _, run in runs.drop_duplicates(styled).sort_values(styled).iterrows():
+        name = f"exact, ${SYMBOLS[styled]} = {run[styled]:g}$"
+        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=run["dashes"]))
     return [*entries, entry("simulation", color=BLACK, **PALE)]
 
 

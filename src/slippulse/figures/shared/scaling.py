@@ -36,8 +36,7 @@ def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def run_colours(runs: pd.DataFrame, column: str) -> np.ndarray:
     """The colour of each run by its level (column left), gamma, width or damping ratio."""
-    scale = style.colour_scale(coloured(runs["boundary"].iloc[0], column))
-    return scale.to_rgba(runs[column].to_numpy())
+    return style.colour(coloured(runs["boundary"].iloc[0], column), runs[column])
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
@@ -59,11 +58,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
 def ratio_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, across: str, line: str
 ) -> Axes:
-    """Draw measured over predicted in a box: exact theory as lines, runs as markers.
-
-    ``across`` is the column of the horizontal axis, and there is a line for each value of ``line``,
-    in its colours. Where the damping ratio runs across, it gives the colours of the runs.
-    """
+    """Draw measured over predicted in a box over ``across``: runs, and exact lines by ``line``."""
     inset, boundary = style.small_inset(axes, box, "measured / formula"), runs["boundary"].iloc[0]
     inset.set_in_layout(False)
     inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
@@ -114,7 +109,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     figure, panels = style.new_panels(PAGE, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, runs, quantity, colours)
-        axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
+        axes.set_title(f"{style.conditions(boundary == 'displacement')}, {spacings}", loc="center")
         # The runs lie above equality, so that the corner below it is free.
         inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", "left")
         # The axis of the damping ratio has 0.
@@ -122,10 +117,8 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         style.few_ticks(inset.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
         inset.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
         inset.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
-    handles = []
-    for ratio in ratios:
-        colour = style.colour("damping_ratio", ratio)
-        handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
+    looks = zip(ratios, style.colour("damping_ratio", ratios), strict=True)
+    handles = [entry(f"$b = {ratio:g}$", marker="o", color=colour) for ratio, colour in looks]
     name = f"exact, ${SYMBOLS[other]}$ = {middle:g} (insets)"
     handles.append(entry(name, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))

@@ -38,13 +38,10 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
 def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress and damping of a run, and its flags, as a title."""
     value = roles["parameter"].set_index("series")["value"]
-    numbers = {"gamma": value["gamma"]} if value["gamma"] > 0.0 else {}
-    if value["left"] == value["right"]:
-        numbers["tau_0"] = value["left"]
-    else:
-        numbers |= {"tau_l": value["left"], "tau_r": value["right"]}
-    numbers |= dict(value[["width", "damping_ratio"]])
-    title = conditions(value["gamma"] > 0.0, **numbers)
+    value["tau_0"], held = value["left"], value["gamma"] > 0.0
+    levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
+    names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio"]
+    title = conditions(held, **value[names])
     if "flag" in roles:
         title += f", flagged: {roles['flag']['series'].iloc[0]}".replace("_", " ")
     return title
@@ -151,10 +148,7 @@ def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
 
 
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
-    """Draw front and trailing edge, and hide the map before the release and after the stick.
-
-    The edges are known to a block and a fraction of a step, better than the samples of the map.
-    """
+    """Draw both edges, and hide what the map has before the release and after the stick."""
     front = roles["front"].sort_values("position")
     trailing = roles["trailing"].sort_values("position")
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
