@@ -26,19 +26,10 @@ NAN = float("nan")
 KNOWN = [1e-4, 1e-4]
 EQUATION, OVER_CHOICES = rules.equation, rules.verdict_over_choices
 
-
-def every(held: int, failed: int = 0, undecided: int = 0, **fields) -> str:
-    """The verdict on a qualitative claim by numbers of runs."""
-    decided = [True] * held + [False] * failed + [None] * undecided
-    return Qualitative(decided=decided, **fields).verdict()
-
-
-def reading(p: float, degrees: int, tolerance: float) -> str:
-    """The verdict on a figure that was read off, by the probability of its chi-square."""
-    fit = {"chi_square": chdtri(degrees, p), "degrees_of_freedom": degrees}
-    return Reading(tolerance=tolerance, **fit).verdict()
-
-
+answers = lambda held, failed, undecided: [True] * held + [False] * failed + [None] * undecided
+every = lambda *counts, **fields: Qualitative(decided=answers(*counts), **fields).verdict()
+fit = lambda p, degrees: {"chi_square": chdtri(degrees, p), "degrees_of_freedom": degrees}
+reading = lambda p, degrees, tolerance: Reading(tolerance=tolerance, **fit(p, degrees)).verdict()
 # A rule, its arguments (a tolerance where it takes one), and the verdict.
 CASES = {
     "number: well within": (rules.within, (0.001, 0.0001, 0.01), YES),
@@ -289,40 +280,36 @@ def test_what_is_missing_is_named(tmp_path):
 
 
 # A claim that is off, as claims.json has it, and the fields in which other kinds differ.
-CLAIM = {"id": "one", "kind": "exact", "verdict": "not reproduced", "note": "", "source": "runs"}
-CLAIM |= {"predicted": 1.0, "measured": 1.25, "uncertainty": 0.01, "tolerance": 0.2}
-CLAIM |= {"deviation": 0.25, "further": {}, "why": "", "counted": True, "follows_from": []}
-CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False, "asked": ""}
+CLAIM = {"id": "one", "kind": "exact", "verdict": NO, "note": "", "source": "runs", "asked": ""}
+CLAIM |= {"predicted": 1.0, "measured": 1.25, "uncertainty": 0.01, "deviation": 0.25}
+CLAIM |= {"tolerance": 0.2, "further": {}, "why": "", "counted": True, "follows_from": []}
+CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False}
 ESTIMATE = {"kind": "approximate", "exact_largest": None, "largest": None}
-SCALING = {"kind": "scaling", "tolerance": 0.1}
+ALWAYS = {"kind": "qualitative", "predicted": 8.0, "held": 5, "undecided": 2, "tolerance": 0.0}
+AGAINST, HELD = ALWAYS | {"failed": 1}, ("all of 8", "5 of 8, 1 against, 2 undecided")
+READING = {"kind": "reading", "predicted": 7.0, "measured": 1.62, "tolerance": 0.05}
+LIKELY, UNLIKELY = READING | {"deviation": 0.98}, READING | {"deviation": 2e-4}
 ZERO = {"predicted": 0.0, "deviation": 0.5, "tolerance": 0.1}
-ALWAYS = {"kind": "qualitative", "held": 4, "failed": 0, "undecided": 0, "runs": 5}
-READING = {"kind": "reading", "predicted": 7.0, "measured": 1.62, "deviation": 0.98}
-READING |= {"tolerance": 0.05}
-UNLIKELY = READING | {"deviation": 2e-4}
-OPEN_RUNS = {"predicted": 8.0, "held": 5, "failed": 1, "undecided": 2, "tolerance": 0.0}
-
-
+ASKED = {"asked": "some run"}
 claim = lambda fields: with_texts(CLAIM | fields)
 # Fields of a claim, and the sentence that says why.
 WHY = {
-    "reproduced": ({"verdict": "reproduced"}, ""),
+    "reproduced": ({"verdict": YES}, ""),
     "equation": ({}, "It is off by 25 %, tolerance 20 %; its uncertainty is 1 %."),
     "zero predicted": (ZERO, "It is off by 0.50, tolerance 0.1; its uncertainty is 0.0100."),
     "estimate": (ESTIMATE, "It is off by median 25 %, tolerance 20 %; its uncertainty is 1 %."),
-    "scaling": (SCALING, "It is off by 0.25, tolerance 0.1; its uncertainty is 1 %."),
-    "always": (ALWAYS | {"failed": 1}, "It holds in 4 of 5 cases, with 1 against."),
+    "scaling": ({"kind": "scaling"}, "It is off by 0.25, tolerance 0.2; its uncertainty is 1 %."),
+    "always": (AGAINST, "It holds in 5 of 8 cases, with 1 against, 2 undecided."),
     "reading": (UNLIKELY, "At the best fit p = 2.0×10⁻⁴, at least 0.05 is asked."),
-    "not testable": ({"verdict": "not testable"}, "This run leaves no number to judge by."),
+    "not testable": ({"verdict": NONE}, "This run leaves no number to judge by."),
     "its own reason": ({"why": "It needs a reason."}, "It needs a reason."),
 }
-ASKED, SOME_HELD = {"asked": "some run"}, ("all of 8", "5 of 8, 1 against, 2 undecided")
 # Fields of a claim, and texts: predicted, measured and compared.
 NUMBERS = {
-    "always": (ALWAYS | OPEN_RUNS, (*SOME_HELD, "no run may contradict")),
-    "some": (ALWAYS | OPEN_RUNS | ASKED, (*SOME_HELD, "some run")),
+    "always": (AGAINST, (*HELD, "no run may contradict")),
+    "some": (AGAINST | ASKED, (*HELD, "some run")),
     "also": (ESTIMATE | ASKED, ("1", "1.250(10)", "median 25 %, tolerance 20 %; some run")),
-    "reading": (READING, ("7 degrees of freedom", "χ² = 1.62", "p = 0.98, at least 0.05")),
+    "reading": (LIKELY, ("7 degrees of freedom", "χ² = 1.62", "p = 0.98, at least 0.05")),
 }
 
 
@@ -341,7 +328,7 @@ def test_a_verdict_that_hangs_on_the_tolerance_says_so():
     sides = {"below": "inconclusive", "above": "reproduced"}
     flips = [sides | {"tolerance": tolerance} for tolerance in (0.1, 0.15, 0.29)]
     text = "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
-    assert claim(ALWAYS | {"flips_at": flips}).evidence_text() == text
+    assert claim({"flips_at": flips}).evidence_text() == text
 
 
 def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_asked_for_by_name():

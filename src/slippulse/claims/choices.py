@@ -105,12 +105,10 @@ class OverChoices(Claim):
         if verdict == rules.CAVEAT:
             why = self.doubt()
         elif verdict == rules.DEPENDS:
-            most = self.size(max(holding))
-            least = self.size(min(row["deviation"] for row in rows if row["holds"] is False))
-            why += (
-                f" It holds at {len(holding)} of {len(rows)} combinations, with deviations up to "
-            )
-            why += f"{most}, and fails with {least} or more."
+            failing = [row["deviation"] for row in rows if row["holds"] is False]
+            most, least = self.size(max(holding)), self.size(min(failing))
+            why += f" It holds at {len(holding)} of {len(rows)} combinations, with deviations up "
+            why += f"to {most}, and fails with {least} or more."
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
             why += f" It depends on {causes}." if causes else ""
             why = f"{why}{self.at_last_release()}".strip()
