@@ -131,10 +131,13 @@ class ReadOff(Entry):
         return f"At the best fit {self.compared_text()} is asked."
 
 
+KINDS: dict[str, type[Entry]] = dict.fromkeys(("exact", "approximate", "scaling"), Entry)
+KINDS |= {"qualitative": Counts, "reading": ReadOff}
+
+
 def with_texts(claim: Mapping[str, Any]) -> Entry:
     """A claim of claims.json with the texts of its kind."""
-    kinds = {"qualitative": Counts, "reading": ReadOff}
-    return kinds.get(claim["kind"], Entry)(**claim)
+    return KINDS[claim["kind"]](**claim)
 
 
 class Ledger:
