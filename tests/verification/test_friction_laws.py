@@ -85,6 +85,78 @@ def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ra
         assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
 
 
+RATE_WEAKENING = sp.friction("rate_weakening", **EXAMPLES["rate_weakening"])
+
+
+def weakening_by_events(dx, **values):
+    return run(RATE_WEAKENING, dx, scheme="localised", **values)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.1])
+def test_bounded_weakening_with_slip_rate_by_events_tends_to_its_steady_pulse(ratio):
+    exact = theory.rate_pulse(0.5, GAMMA, ratio, RATE_WEAKENING)
+    assert ratio or exact.slip == pytest.approx(2.398, abs=5e-4)
+    runs = [weakening_by_events(dx, beta=ratio * dx) for dx in SPACINGS]
+    assert max(data.attrs["energy_residual"] for data in runs) < ENERGY
+    measured = [sp.measure(data) for data in runs]
+    for name, value in (("pulse_slip", exact.slip), ("front_speed_right", exact.speed)):
+        errors = np.abs([numbers[name] / value - 1.0 for numbers in measured])
+        assert errors[2] < 0.01 and (errors[:2] > 1.7 * errors[1:]).all()
+
+
+def test_bends_of_friction_by_events_are_the_limit_of_short_steps():
+    localised = weakening_by_events(0.05, duration=12.0)
+    slips, releases = [], []
+    for step in (0.02, 0.01, 0.005):
+        textbook = run(RATE_WEAKENING, 0.05, duration=12.0, step=step)
+        slips.append(float(np.abs(textbook["slip"] - localised["slip"]).max()))
+        releases.append(float(np.abs(textbook["release_time"] - localised["release_time"]).max()))
+    assert slips[2] < 0.6 * slips[1] and releases[2] < 0.6 * releases[1] and releases[2] < 0.01
+
+
+@pytest.mark.parametrize("order", [4, 6, 8])
+def test_the_order_of_a_step_holds_where_friction_bends_inside_it(order):
+    fine = weakening_by_events(0.1, beta=0.01, duration=8.0, order=8, step=0.02)["slip"]
+    errors = []
+    for step in (0.4, 0.2):
+        coarse = weakening_by_events(0.1, beta=0.01, duration=8.0, order=order, step=step)
+        errors.append(float(np.abs(coarse["slip"] - fine).max()))
+    assert errors[1] < errors[0] / 2.0 ** (order - 1)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        sp.Prestress(0.5, -0.5),
+        sp.Prestress(0.5, 0.5, steps=((5.0, -0.3), (-6.0, 0.2))),
+        sp.Prestress(0.5, 0.5, bumps=((9.0, 0.5, 1.0),)),
+    ],
+)
+def test_bends_close_the_energy_where_pulses_die_meet_and_start_again(profile):
+    def solve(**values):
+        how = {"scheme": "localised", "friction": RATE_WEAKENING, "beta": 0.005} | values
+        return sp.simulate(sp.Scene("displacement", profile, 12.0, 0.05, GAMMA, **how))
+
+    data, fine = solve(max_step=0.1), solve(max_step=0.05)
+    assert data.attrs["energy_residual"] < 1e-7 and fine.attrs["energy_residual"] < 1e-7
+    assert (data.attrs["re_releases"] > 0) == bool(profile.bumps)
+    assert float(np.abs(data["slip"] - fine["slip"]).max()) < 1e-5
+    textbook = solve(scheme="fixed_step", max_step=0.01)
+    assert float(np.abs(data["slip"] - textbook["slip"]).max()) < 0.01
+    assert data.attrs["friction_loss"] == pytest.approx(textbook.attrs["friction_loss"], rel=2e-3)
+
+
+def test_without_a_bend_in_reach_bounded_weakening_is_linear():
+    linear = run(sp.friction("linear_rate", alpha=-0.4), 0.05, scheme="localised", duration=12.0)
+    law = sp.friction("rate_weakening", slope=0.4, limit=1e3)
+    data = run(law, 0.05, scheme="localised", duration=12.0)
+    np.testing.assert_allclose(data["slip"], linear["slip"], rtol=1e-10, atol=1e-12)
+    loss = linear.attrs["viscous_loss"]
+    assert data.attrs["viscous_loss"] + data.attrs["friction_loss"] == pytest.approx(loss, rel=1e-9)
+    none = run(sp.friction("rate_weakening", slope=0.0, limit=1.0), 0.05, scheme="localised")
+    assert none["slip"].equals(run(sp.friction("coulomb"), 0.05, scheme="localised")["slip"])
+
+
 def by_events(dx, **values):
     law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
     return run(law, dx, 0.8, scheme="localised", **values)
@@ -125,9 +197,9 @@ def test_a_block_heals_when_it_sticks():
     ("law", "scheme", "allowed"),
     [
         ("bounded_rate", "localised", "fixed_step"),
-        ("rate_weakening", "localised", "fixed_step"),
         ("exponential_weakening", "localised", "fixed_step"),
         ("bounded_rate", "continuum", "fixed_step"),
+        ("rate_weakening", "continuum", "localised or fixed_step"),
         ("slip_weakening", "continuum", "localised or fixed_step"),
     ],
 )
@@ -135,3 +207,10 @@ def test_schemes_that_do_not_solve_a_law_refuse_it(law, scheme, allowed):
     refusal = rf"scheme: '{scheme}'; allowed: {allowed}, with friction law '{law}'"
     with pytest.raises(ValueError, match=refusal):
         run(sp.friction(law, **EXAMPLES[law]), 0.05, scheme=scheme)
+
+
+def test_a_step_that_does_not_resolve_the_growth_of_slip_rate_is_refused():
+    law = sp.friction("rate_weakening", slope=1000.0, limit=0.3)
+    for scheme in ("localised", "fixed_step"):
+        with pytest.raises(ValueError, match=r"max_step: 0.1; allowed: <= 0.01 \(in units of dx\)"):
+            run(law, 0.05, scheme=scheme)

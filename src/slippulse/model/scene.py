@@ -88,7 +88,8 @@ class Scene:
         A pulse of fewer sliding blocks is flagged: its width errs by about a block.
     friction : Friction
         Law of friction of a sliding block, which `friction` makes. "fixed_step" takes any;
-        "localised" and "continuum" "coulomb" and "linear_rate", the first "slip_weakening" too.
+        "continuum" takes "coulomb" and "linear_rate"; "localised" takes "rate_weakening" and
+        "slip_weakening", too.
 
     Raises
     ------

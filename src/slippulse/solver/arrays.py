@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..model.friction_laws.law import Bend
+
 # At order 8, the highest, an event reaches this far on either side: one block for each derivative
 # from the third on.
 REACH = 7
@@ -64,7 +66,7 @@ class Medium(NamedTuple):
     law: int  # number of another law of friction, 0: none
     first: float  # its parameters
     second: float
-    d_c: float | None  # slip over which friction falls linearly in the Taylor step
+    bend: Bend | None  # friction that is piecewise linear, in the Taylor step
     mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
     total: bool  # the stress that is compared with 1 includes the damping force
 
@@ -79,7 +81,7 @@ class Motion(NamedTuple):
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
     tau: np.ndarray  # (N,), pre-stress
     # Of laws of friction other than those of no and of linear rate dependence:
-    falls: np.ndarray  # (N,), 1/d_c while the friction of a block falls linearly, else 0
+    falls: np.ndarray  # (N,), slope of the friction of a block before its bend, 0 beyond
     resists: np.ndarray  # (N,), 1 where the law holds, 0 where the rupture is nucleated without it
     released: np.ndarray  # (N,), slip at the last release
 
@@ -93,12 +95,12 @@ class Segments(NamedTuple):
 
 
 class Event(NamedTuple):
-    """The release of a block, its stick or the end of its weakening, and when in the step."""
+    """The release of a block, its stick or the bend of its friction, and when in the step."""
 
     block: int
     time: float
     stick: bool
-    weak: bool
+    bends: bool
 
 
 class Forecast(NamedTuple):
@@ -106,9 +108,9 @@ class Forecast(NamedTuple):
 
     # (N,), release time of each stuck neighbour of a segment; inf: none, or a mirror image
     release: np.ndarray
-    stick_block: np.ndarray  # (N,), blocks that stick, the first ``sticks.n`` entries
-    stick_time: np.ndarray  # (N,)
-    weak: np.ndarray  # (N,), True where weakening ends instead
+    stick_block: np.ndarray  # (2 N,), blocks that stick, the first ``sticks.n`` entries
+    stick_time: np.ndarray  # (2 N,)
+    bends: np.ndarray  # (2 N,), True where friction bends instead
     sticks: np.record
     coefficients: np.ndarray  # (K,), scratch: a polynomial
     slopes: np.ndarray  # (K,), scratch: its derivative
@@ -130,6 +132,7 @@ class Changed(NamedTuple):
     stuck: np.ndarray  # the block that stuck, -1: a release
     count: np.record  # type: ignore[assignment]
     kinks: np.record
+    bends: np.record  # of the power of friction with a bend
 
 
 class Scratch(NamedTuple):
@@ -182,13 +185,13 @@ def make_segments(size: int) -> Segments:
 
 def make_scratch(size: int, order: int) -> Scratch:
     """Scratch arrays of a lattice of ``size`` blocks, without events."""
-    release, stick_time = np.full(size, np.inf), np.zeros(size)
-    stick_block, weak = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=bool)
+    release, stick_time = np.full(size, np.inf), np.zeros(2 * size)
+    stick_block, bends = np.zeros(2 * size, dtype=np.int64), np.zeros(2 * size, dtype=bool)
     polynomials, values = np.zeros((2, order + 2)), np.zeros(COLUMNS)
-    forecast = Forecast(release, stick_block, stick_time, weak, record(COUNT), *polynomials)
+    forecast = Forecast(release, stick_block, stick_time, bends, record(COUNT), *polynomials)
     difference = Difference(np.zeros((order + 2, COLUMNS)), np.zeros(order + 4), values)
     first, last, stuck = np.zeros((3, MOST_EVENTS), dtype=np.int64)
-    changed = Changed(first, last, stuck, record(COUNT), record(KINKS))
+    changed = Changed(first, last, stuck, record(COUNT), record(KINKS), record(KINKS))
     return Scratch(make_segments(size), forecast, difference, changed)
 
 
@@ -198,8 +201,8 @@ def make_medium(
     beta: float,
     mirror: bool,
     total: bool,
-    friction: tuple[float, int, float, float, float | None] = (0.0, 0, 0.0, 0.0, None),
+    friction: tuple[float, int, float, float, Bend | None] = (0.0, 0, 0.0, 0.0, None),
 ) -> Medium:
-    """Constants of one scene; ``friction`` has alpha to d_c of `Medium`."""
+    """Constants of one scene; ``friction`` has alpha to bend of `Medium`."""
     per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
     return Medium(dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, mirror, total)

@@ -10,8 +10,8 @@ the step, so the few blocks within reach change as in a new expansion of the who
 import numpy as np
 
 from .arrays import CENTRE, COLUMNS
-from .foresight import RECIPROCAL, find_sticks, find_weak, foresee_releases, forget_sticks
-from .friction import begin_weakening, strengthen, weaken
+from .foresight import RECIPROCAL, find_bends, find_sticks, foresee_releases, forget_sticks
+from .friction import begin_to_fall, fall, resistance_at_rest, strengthen, turn
 from .jit import inner, once
 from .segments import sliding_beside
 from .stencils import blocks, derivative
@@ -38,7 +38,7 @@ def later_velocity(w, i, top, s):
 
 @inner(inline=True)
 def start(centre, medium, motion, block, now, top):
-    """Derivatives of the slip of a block released at ``now``, as its neighbours drive it."""
+    """Derivatives of the slip of a block released at ``now``. Returns its friction."""
     w, offset = motion.w, motion.offset
     strain = motion.strain
     per_dx2, damping = medium.per_dx2, medium.damping
@@ -46,13 +46,15 @@ def start(centre, medium, motion, block, now, top):
     force = (strain[block] - strain[block - 1]) / medium.dx + per_dx2 * ahead + motion.tau[block]
     force -= medium.leaf * (w[0, block] + offset[block])
     centre[2] = force + damping * (w[1, block - 1] + w[1, block + 1])
-    centre[2] -= begin_weakening(motion, medium.d_c, block)
+    friction = begin_to_fall(motion, medium.bend, block)
+    centre[2] -= friction
     # Between the start of the step and ``now``, two derivatives more than are kept contribute.
     for k in range(1, top + 1):
         centre[k + 2] = per_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
             centre[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
     taylor_shift(centre, np.int64(2), top, top + 2, now)
+    return friction
 
 
 @inner(inline=True)
@@ -70,15 +72,20 @@ def stop(centre, w, offset, block, now, top):
 
 
 @inner(inline=True)
-def stop_weakening(centre, motion, d_c, block, now, top):
-    """Derivatives of the change that the end of its weakening makes in the slip of a block."""
-    if d_c is not None:
+def bend_course(centre, motion, bend, block, now, top):
+    """Derivatives of the change that a bend of friction makes. Returns that of friction times v."""
+    if bend is not None:
         for k in range(1, top + 1):
             centre[k] = motion.w[k, block]
         taylor_shift(centre, np.int64(1), top, top, now)
+        velocity, before = centre[1], motion.falls[block]
+        turn(motion, bend, block)
+        change = motion.falls[block] - before
         for k in range(top, 2, -1):
-            centre[k] = -centre[k - 2] / d_c
+            centre[k] = change * centre[k - 2 + bend.rate]
         centre[2] = 0.0
+        return -centre[3] * velocity
+    return 0.0
 
 
 @inner(inline=True)
@@ -95,7 +102,7 @@ def spread(difference, medium, motion, event, left, right, top):
             rows[k, p] = derivative(rows, k, p, medium.per_dx2, medium.leaf, medium.damping)
         if medium.alpha != 0.0:
             strengthen(rows, k, first, last, medium.alpha)
-        weaken(rows, k, first, last, column, motion, medium.d_c)
+        fall(rows, k, first, last, column, motion, medium.bend)
         rows[k, CENTRE] = centre[k] + (0.0 if event.stick else rows[k, CENTRE])
 
 
@@ -143,11 +150,12 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     """Change the polynomials within reach of an event, and foresee further events there until h.
 
     Returns: velocities are finite; first block that changed and the one after the last; velocity
-    of the block before; lowest stress of a stuck block; sum of dv times the change of da.
+    of the block before; lowest stress of a stuck block; sum of dv times the change of da; change
+    of the time derivative of friction times velocity.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
-    block, now, stick, weak = event
-    speed, kink = 0.0, 0.0
+    block, now, stick, bends = event
+    speed, kink, bent, friction = 0.0, 0.0, 0.0, 0.0
     left, right = sliding_beside(segments, block)
     middle = medium.mirror and block == 1
     if middle:
@@ -155,16 +163,18 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     if stick:
         speed = stop(difference.centre, w, offset, block, now, top)
         velocity[block] = 0.0
-    elif weak:
-        stop_weakening(difference.centre, motion, medium.d_c, block, now, top)
+        friction = resistance_at_rest(motion, medium.bend, block)
+    elif bends:
+        bent = bend_course(difference.centre, motion, medium.bend, block, now, top)
     else:
-        start(difference.centre, medium, motion, block, now, top)
+        friction = start(difference.centre, medium, motion, block, now, top)
     if medium.beta > 0.0:
         # Only the block of the event changes its acceleration, and it is at rest.
         neighbours = later_velocity(w, block + 1, top, now)
         if not middle:
             neighbours += later_velocity(w, block - 1, top, now)
         kink = -difference.centre[2] * neighbours
+    bent += friction * difference.centre[2]
     spread(difference, medium, motion, event, left, right, top)
     if stick:
         # `stop` has changed the block of the event already.
@@ -183,5 +193,5 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     lowest = foresee_releases(medium, motion, segments, forecast, first - 1, last + 1, now, h)
     forget_sticks(forecast, first, last)
     finite = find_sticks(motion, forecast, first, last, last - first, now, h, top)
-    find_weak(motion, medium.d_c, forecast, first, last, now, h, top)
-    return finite, 0 if with_ghost else first, last, speed, lowest, kink
+    find_bends(motion, medium.bend, forecast, first, last, now, h, top)
+    return finite, 0 if with_ghost else first, last, speed, lowest, kink, bent

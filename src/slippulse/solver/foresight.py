@@ -124,7 +124,7 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
 @once
 def next_event(segments, forecast):
     """The first event foreseen; its time is inf where there is none."""
-    block, stick, weak = -1, False, False
+    block, stick, bends = -1, False, False
     earliest = math.inf
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
@@ -132,17 +132,19 @@ def next_event(segments, forecast):
                 block, earliest = edge, forecast.release[edge]
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] < earliest:
-            block, weak = forecast.stick_block[q], forecast.weak[q]
-            stick = not weak
+            block, bends = forecast.stick_block[q], forecast.bends[q]
+            stick = not bends
             earliest = forecast.stick_time[q]
-    return Event(block, earliest, stick, weak)
+    return Event(block, earliest, stick, bends)
 
 
 @once
-def simultaneous(segments, forecast, mirror, block, latest):
+def simultaneous(segments, forecast, medium, block, latest):
     """True if a later event would meet this one or its mirror image: both must happen at once."""
     near = 2 * REACH + 1
-    others = 1 if mirror and 1 < block <= 1 + REACH else 0
+    # The change at the axis is symmetric, but the slopes of friction beyond it are not at hand.
+    nearest = 2 if medium.bend is None else 1
+    others = 1 if medium.mirror and nearest <= block <= 1 + REACH else 0
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
             others += 0 < abs(edge - block) <= near and forecast.release[edge] <= latest
@@ -204,42 +206,61 @@ def find_sticks(motion, forecast, first, last, suspects, now, h, top):
         if root < math.inf:
             n = forecast.sticks.n
             forecast.stick_block[n], forecast.stick_time[n] = i, root
-            forecast.weak[n] = False
+            forecast.bends[n] = False
             forecast.sticks.n = n + 1
         if suspects == 0:
             break
     return True
 
 
+@inner()
+def foresee_bend(coefficients, slopes, degree, now, h):
+    """Time until h at which a slip or slip rate, less that of the bend, reaches 0; inf if not."""
+    if polynomial(coefficients, degree, now) >= -ROUNDING:
+        later = turning_point(coefficients, slopes, degree, now, h)
+        if polynomial(slopes, degree - 1, now) > 0.0:
+            return now
+        # It leaves the bend at this very instant.
+        now = later
+    return first_reach_of_threshold(coefficients, slopes, degree, now, h)
+
+
 @inner(inline=True)
-def find_weak(motion, d_c, forecast, first, last, now, h, top):
-    """Add the ends of weakening until h of the blocks first..last-1, where slip reaches d_c."""
-    if d_c is not None:
-        coefficients = forecast.coefficients
+def find_bends(motion, bend, forecast, first, last, now, h, top):
+    """Add the bends of friction until h of the blocks first..last-1."""
+    if bend is not None:
+        w, coefficients = motion.w, forecast.coefficients
+        degree = top - bend.rate
         for i in range(first, last):
-            if motion.falls[i] == 0.0:
+            sign = 1.0 if motion.falls[i] > 0.0 else -1.0
+            # Slip does not come back. A slip rate that does shows it as in `find_sticks`.
+            after = sign
+            if bend.rate == 1:
+                farthest = max(sign * motion.velocity[i], sign * (w[1, i] + h * w[2, i]))
+                after = farthest - sign * bend.end
+            if after < 0.0:
                 continue
-            factorial = 1.0
-            for k in range(top + 1):
-                factorial *= max(k, 1)
-                coefficients[k] = motion.w[k, i] / factorial
-            coefficients[0] += motion.offset[i] - motion.released[i] - d_c
-            if polynomial(coefficients, top, h) >= 0.0:
+            factor = sign
+            for k in range(degree + 1):
+                coefficients[k] = factor * w[k + bend.rate, i]
+                factor *= RECIPROCAL[k + 1]
+            reached = motion.released[i] + bend.end
+            coefficients[0] -= sign * (reached if bend.rate else reached - motion.offset[i])
+            root = foresee_bend(coefficients, forecast.slopes, degree, now, h)
+            if root < math.inf:
                 n = forecast.sticks.n
-                before = polynomial(coefficients, top, now)
-                root = crossing(coefficients, top, now, h) if before < 0.0 else now
                 forecast.stick_block[n], forecast.stick_time[n] = i, root
-                forecast.weak[n] = True
+                forecast.bends[n] = True
                 forecast.sticks.n = n + 1
 
 
 @inner(inline=True)
 def forget_sticks(forecast, first, last):
     """Drop the foreseen sticks of the blocks first..last-1."""
-    block, time, weak = forecast.stick_block, forecast.stick_time, forecast.weak
+    block, time, bends = forecast.stick_block, forecast.stick_time, forecast.bends
     kept = 0
     for q in range(forecast.sticks.n):
         if not first <= block[q] < last:
-            block[kept], time[kept], weak[kept] = block[q], time[q], weak[q]
+            block[kept], time[kept], bends[kept] = block[q], time[q], bends[q]
             kept += 1
     forecast.sticks.n = kept

@@ -1,8 +1,8 @@
 """Laws of friction in the kernels: piecewise linear in the Taylor step, any in the textbook one.
 
-In the Taylor step, the dissipation by a term -alpha v belongs to the viscous loss. Linear slip
-weakening is linear until the slip of a block since its release is d_c, which is an event. Kernels
-are compiled anew for it: where ``d_c`` is None, the functions of weakening are empty.
+In the Taylor step, the dissipation by a term -alpha v belongs to the viscous loss. Friction with a
+bend falls with the slip or slip rate of a block until that is at the bend, which is an event, as is
+the way back. Kernels are compiled anew for it: where ``bend`` is None, its functions are empty.
 """
 
 from collections.abc import Sequence
@@ -10,17 +10,17 @@ from collections.abc import Sequence
 from numba.extending import register_jitable
 
 from ..model.friction import LAWS
-from ..model.friction_laws.law import Friction
+from ..model.friction_laws.law import Bend, Friction
 from .jit import inner
 from .stencils import blocks
 
 
 def constants_of(
     friction: Friction, localised: bool
-) -> tuple[float, int, float, float, float | None]:
-    """The constants alpha, law, first, second and d_c of `Medium`."""
+) -> tuple[float, int, float, float, Bend | None]:
+    """The constants alpha, law, first, second and bend of `Medium`."""
     if localised or "continuum" in friction.schemes:
-        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.linear_weakening
+        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.bend
     return 0.0, LAWS.index(type(friction)), *friction.constants, None
 
 
@@ -43,42 +43,68 @@ law_of_friction = choose(LAWS)
 
 
 @inner()
-def begin_weakening(motion, d_c, block):
-    """Let the friction of a block that is released fall from 1. Returns its friction."""
-    if d_c is not None:
-        motion.released[block] = motion.w[0, block] + motion.offset[block]
-        motion.falls[block] = motion.resists[block] / d_c
-        return motion.resists[block]
+def begin_to_fall(motion, bend, block):
+    """Let the friction of a block that is released fall. Returns its friction."""
+    if bend is not None:
+        if bend.rate == 0:
+            motion.released[block] = motion.w[0, block] + motion.offset[block]
+        motion.falls[block] = motion.resists[block] * bend.fall
+        return bend.beyond + motion.falls[block] * bend.end
+    return 0.0
+
+
+@inner(inline=True)
+def resistance(motion, bend, block, place):
+    """Friction of a block with a bend at a slip, or at a slip rate."""
+    return bend.beyond + motion.falls[block] * (motion.released[block] + bend.end - place)
+
+
+@inner()
+def resistance_at_rest(motion, bend, block):
+    """Friction of a block that sticks; laws of slip rate have none."""
+    if bend is not None and bend.rate == 0:
+        return resistance(motion, bend, block, motion.w[0, block] + motion.offset[block])
     return 0.0
 
 
 @inner()
-def end_weakening(medium, d_c, motion, block, weak, tally):
-    """Count the work against the friction of a block, which is weak now or sticks before."""
-    if d_c is not None:
-        weight = 2.0 if medium.mirror and block > 1 else 1.0
-        since = motion.w[0, block] + motion.offset[block] - motion.released[block]
-        since = d_c if weak else since
-        work = motion.falls[block] * since * (d_c - 0.5 * since)
-        tally.friction_loss += weight * medium.dx * work
-        motion.falls[block] = 0.0
+def turn(motion, bend, block):
+    """Let the friction of a block at the bend cease to fall, or fall again."""
+    if bend is not None:
+        motion.falls[block] = bend.fall - motion.falls[block]
 
 
 @inner(inline=True)
-def weaken(w, k, first, last, column, motion, d_c):
-    """Add to time derivative k of slip what friction loses with slip; columns may be shifted."""
-    if d_c is not None:
+def fall(w, k, first, last, column, motion, bend):
+    """Add to time derivative k of slip what friction loses; columns may be shifted."""
+    if bend is not None:
         for i in blocks(first, last):
-            w[k, i] += motion.falls[i + column] * w[k - 2, i]
+            w[k, i] += motion.falls[i + column] * w[k - 2 + bend.rate, i]
 
 
 @inner(inline=True)
-def resist_weakening(motion, first, last, d_c):
-    """Subtract the friction that is left from the accelerations of blocks."""
-    if d_c is not None:
+def resist(motion, first, last, bend):
+    """Subtract friction with a bend from the accelerations of blocks."""
+    if bend is not None:
         w = motion.w
         for i in blocks(first, last):
-            w[2, i] -= motion.falls[i] * (motion.released[i] + d_c - w[0, i])
+            w[2, i] -= resistance(motion, bend, i, w[bend.rate, i])
+
+
+@inner(inline=True)
+def power(medium, motion, segments, bend):
+    """Work against friction with a bend in unit time, and its time derivative."""
+    total, change = 0.0, 0.0
+    if bend is not None:
+        w, falls = motion.w, motion.falls
+        for r in range(segments.count.n):
+            for i in blocks(segments.starts[r], segments.ends[r]):
+                weight = 2.0 if medium.mirror and i > 1 else 1.0
+                friction = resistance(motion, bend, i, w[bend.rate, i])
+                total += weight * friction * w[1, i]
+                growth = friction * w[2, i] - falls[i] * w[bend.rate + 1, i] * w[1, i]
+                change += weight * growth
+    return medium.dx * total, medium.dx * change
 
 
 @inner()

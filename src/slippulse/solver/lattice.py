@@ -7,7 +7,7 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
-from .friction import begin_weakening, constants_of
+from .friction import begin_to_fall, constants_of
 
 # A call of a kernel makes at most this number of steps, and of updates of a block, which take about
 # a tenth of a second. Between calls Python tells the progress and can be interrupted.
@@ -74,7 +74,7 @@ class Lattice:
         n = self.segments.count.n = edges.size // 2
         self.segments.starts[:n], self.segments.ends[:n] = edges[0::2], edges[1::2]
         for block in np.flatnonzero(self.sliding):
-            begin_weakening(self.motion, self.medium.d_c, block)
+            begin_to_fall(self.motion, self.medium.bend, block)
         self.tally.first_stick_time = np.nan
         self.tally.releases = self.sliding.sum()
 

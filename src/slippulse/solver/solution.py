@@ -46,11 +46,7 @@ def energies(lattice: Lattice, totals: dict) -> dict:
     weight, bond = np.full((2, lattice.size), 2.0 if medium.mirror else 1.0)
     if medium.mirror:
         weight[:2], bond[0] = (0.0, 1.0), 0.0
-    viscous_loss, falling = totals["viscous_loss"], np.zeros(lattice.size)
-    if medium.d_c is not None:
-        # The blocks that still weaken have their work ahead of the count.
-        since = slip - motion.released
-        falling = motion.falls * since * (medium.d_c - 0.5 * since)
+    viscous_loss = totals["viscous_loss"]
     if medium.law:
         # Symplectic Euler is leapfrog: its velocity is that of half a step before, and its viscous
         # loss, summed with velocities at the ends of steps, is that of three quarters later.
@@ -66,7 +62,7 @@ def energies(lattice: Lattice, totals: dict) -> dict:
         "leaf_spring_energy": float(0.5 * medium.leaf * np.sum(weight * slip * slip) * dx),
         "viscous_loss": viscous_loss,
         "event_loss": totals["stick_loss"],
-        "friction_loss": totals["friction_loss"] + float(np.sum(weight * falling) * dx),
+        "friction_loss": totals["friction_loss"],
     }
     work, *others = parts.values()
     largest = max(map(abs, parts.values()))

@@ -91,8 +91,16 @@ def dissipation(medium, motion, segments):
 
 
 @inner()
-def viscous_loss(h, rate, change, kinks):
-    """Viscous loss of a step h and that to rate strengthening, without its last part h D_1/3.
+def add_kink(kinks, k, s):
+    """Add the change k of a derivative of the dissipation at a time s."""
+    kinks.k += k
+    kinks.ks += k * s
+    kinks.kss += k * s * s
+
+
+@inner()
+def loss_of_step(h, rate, change, kinks):
+    """Energy lost in a step h to damping, or to friction with a bend, but for its part h D_1/3.
 
     The loss h (2 D_0 + D_1)/3 + h^2 D_0'/6 is of third order in h. It is made of the dissipation
     D_0 and its derivative D_0' at the start, and D_1 at the end. D_1 is known at the next start,
@@ -118,7 +126,7 @@ def derivatives(medium, motion, segments, alpha, top):
         stencils.first_acceleration(w, strain, tau, a, b, medium.per_dx, leaf, damping)
         if alpha != 0.0:
             friction.strengthen(w, 2, a, b, alpha)
-        friction.resist_weakening(motion, a, b, medium.d_c)
+        friction.resist(motion, a, b, medium.bend)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
@@ -126,7 +134,7 @@ def derivatives(medium, motion, segments, alpha, top):
                 w[k, i] = stencils.derivative(w, k, i, medium.per_dx2, leaf, damping)
             if alpha != 0.0:
                 friction.strengthen(w, k, a, b, alpha)
-            friction.weaken(w, k, a, b, np.uint64(0), motion, medium.d_c)
+            friction.fall(w, k, a, b, np.uint64(0), motion, medium.bend)
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
@@ -149,7 +157,7 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
             motion, forecast, a, b, suspects, 0.0, h, top
         ):
             return False
-        foresight.find_weak(motion, medium.d_c, forecast, a, b, 0.0, h, top)
+        foresight.find_bends(motion, medium.bend, forecast, a, b, 0.0, h, top)
     first, last = np.int64(0), motion.tau.shape[0]
     lowest = foresight.foresee_releases(medium, motion, segments, forecast, first, last, 0.0, h)
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
@@ -175,29 +183,25 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     top = motion.w.shape[0] - 1
     changed, tally = scratch.changed, history.tally
     block, stick = event.block, event.stick
-    if event.weak:
-        friction.end_weakening(medium, medium.d_c, motion, block, True, tally)
-    elif stick:
+    if stick:
         stick_block(segments, block)
         note_stick(history, block, instant)
-    else:
+    elif not event.bends:
         release_block(segments, block)
         release_block(scratch.moved, block)
         note_release(history, block, instant)
-    finite, first, last, speed, lowest, kink = change_course(
+    finite, first, last, speed, lowest, kink, bent = change_course(
         medium, motion, segments, scratch.forecast, scratch.difference, event, h, top
     )
     if not finite:
         return False
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     if stick:
-        friction.end_weakening(medium, medium.d_c, motion, block, False, tally)
         tally.min_velocity = min(tally.min_velocity, speed)
     k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
-    s = event.time
-    changed.kinks.k += k
-    changed.kinks.ks += k * s
-    changed.kinks.kss += k * s * s
+    add_kink(changed.kinks, k, event.time)
+    weight = 2.0 if medium.mirror and block > 1 else 1.0
+    add_kink(changed.bends, weight * medium.dx * bent, event.time)
     n = changed.count.n
     changed.first[n], changed.last[n] = first, last
     changed.stuck[n] = block if stick else -1
@@ -242,8 +246,8 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] <= latest:
             block = forecast.stick_block[q]
-            friction.end_weakening(medium, medium.d_c, motion, block, forecast.weak[q], tally)
-            if forecast.weak[q]:
+            if forecast.bends[q]:
+                friction.turn(motion, medium.bend, block)
                 continue
             tally.min_velocity = min(tally.min_velocity, motion.w[1, block])
             for k in range(1, top + 1):
@@ -252,7 +256,7 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
             note_stick(history, block, end)
     for q in range(count):
         release_block(segments, due[q])
-        friction.begin_weakening(motion, medium.d_c, due[q])
+        friction.begin_to_fall(motion, medium.bend, due[q])
         note_release(history, due[q], end)
 
 
@@ -267,7 +271,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
     instantly = SIMULTANEOUS * limits.largest_step
     tally, forecast = history.tally, scratch.forecast
     moved, changed = scratch.moved, scratch.changed
-    kinks, lossy = changed.kinks, medium.beta > 0.0 or medium.alpha != 0.0
+    kinks, bends = changed.kinks, changed.bends
+    lossy = medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.steps):
         t = tally.time
         if medium.alpha == 0.0:
@@ -278,7 +283,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         if lossy:
             rate, change = dissipation(medium, motion, segments)
             tally.viscous_loss += tally.pending_step * rate / 3.0
-            tally.pending_step = 0.0
+        power, growth = friction.power(medium, motion, segments, medium.bend)
+        tally.friction_loss += tally.pending_step * power / 3.0
+        tally.pending_step = 0.0
         if segments.count.n == 0:
             return ALL_STUCK
         if t >= limits.end_time:
@@ -287,7 +294,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         last = segments.ends[segments.count.n - 1]
         if last >= size - ROOM or (segments.starts[0] <= ROOM and not medium.mirror):
             return GROW
-        kinks.k = kinks.ks = kinks.kss = 0.0
+        kinks.k = kinks.ks = kinks.kss = bends.k = bends.ks = bends.kss = 0.0
 
         h = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if h == limits.end_time - t else t + h
@@ -304,7 +311,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
             if event.time == math.inf:
                 break
             early = changed.count.n == MOST_EVENTS or foresight.simultaneous(
-                segments, forecast, medium.mirror, event.block, event.time + instantly
+                segments, forecast, medium, event.block, event.time + instantly
             )
             if early:
                 h, end = event.time, min(t + event.time, end)
@@ -317,8 +324,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         take_samples(recorder, motion, tally, t, end, order)
 
         if lossy:
-            tally.viscous_loss += viscous_loss(h, rate, change, kinks)
-            tally.pending_step = h
+            tally.viscous_loss += loss_of_step(h, rate, change, kinks)
+        tally.friction_loss += loss_of_step(h, power, growth, bends)
+        tally.pending_step = h
         updates = 0
         for r in range(moved.count.n):
             updates += moved.ends[r] - moved.starts[r]

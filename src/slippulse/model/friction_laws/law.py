@@ -8,12 +8,24 @@ from typing import Any, ClassVar, NamedTuple
 
 from ..checks import check_number
 
+# The longest step over the time in which slip or slip rate grows e-fold where friction weakens.
+RESOLVED = 0.5
+
+
+class Bend(NamedTuple):
+    """Friction that falls linearly with slip or slip rate, and is constant beyond a bend."""
+
+    rate: int  # 0: it falls with the slip since the release; 1: with slip rate
+    fall: float  # its slope before the bend
+    end: float  # slip or slip rate at the bend
+    beyond: float  # friction beyond
+
 
 class Traits(NamedTuple):
     """Properties of a law that solvers need besides its friction."""
 
     linear_rate: float = 0.0  # alpha, where friction is alpha du/dt
-    linear_weakening: float | None = None  # d_c, where friction falls linearly over this slip
+    bend: Bend | None = None  # where friction is piecewise linear
     steepest: float = 0.0  # upper bound on the slope of friction over slip rate
     drive: float = 0.0  # upper bound on the friction that drives slip instead of resisting it
     zone: float = 0.0  # half-length around x = 0 without friction, which nucleates the rupture

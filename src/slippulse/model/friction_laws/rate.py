@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import Friction, Traits
+from .law import RESOLVED, Bend, Friction, Traits
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ class RateWeakening(Friction):
     limit: float
 
     law: ClassVar = "rate_weakening"
+    schemes: ClassVar = ("localised", "fixed_step")
     bounds: ClassVar = {"slope": {"at_least": 0.0}, "limit": {"at_least": 0.0}}
 
     @staticmethod
@@ -64,5 +65,8 @@ class RateWeakening(Friction):
 
     @property
     def traits(self) -> Traits:
-        """The law drives slip by up to F."""
-        return Traits(drive=self.limit)
+        """The law drives slip by up to F. Slip rate grows e-fold in the time 1/a until F/a."""
+        if self.slope * self.limit == 0.0:
+            return Traits()
+        bend = Bend(1, self.slope, self.limit / self.slope, -self.limit)
+        return Traits(drive=self.limit, bend=bend, longest_step=RESOLVED / self.slope)

@@ -4,10 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import Friction, Traits
-
-# The longest step over sqrt(d_c), the time by which slip grows e-fold where friction weakens.
-RESOLVED = 0.5
+from .law import RESOLVED, Bend, Friction, Traits
 
 
 @dataclass(frozen=True)
@@ -31,9 +28,10 @@ class SlipWeakening(Friction):
 
     @property
     def traits(self) -> Traits:
-        """Beyond a fraction of sqrt(d_c), a step makes the speed of the front wrong."""
+        """Slip grows e-fold in the time sqrt(d_c); a step beyond makes front speeds wrong."""
         step = RESOLVED * math.sqrt(self.d_c)
-        return Traits(linear_weakening=self.d_c, zone=self.nucleation, longest_step=step)
+        bend = Bend(0, 1.0 / self.d_c, self.d_c, 0.0)
+        return Traits(bend=bend, zone=self.nucleation, longest_step=step)
 
 
 class ExponentialWeakening(SlipWeakening):
@@ -50,4 +48,4 @@ class ExponentialWeakening(SlipWeakening):
     @property
     def traits(self) -> Traits:
         """The traits of slip weakening that is not linear."""
-        return super().traits._replace(linear_weakening=None)
+        return super().traits._replace(bend=None)
