@@ -103,14 +103,14 @@ PRESTRESSES = {
     "prestress.left: 1.2; allowed: a finite number and < 1": {"left": 1.2},
     "prestress.right: 1.0; allowed: a finite number and < 1": {"right": 1.0},
     "prestress.width: 0.0; allowed: a finite number and > 0": {"width": 0.0},
-    "prestress.steps: position is 0.0; allowed: any other number": {"steps": ((0.0, 0.3),)},
-    "prestress.steps: (1.0,); allowed: a list of [position, level]": {"steps": ((1.0,),)},
+    "prestress.steps: positions [0.0]; allowed: different ones": {"steps": ((0.0, 0.3),)},
+    "prestress.steps: ((1.0,),); allowed: a list of [position, level]": {"steps": ((1.0,),)},
     "prestress.steps: 3.0; allowed: a list of [position, level]": {"steps": 3.0},
     "prestress.steps: array(0.5); allowed: a list of": {"steps": np.array(0.5)},
     "prestress.steps position: inf; allowed: a finite number": {"steps": ((math.inf, 0.1),)},
     "prestress.steps level: 1.2; allowed: a finite number and < 1": {"steps": ((30.0, 1.2),)},
     "prestress.bumps width: 0.0; allowed: a finite number and > 0": {"bumps": ((1.0, 0.1, 0.0),)},
-    "prestress.bumps: (1.0, '0.1', 1.0); allowed: a list": {"bumps": ((1.0, "0.1", 1.0),)},
+    "prestress.bumps amplitude: '0.1'; allowed: a finite": {"bumps": ((1.0, "0.1", 1.0),)},
     "prestress.bumps: 'abc'; allowed: a list of [centre, amplitude, width]": {"bumps": "abc"},
 }
 ATTRIBUTES = {

@@ -14,7 +14,8 @@ from slippulse.configuration.expand import expand, promise_of
 from slippulse.configuration.resolve import accuracy_of, resolve
 from slippulse.configuration.schema import Configuration
 from slippulse.model.cost import bound_of
-from slippulse.model.scene import ORDERS, RELEASES
+from slippulse.model.release import RELEASES
+from slippulse.model.scene import ORDERS
 from slippulse.model.stability import MARGIN, largest_step
 from slippulse.solver.fixed_step import LATTICES
 

@@ -12,7 +12,7 @@ import tolerances as tol
 from reference.lattice_state import elastic_stress, sliding
 
 import slippulse as sp
-from slippulse.model.scene import RELEASES
+from slippulse.model.release import RELEASES
 from slippulse.solver.fixed_step import LATTICES
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from slippulse.model.balance import root_to_last_bit
-from slippulse.model.roots import increasing_roots, root_between, roots_between
+from slippulse.model.roots import root_between
+from slippulse.theory.vector_roots import increasing_roots, roots_between
 
 VALUES = np.array([0.1, 0.5, 2.0, 900.0])
 

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from reference.lattice_state import sliding, threshold_stress, total_stress
 
 import slippulse as sp
-from slippulse.model.scene import ORDERS, RELEASES
+from slippulse.model.release import RELEASES
+from slippulse.model.scene import ORDERS
 from slippulse.model.stability import largest_step
 from slippulse.solver.fixed_step import LATTICES
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from slippulse.claims.reading import read_entries
 from slippulse.configuration.accuracy import promised
 from slippulse.configuration.altered import Alterations
-from slippulse.configuration.expand import run_count
+from slippulse.configuration.runs import run_count
 from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import read_config, read_overlay

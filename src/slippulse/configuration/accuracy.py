@@ -15,12 +15,14 @@ from typing import Any, NamedTuple
 from ..model.checks import check_choice, check_kind, check_number, short_repr
 from ..model.friction import COULOMB, friction_from
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES, Scene
+from ..model.release import RELEASES
+from ..model.scene import Scene
 from ..model.stability import chosen_step
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
-from .expand import promise_of, runs
+from .expand import promise_of
 from .problems import ConfigError
+from .runs import entries
 
 # The constants below were found for beta/dx up to 1. At 10 the longest stable step alone errs by
 # 3e-3 in the front speed at any spacing, and a grid study does not see that.
@@ -156,9 +158,9 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
         raise ConfigError(f"friction: {short_repr(laws)}; allowed: {allowed}")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
-    for run in runs(simulation):
-        common |= {"release": run.release, "gamma": run.gamma, "damping_ratio": run.damping}
-        spacings.append(settings_for(promise, prestress=run.profile, **common)["dx"])
+    for release, prestress, gamma, _, damping_ratio, _ in entries(simulation):
+        common |= {"release": release, "gamma": gamma, "damping_ratio": damping_ratio}
+        spacings.append(settings_for(promise, prestress=prestress, **common)["dx"])
     return {**simulation, "spacings": spacings}
 
 

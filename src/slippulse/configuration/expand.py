@@ -1,30 +1,17 @@
-"""Resolved simulations, plain builtins, expanded into scenes. Every job imports this module."""
+"""Resolved simulations expanded into scenes."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import product
-from typing import NamedTuple
+from collections.abc import Mapping
 
 import numpy as np
 
-from ..data.chunks import runs_of
 from ..model.balance import prestress_balance_position
-from ..model.friction import COULOMB, Friction, friction_from
 from ..model.prestress import Prestress
+from ..model.run import Run
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..model.stability import MARGIN, chosen_step
-
-
-class Run(NamedTuple):
-    """One run of a simulation: one entry of each of its lists."""
-
-    release: str
-    profile: Prestress
-    gamma: float
-    dx: float | None
-    damping: float
-    friction: Friction
+from .runs import runs
 
 
 def promise_of(simulation: Mapping) -> float | None:
@@ -38,7 +25,7 @@ def promise_of(simulation: Mapping) -> float | None:
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     """Scenes of a resolved simulation, or of a chunk, and what each samples; or ValueError."""
-    scenes = [_scene(simulation, run, index) for index, run in enumerate(runs(simulation))]
+    scenes = [_scene(simulation, run) for run in runs(simulation)]
     rule = simulation.get("samples")
     if rule is None:
         return scenes, [None] * len(scenes)
@@ -48,77 +35,25 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     return scenes, [Samples(instants, positions) for instants in times]
 
 
-def runs(simulation: Mapping) -> Iterator[Run]:
-    """The runs of a resolved simulation, or of a chunk of it, one after the other."""
-    chunk = simulation.get("chunk")
-    wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
-    for number, entries in enumerate(product(*_axes(simulation))):
-        if wanted is None or number in wanted:
-            release, *shape, gamma, dx, damping, law = entries
-            if "profiles" in simulation:
-                profile = Prestress(**shape[0])
-            else:
-                left, right, width, steps = shape
-                profile = Prestress(left, left if right is None else right, width, steps=steps)
-            yield Run(release, profile, gamma, dx, damping, friction_from(law))
-
-
-def run_count(simulation: Mapping) -> int:
-    """Number of runs of a resolved simulation, the product of the lengths of its lists."""
-    return math.prod(map(len, _axes(simulation)))
-
-
-def _axes(simulation: Mapping) -> list[Sequence]:
-    """The lists whose product the runs are."""
-    release = simulation["release"]
-    releases = [release] if isinstance(release, str) else release
-    if "profiles" in simulation:
-        shapes = [simulation["profiles"]]
-    else:
-        right, rule = simulation["right"], simulation.get("beyond")
-        # Each level is one step, at the position from which the level holds.
-        steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-        rights = [None] if right == "same" else right
-        shapes = [simulation["left"], rights, simulation["width"], steps]
-    gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
-    damping = simulation.get("beta", simulation["damping_ratio"])
-    laws = simulation.get("friction", [COULOMB.mapping()])
-    return [releases, *shapes, gamma, dx, damping, laws]
-
-
-def _scene(simulation: Mapping, run: Run, index: int) -> Scene:
-    accuracy, rule = simulation["accuracy"], simulation["spacing"]
-    if "fixed" in rule:
-        dx = float(rule["fixed"])
-    else:
-        spacing = simulation["spacings"][index] if "spacings" in simulation else run.dx
-        if spacing is None:
-            powers = run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
-            spacing = accuracy["dx"] * rule["scale"] * powers
-        # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.
-        dx = float(f"{simulation['coarser'] * spacing:.12g}")
-    beta = run.damping if "beta" in simulation else run.damping * dx
+def _scene(simulation: Mapping, run: Run) -> Scene:
+    accuracy, scheme = simulation["accuracy"], simulation["scheme"]
     # The simulation's own step, or the preset's, cut where it is not stable or accurate.
     traits, largest = run.friction.traits, accuracy["max_step"]
-    ratios = beta / dx, run.gamma * dx**2, traits.steepest * dx
-    step = chosen_step(simulation["scheme"], accuracy["order"], *ratios, enough=largest)
-    step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / dx))
+    ratios = run.damping_ratio, run.gamma * run.dx**2, traits.steepest * run.dx
+    step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
+    step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / run.dx))
     if "promise" in accuracy:
         step = min(step, largest)
-    if "fixed" in rule:
+    if "fixed" in simulation["spacing"]:
         step *= simulation["coarser"]
-    common = ("boundary", "scheme", "friction_ratio", "resolved_blocks")
     return Scene(
-        prestress=run.profile,
-        duration=_duration(simulation["duration"], run.profile, run.gamma),
-        dx=dx,
-        gamma=run.gamma,
-        beta=beta,
-        release=run.release,
+        **run._asdict(),
+        duration=_duration(simulation["duration"], run.prestress, run.gamma),
+        scheme=scheme,
         max_step=step,
         order=accuracy["order"],
-        friction=run.friction,
-        **{key: simulation[key] for key in common},
+        friction_ratio=simulation["friction_ratio"],
+        resolved_blocks=simulation["resolved_blocks"],
     )
 
 

@@ -10,8 +10,9 @@ from ..model.scene import Scene
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
 from .accuracy import promised
-from .expand import expand, run_count
+from .expand import expand
 from .resolve import accuracy_of, all_simulations, corners, resolve
+from .runs import run_count
 from .schema import Configuration
 
 # A sweep says nothing about the continuum if every run is below this fraction of resolved_blocks.

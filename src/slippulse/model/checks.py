@@ -8,6 +8,14 @@ from typing import Any
 
 import numpy as np
 
+# Sign of each limit of a number, and the comparison that it stands for.
+LIMITS = {
+    "above": (">", operator.gt),
+    "at_least": (">=", operator.ge),
+    "at_most": ("<=", operator.le),
+    "below": ("<", operator.lt),
+}
+
 
 def short_repr(value: object) -> str:
     """A value as a refusal prints it: on one line, and short."""
@@ -18,34 +26,17 @@ def short_repr(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def check_number(
-    key: str,
-    value: Any,
-    *,
-    above: float | None = None,
-    at_least: float | None = None,
-    at_most: float | None = None,
-    below: float | None = None,
-    integer: bool = False,
-) -> None:
-    """Refuse anything but a finite number, or an integer, within the bounds."""
-    bounds = (
-        (">", operator.gt, above),
-        (">=", operator.ge, at_least),
-        ("<=", operator.le, at_most),
-        ("<", operator.lt, below),
-    )
-    given = [(sign, holds, limit) for sign, holds, limit in bounds if limit is not None]
+def check_number(key: str, value: Any, integer: bool = False, **limits: float) -> None:
+    """Refuse anything but a finite number, or an integer, within some of LIMITS."""
     kind, word = (Integral, "whole") if integer else (Real, "finite")
-    known = isinstance(value, kind)
     try:
-        known = known and not isinstance(value, bool | np.bool_) and math.isfinite(value)
+        known = isinstance(value, kind) and not isinstance(value, bool) and math.isfinite(value)
     except OverflowError:
         known = False
-    if known and all(holds(value, limit) for _, holds, limit in given):
+    if known and all(LIMITS[name][1](value, limit) for name, limit in limits.items()):
         return
-    limits = "".join(f" and {sign} {limit:.10g}" for sign, _, limit in given)
-    raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{limits}")
+    text = "".join(f" and {LIMITS[name][0]} {limit:.10g}" for name, limit in limits.items())
+    raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{text}")
 
 
 def check_runaway(gamma: float, alpha: float, key: str = "rate_strengthening") -> None:

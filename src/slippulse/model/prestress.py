@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
-from numbers import Real
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -73,13 +73,9 @@ class Prestress:
             rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
             object.__setattr__(self, name, rows)
         positions = [position for position, _ in self.steps]
-        for position in positions:
-            if position == 0.0:
-                allowed = "any other number (see left, right)"
-                raise ValueError(f"prestress.steps: position is 0.0; allowed: {allowed}")
-            if positions.count(position) > 1:
-                allowed = "different positions"
-                raise ValueError(f"prestress.steps: position {position} twice; allowed: {allowed}")
+        if 0.0 in positions or len({*positions}) < len(positions):
+            allowed = "different ones, none of them 0 (see left, right)"
+            raise ValueError(f"prestress.steps: positions {positions}; allowed: {allowed}")
 
     @property
     def symmetric(self) -> bool:
@@ -121,15 +117,11 @@ class Prestress:
         tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps:
             return tau
-
         # Bumps at equal distances are first added to each other, so that a mirrored profile is
         # mirrored to the last bit.
-        def distance(bump: tuple[float, float, float]) -> tuple[float, float, float]:
-            centre, amplitude, width = bump
-            return abs(centre), amplitude, width
-
-        for _, equal in groupby(sorted(self.bumps, key=distance), key=distance):
-            tau = tau + sum(a * np.exp(-0.5 * ((x - centre) / b) ** 2) for centre, a, b in equal)
+        bumps = sorted((abs(centre), *shape, centre) for centre, *shape in self.bumps)
+        for (_, size, width), equal in groupby(bumps, key=itemgetter(0, 1, 2)):
+            tau = tau + sum(size * np.exp(-0.5 * ((x - bump[3]) / width) ** 2) for bump in equal)
         # The tail of a distant bump leaves the peak within rounding of the threshold, which it is
         # meant to meet.
         return np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau)
@@ -165,37 +157,29 @@ def prestress_from(attributes: Mapping) -> Prestress:
     numbers = {name: attributes[name] for name in NUMBERS}
     text = attributes["steps_and_bumps"]
     try:
-        parts = json.loads(text)
-        steps, bumps = parts["steps"], parts["bumps"]
+        parts = {name: json.loads(text)[name] for name in PARTS}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
-    return Prestress(**numbers, steps=steps, bumps=bumps)
+    return Prestress(**numbers, **parts)
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:
-    a = (lower - centre) / (math.sqrt(2.0) * width)
-    b = (upper - centre) / (math.sqrt(2.0) * width)
-    scale = width * math.sqrt(0.5 * math.pi)
-    # On one side of the centre the areas of the tails do not cancel.
-    if a > 0.0:
-        return scale * (math.erfc(a) - math.erfc(b))
+    a, b = ((end - centre) / (math.sqrt(2.0) * width) for end in (lower, upper))
     if b < 0.0:
-        return scale * (math.erfc(-b) - math.erfc(-a))
-    return scale * (math.erf(b) - math.erf(a))
+        a, b = -b, -a
+    # On one side of the centre the areas of the tails do not cancel.
+    area = math.erfc(a) - math.erfc(b) if a > 0.0 else math.erf(b) - math.erf(a)
+    return width * math.sqrt(0.5 * math.pi) * area
 
 
 def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:
     allowed = f"a list of [{', '.join(parts)}]"
-    iterable = hasattr(rows, "__iter__") and getattr(rows, "ndim", 1) != 0
-    if isinstance(rows, str | bytes | Mapping) or not iterable:
-        raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
-    tuples = []
-    for row in rows:
-        complete = hasattr(row, "__len__") and len(row) == len(parts)
-        if not complete or not all(isinstance(value, Real) for value in row):
-            raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
-        for (part, bounds), value in zip(parts.items(), row, strict=True):
-            check_number(f"{key} {part}", value, **bounds)
-        tuples.append(tuple(map(float, row)))
-    return tuple(tuples)
+    try:
+        named = [dict(zip(parts, row, strict=True)) for row in rows]
+    except (TypeError, ValueError):
+        raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}") from None
+    for row in named:
+        for part, value in row.items():
+            check_number(f"{key} {part}", value, **parts[part])
+    return tuple(tuple(map(float, row.values())) for row in named)

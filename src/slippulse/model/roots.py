@@ -1,16 +1,6 @@
-"""Roots of functions: of one function of a float, and of many functions at once.
-
-Many functions are given as one, ``function(x, which)``: it has the values at x, a flat array, of
-the functions that the indices ``which`` number. The compiled kernels have their own root finders.
-"""
+"""Root of a function of one number."""
 
 from collections.abc import Callable
-
-import numpy as np
-
-Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# Secants of `increasing_roots` that are enough for any function that is nearly linear.
-MOST_SECANTS = 200
 
 
 def root_between(
@@ -25,78 +15,3 @@ def root_between(
     from scipy.optimize import brentq
 
     return float(brentq(function, lower, upper, xtol=xtol, rtol=rtol))
-
-
-@np.errstate(divide="ignore", invalid="ignore")
-def roots_between(
-    function: Functions,
-    lower: np.ndarray,
-    upper: np.ndarray,
-    at_lower: np.ndarray,
-    at_upper: np.ndarray,
-    xtol: float,
-) -> np.ndarray:
-    """Roots of many functions by Chandrupatla's method, which is Brent's without branches."""
-    if np.any(at_lower * at_upper > 0.0):
-        raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
-    # x1 is the newest end of the bracket, x2 the other one, and x3 the end that x1 replaced.
-    x1, f1 = lower, at_lower
-    x2, f2 = upper, at_upper
-    out = np.array(upper)
-    alive = np.arange(upper.size)
-    fraction = at_lower / (at_lower - at_upper)
-    while alive.size:
-        x = x1 + fraction * (x2 - x1)
-        f = function(x, alive)
-        keeps_sign = (f > 0.0) == (f1 > 0.0)
-        x3, x2 = np.where(keeps_sign, (x1, x2), (x2, x1))
-        f3, f2 = np.where(keeps_sign, (f1, f2), (f2, f1))
-        out[alive] = np.where(np.abs(f2) < np.abs(f), x2, x)
-        # No finer than floating point.
-        least = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
-        going = (least < 0.5) & (f != 0.0)
-        alive = alive[going]
-        x1, x2, x3 = np.array([x, x2, x3])[:, going]
-        f1, f2, f3 = np.array([f, f2, f3])[:, going]
-        xi = (x1 - x2) / (x3 - x2)
-        phi = (f1 - f2) / (f3 - f2)
-        # Inverse quadratic interpolation where it stays in the bracket, else the middle.
-        first = f1 / (f2 - f1) * f3 / (f2 - f3)
-        second = (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
-        inside = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
-        fraction = np.where(inside, first + second, 0.5)
-        fraction = np.clip(fraction, least[going], 1.0 - least[going])
-    return out
-
-
-def increasing_roots(
-    function: Functions, guess: np.ndarray, lower: np.ndarray, upper: np.ndarray
-) -> np.ndarray:
-    """Roots of many increasing functions that are nearly linear, by secants or the middle."""
-    low, high = np.array(lower), np.array(upper)
-    alive = np.arange(guess.size)
-    before = np.array(guess)
-    value_before = function(before, alive)
-    x = np.clip(before - np.clip(value_before, -2.0, 2.0), low, high)
-    for _ in range(MOST_SECANTS):
-        value = function(x[alive], alive)
-        high[alive] = np.where(value > 0.0, np.minimum(high[alive], x[alive]), high[alive])
-        low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
-        change = value - value_before[alive]
-        flat = change == 0.0
-        last = x[alive] - before[alive]
-        step = np.where(flat, 0.0, -value * last / np.where(flat, 1.0, change))
-        following = x[alive] + step
-        outside = (following <= low[alive]) | (following >= high[alive])
-        # A secant's error is the product of the last two steps, up to a factor of order 1.
-        error = np.abs(step) * np.minimum(np.abs(last), 1.0)
-        tiny = error <= 1e-15 * (1.0 + np.abs(x[alive]))
-        middle = 0.5 * (low[alive] + high[alive])
-        before[alive] = x[alive]
-        value_before[alive] = value
-        x[alive] = np.where(outside & ~tiny, middle, following)
-        narrow = high[alive] - low[alive] <= 1e-13 * (1.0 + np.abs(x[alive]))
-        alive = alive[~(tiny | narrow | (value == 0.0))]
-        if alive.size == 0:
-            return x
-    raise ArithmeticError(f"no root of an increasing function was found near {x[alive[0]]!r}")

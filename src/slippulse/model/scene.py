@@ -12,10 +12,10 @@ from .checks import check_choice, check_kind, check_number, check_runaway, short
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, prestress_from
 from .recorded_law import law_of
+from .release import RELEASES
 from .stability import MARGIN, largest_step
 
 BOUNDARIES = ("displacement", "stress")
-RELEASES = ("total", "elastic")
 # The lattice in two ways, and the exact solution of its continuum limit.
 SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
@@ -132,13 +132,12 @@ class Scene:
             check_number(name, getattr(self, name), **bounds)
             # Single-precision or integer numbers would be computed with as such, and compiled for.
             object.__setattr__(self, name, float(getattr(self, name)))
-        width = self.prestress.width
-        if width < self.dx:
+        if self.prestress.width < self.dx:
             allowed = f">= dx = {self.dx:g}, which must see the peak"
-            raise ValueError(f"prestress.width: {width!r}; allowed: {allowed}")
-        farthest = FARTHEST_BUMP * self.dx
+            raise ValueError(f"prestress.width: {self.prestress.width!r}; allowed: {allowed}")
         for centre, _, width in self.prestress.bumps:
-            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=farthest)
+            reach = abs(centre) + 4.0 * width
+            check_number("prestress.bumps reach", reach, at_most=FARTHEST_BUMP * self.dx)
         self._check_step()
 
     def _check_physics(self) -> None:
@@ -154,10 +153,10 @@ class Scene:
             raise ValueError(f"scheme: {self.scheme!r}; allowed: {allowed}")
 
     def _check_step(self) -> None:
-        stiffness = self.gamma * self.dx**2
         bound = self._stable_step(enough=self.max_step / MARGIN)
-        ratios = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
-        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
+        damping_ratio, stiffness, _ = self.ratios
+        ratios = f"beta/dx = {damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
+        if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
         # An overflow above makes the step of a preset 0, and is then what must be named.
@@ -167,10 +166,9 @@ class Scene:
         if self.max_step > bound:
             if self.friction != COULOMB:
                 ratios += f", friction {json.dumps(self.friction.mapping())}"
-            raise ValueError(
-                f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the"
-                f" stability bound of scheme {self.scheme!r} at {ratios}"
-            )
+            allowed = f"<= {bound:.4g} (in units of dx), the stability bound of scheme"
+            refused = f"max_step: {self.max_step!r}; allowed: {allowed} {self.scheme!r}"
+            raise ValueError(f"{refused} at {ratios}")
 
     @property
     def damping_ratio(self) -> float:
@@ -192,10 +190,14 @@ class Scene:
         """Largest stable time step in units of dx."""
         return self._stable_step(math.inf)
 
+    @property
+    def ratios(self) -> tuple[float, float, float]:
+        """The numbers that a stable step follows from, for `slippulse.model.stability`."""
+        traits = self.friction.traits
+        return self.damping_ratio, self.gamma * self.dx**2, traits.steepest * self.dx
+
     def _stable_step(self, enough: float) -> float:
-        stiffness, drag = self.gamma * self.dx**2, self.friction.traits.steepest * self.dx
-        ratios = self.damping_ratio, stiffness, drag
-        bound = largest_step(self.scheme, self.order, *ratios, enough=enough)
+        bound = largest_step(self.scheme, self.order, *self.ratios, enough=enough)
         return min(bound, self.friction.traits.longest_step / self.dx)
 
     def attributes(self) -> dict:
@@ -237,8 +239,8 @@ class Scene:
             raise ValueError(f"attributes: {short_repr(attributes)}; allowed: {allowed}")
         try:
             for name, kind in KINDS.items():
-                largest = 1 if kind is bool else None
-                check_number(name, attributes[name], integer=True, at_least=0, at_most=largest)
+                limits = {"at_most": 1} if kind is bool else {}
+                check_number(name, attributes[name], integer=True, at_least=0, **limits)
             values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
             values["prestress"] = prestress_from(attributes)
             values |= {name: kind(values[name]) for name, kind in KINDS.items()}

@@ -5,26 +5,26 @@ import pandas as pd
 
 from ..measurement.regime import UNDECIDED, pulse_regime
 from ..model.checks import check_number
-from ..model.scene import Scene
+from ..model.run import Run
 from ..theory.front_speeds import front_speed
 from .numbers import level, ratio
 
 
-def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
+def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Column exact_regime."""
-    return pd.DataFrame({"exact_regime": [_regime(scene, settings["still"]) for scene in scenes]})
+    return pd.DataFrame({"exact_regime": [_regime(run, settings["still"]) for run in runs]})
 
 
-def _regime(scene: Scene, still: float) -> str:
-    profile = scene.prestress
+def _regime(run: Run, still: float) -> str:
+    profile = run.prestress
     if profile.bumps:
         return UNDECIDED
     if profile.steps:
         # A pulse that formed where the pre-stress is 0 meets another level.
-        forms = scene.boundary == "stress" and profile.left < 0.0 == profile.right
+        forms = run.boundary == "stress" and profile.left < 0.0 == profile.right
         ahead = all(position > 0.0 for position, _ in profile.steps)
-        return regime_of_far_pulse(level(scene, "right")) if forms and ahead else UNDECIDED
-    physics = scene.gamma, ratio(scene), scene.release
+        return regime_of_far_pulse(level(run, "right")) if forms and ahead else UNDECIDED
+    physics = run.gamma, ratio(run), run.release
     return final_regime(profile.left, profile.right, *physics, still)
 
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pandas as pd
 
-from ..model.scene import Scene
+from ..model.run import Run
 from ..theory.front_speeds import front_speed, front_speed_undamped, lattice_front_speed
 from .numbers import NAN, SIDES, level, or_nan, ratio
 
@@ -14,29 +14,29 @@ from .numbers import NAN, SIDES, level, or_nan, ratio
 COARSE = 1e-3
 
 
-def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
+def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns KIND_front_speed_SIDE: paper, exact without leaf springs, lattice with them at dx."""
     table: dict[str, np.ndarray] = {}
     for side in SIDES:
-        levels = np.array([level(scene, side) for scene in scenes])
+        levels = np.array([level(run, side) for run in runs])
         supersonic = (levels > 0.0) & (levels < 1.0)
         paper = np.full(levels.shape, NAN)
         paper[supersonic] = front_speed_undamped(levels[supersonic])
         table[f"paper_front_speed_{side}"] = paper
-        table[f"exact_front_speed_{side}"] = exact_speeds(scenes, side)
+        table[f"exact_front_speed_{side}"] = exact_speeds(runs, side)
         on_lattices = [
-            _lattice_speed(stress, scene.gamma, scene.dx, ratio(scene), scene.release)
-            for scene, stress in zip(scenes, levels.tolist(), strict=True)
+            _lattice_speed(stress, run.gamma, run.dx, ratio(run), run.release)
+            for run, stress in zip(runs, levels.tolist(), strict=True)
         ]
         table[f"lattice_front_speed_{side}"] = np.array(on_lattices)
     return pd.DataFrame(table)
 
 
-def exact_speeds(scenes: list[Scene], side: str) -> np.ndarray:
-    """Speed of the front of each scene without leaf springs; NaN where it is not supersonic."""
-    levels = np.array([level(scene, side) for scene in scenes])
-    ratios = np.array([ratio(scene) for scene in scenes])
-    releases = np.array([scene.release for scene in scenes])
+def exact_speeds(runs: list[Run], side: str) -> np.ndarray:
+    """Speed of the front of each run without leaf springs; NaN where it is not supersonic."""
+    levels = np.array([level(run, side) for run in runs])
+    ratios = np.array([ratio(run) for run in runs])
+    releases = np.array([run.release for run in runs])
     speeds = np.full(levels.shape, NAN)
     for release in ("total", "elastic"):
         chosen = (levels > 0.0) & (levels < 1.0) & (releases == release)

@@ -3,21 +3,21 @@
 from collections.abc import Callable
 from typing import TypeVar
 
-from ..model.scene import Scene
+from ..model.run import Run
 
 Result = TypeVar("Result")
 NAN = float("nan")
 SIDES = {"left": -1e300, "right": 1e300}
 
 
-def level(scene: Scene, side: str) -> float:
+def level(run: Run, side: str) -> float:
     """Pre-stress far from the nucleation point on one of SIDES."""
-    return float(scene.prestress.level(SIDES[side]))
+    return float(run.prestress.level(SIDES[side]))
 
 
-def ratio(scene: Scene) -> float:
-    """beta/dx, rounded so that scenes of one ratio have one number, whatever their dx."""
-    return float(f"{scene.damping_ratio:.12g}")
+def ratio(run: Run) -> float:
+    """beta/dx, rounded so that runs of one ratio have one number, whatever their dx."""
+    return float(f"{run.damping_ratio:.12g}")
 
 
 def known(find: Callable[[], Result]) -> Result | None:

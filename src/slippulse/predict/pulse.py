@@ -3,40 +3,40 @@
 import numpy as np
 import pandas as pd
 
-from ..model.scene import Scene
+from ..model.run import Run
 from ..theory.closed_pulse import SteadyPulse, paper_pulse
 from ..theory.pulse import steady_pulse
 from .front import exact_speeds
 from .numbers import NAN, known, level
 
 
-def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
+def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns paper_pulse_NUMBER (no damping), exact_pulse_NUMBER and exact_left_pulse_NUMBER."""
-    speeds = [exact_speeds(scenes, side) for side in ("left", "right")]
-    return pd.DataFrame([_pulses(*row) for row in zip(scenes, *speeds, strict=True)])
+    speeds = [exact_speeds(runs, side) for side in ("left", "right")]
+    return pd.DataFrame([_pulses(*row) for row in zip(runs, *speeds, strict=True)])
 
 
-def _pulses(scene: Scene, left_speed: float, right_speed: float) -> dict[str, float]:
-    ahead = level(scene, "right")
+def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
+    ahead = level(run, "right")
     paper = None
-    if scene.boundary == "displacement" and 0.0 < ahead < 1.0:
-        paper = known(lambda: paper_pulse(ahead, scene.gamma))
+    if run.boundary == "displacement" and 0.0 < ahead < 1.0:
+        paper = known(lambda: paper_pulse(ahead, run.gamma))
     row: dict[str, float] = {}
-    for kind, pulse in (("paper", paper), ("exact", _exact(scene, "right", right_speed))):
+    for kind, pulse in (("paper", paper), ("exact", _exact(run, "right", right_speed))):
         for name in ("width", "slip", "peak_velocity"):
             row[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
         row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
-    left = _exact(scene, "left", left_speed)
+    left = _exact(run, "left", left_speed)
     for name in ("slip", "peak_velocity"):
         row[f"exact_left_pulse_{name}"] = getattr(left, name, NAN)
     return row
 
 
-def _exact(scene: Scene, side: str, speed: float) -> SteadyPulse | None:
+def _exact(run: Run, side: str, speed: float) -> SteadyPulse | None:
     """Steady pulse on a side, where its front outruns the waves."""
-    if scene.boundary != "displacement" or not speed > 1.0:
+    if run.boundary != "displacement" or not speed > 1.0:
         return None
-    return known(lambda: steady_pulse(level(scene, side), scene.gamma, scene.beta, speed))
+    return known(lambda: steady_pulse(level(run, side), run.gamma, run.beta, speed))
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

@@ -7,30 +7,30 @@ import pandas as pd
 from ..model.balance import prestress_balance_position
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from ..model.scene import Scene
+from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from .numbers import NAN, known, level, or_nan, ratio
 
 
-def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
+def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns exact_NUMBER of a transition and its first stick, or its balance and far pulse."""
-    return pd.DataFrame([_row(scene, settings["share"]) for scene in scenes])
+    return pd.DataFrame([_row(run, settings["share"]) for run in runs])
 
 
-def _row(scene: Scene, fraction: float) -> dict[str, float]:
+def _row(run: Run, fraction: float) -> dict[str, float]:
     row = {"exact_transition_time": NAN, "exact_transition_length": NAN}
-    profile = scene.prestress
+    profile = run.prestress
     # Except for the balance, theory needs one Gaussian.
     gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
-    if scene.boundary == "displacement":
+    if run.boundary == "displacement":
         if gaussian and profile.left == profile.right > 0.0:
-            row |= _first_stick(profile, scene.gamma, ratio(scene), scene.release)
+            row |= _first_stick(profile, run.gamma, ratio(run), run.release)
         return row
-    if level(scene, "left") < 0.0 == level(scene, "right"):
+    if level(run, "left") < 0.0 == level(run, "right"):
         row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
     if gaussian and profile.left < 0.0 == profile.right:
-        unit = _arrest(profile.left, ratio(scene), scene.release, fraction)
+        unit = _arrest(profile.left, ratio(run), run.release, fraction)
         # All lengths and times are proportional to the width.
         row |= {name: value * profile.width for name, value in unit.items()}
     return row

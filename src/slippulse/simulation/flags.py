@@ -52,9 +52,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
 def long_step(scene: Scene) -> bool:
     """True if a Taylor step errs, above all where damping is strong."""
-    stiffness, drag = scene.gamma * scene.dx**2, scene.friction.traits.steepest * scene.dx
-    ratios = scene.damping_ratio, stiffness, drag
-    return scene.max_step > accurate_step(LONG_STEP, scene.order, *ratios)
+    return scene.max_step > accurate_step(LONG_STEP, scene.order, *scene.ratios)
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:

@@ -6,9 +6,9 @@ from importlib import import_module
 import numpy as np
 import pandas as pd
 
-from ..configuration.expand import expand
+from ..configuration.runs import runs
 from ..data.tables import save_table
-from ..model.scene import Scene
+from ..model.run import Run
 
 # Modules of `predict`.
 TOPICS = ("final_regime", "front", "pulse", "transition")
@@ -18,14 +18,14 @@ DIGITS = 15
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: predicted. Settings: sweep (resolved), topics; share, still (of `measure`)."""
-    scenes, _ = expand(settings["sweep"])
-    save_table(predictions(settings["topics"], scenes, settings), outputs["predicted"], DIGITS)
+    table = predictions(settings["topics"], [*runs(settings["sweep"])], settings)
+    save_table(table, outputs["predicted"], DIGITS)
 
 
-def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+def predictions(topics: Iterable[str], swept: Sequence[Run], settings: Mapping) -> pd.DataFrame:
     """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
     modules = [import_module(f"slippulse.predict.{topic}") for topic in topics]
-    table = pd.concat([module.predictions(scenes, settings) for module in modules], axis=1)
+    table = pd.concat([module.predictions(swept, settings) for module in modules], axis=1)
     # Theory does not know the laws of friction that the exact continuum does not.
-    unknown = ["continuum" not in scene.friction.schemes for scene in scenes]
+    unknown = ["continuum" not in one.friction.schemes for one in swept]
     return table.mask(np.array(unknown)) if any(unknown) else table

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..configuration.expand import expand
+from ..configuration.runs import runs
 from ..theory.arrest import ArrestingCrack
 
 # The simulation whose parameters the path has.
@@ -17,10 +17,10 @@ TO_GO = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Time, in units of |x_minus|, at which a fraction is still to go, by damping ratio."""
     parts = {}
-    for scene in expand(settings["sweeps"]["arrest"])[0]:
-        if scene.damping_ratio not in parts:
-            crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
+    for run in runs(settings["sweeps"]["arrest"]):
+        if run.damping_ratio not in parts:
+            crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
             times = np.array([crack.time_at_fraction(1.0 - to_go) for to_go in TO_GO])
             columns = {"time": times / -crack.balance_position, "to_go": TO_GO}
-            parts[scene.damping_ratio] = pd.DataFrame(columns)
+            parts[run.damping_ratio] = pd.DataFrame(columns)
     return pd.concat(parts, names=["damping_ratio"]).reset_index("damping_ratio")

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..configuration.expand import expand
+from ..configuration.runs import runs
 from ..theory.closed_pulse import paper_pulse
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
@@ -18,17 +18,17 @@ DAMPING = np.linspace(0.0, 1.0, 61) ** 2
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Roles curve (over the paper's formulas), and limit (dx -> 0 at fixed beta/dx: beta -> 0)."""
-    swept, (refined, *_) = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    swept, (refined, *_) = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
     left, ratio = refined.prestress.left, refined.damping_ratio
     pulse = steady_pulse(left, refined.gamma, damping_ratio=ratio, release=refined.release)
     limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in QUANTITIES]
     limits.append(("limit", left, ratio, "front_speed", pulse.speed))
-    scene, rows = swept[0], []
+    first, rows = swept[0], []
     ratios = max(one.damping_ratio for one in swept) * DAMPING
     for left in sorted({one.prestress.left for one in swept}):
-        paper = paper_pulse(left, scene.gamma)
-        for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
-            pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
+        paper = paper_pulse(left, first.gamma)
+        for ratio, speed in zip(ratios, front_speed(left, ratios, first.release), strict=True):
+            pulse = steady_pulse(left, first.gamma, ratio * first.dx, speed)
             for name in QUANTITIES:
                 value = getattr(pulse, name) / getattr(paper, name)
                 rows.append(("curve", left, ratio, name, value))

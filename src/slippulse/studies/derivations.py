@@ -10,7 +10,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES
+from ..model.release import RELEASES
 from ..predict.numbers import or_nan
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.barrier import barrier_depth, barrier_depth_estimate

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..model.scene import RELEASES
+from ..model.release import RELEASES
 from ..theory.front_speeds import prestress_for_speed
 
 NEEDS = {"sweeps": ()}

@@ -3,14 +3,13 @@
 import numpy as np
 import pandas as pd
 
-from ..configuration.expand import expand
+from ..configuration.runs import parameters
 from ..model.prestress import Prestress
-from ..model.roots import roots_between
-from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.closed_pulse import paper_transition_displacement
 from ..theory.front_speeds import front_speed
 from ..theory.fronts import Fronts, slip_velocity
+from ..theory.vector_roots import roots_between
 
 NEEDS = {
     "lists": ["manuscript/open_choices.yaml"],
@@ -29,8 +28,8 @@ PAPER = ["paper_transition_time", "paper_transition_length"]
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Exact transitions, and the paper's estimates, of each run of figure 5 at each choice."""
-    sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
-    springs, cracks = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
+    sweeps = (parameters(settings["sweeps"][name]) for name in NEEDS["sweeps"])
+    springs, cracks = map(pd.DataFrame, sweeps)
     springs, cracks = springs.query("left > 0"), cracks.query("left < 0")
     choices = tables["open_choices"].groupby("choice")
     values = choices.get_group("fraction")["value"]

@@ -17,8 +17,9 @@ import xarray as xr
 from ..measurement.fronts import fit_front, position_at
 from ..measurement.transition import between_fronts
 from ..model.prestress import Prestress
+from ..model.release import RELEASES
 from ..model.samples import Samples
-from ..model.scene import RELEASES, Scene
+from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture

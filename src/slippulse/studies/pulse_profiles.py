@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 from scipy.integrate import cumulative_trapezoid
 
-from ..configuration.expand import expand
-from ..model.scene import Scene
+from ..configuration.runs import runs
+from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
 from ..theory.pulse import steady_pulse
 
@@ -23,16 +23,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Simulation, run (its row), x (0 at the largest velocity), and FIELDS."""
     parts = []
     for name, sweep in settings["sweeps"].items():
-        for run, scene in enumerate(expand(sweep)[0]):
-            rows = far_profile(scene) if scene.boundary == "stress" else profile(scene)
-            parts.append(rows.assign(simulation=name, run=run))
+        for number, run in enumerate(runs(sweep)):
+            rows = far_profile(run) if run.boundary == "stress" else profile(run)
+            parts.append(rows.assign(simulation=name, run=number))
     return pd.concat(parts, ignore_index=True)
 
 
-def profile(scene: Scene) -> pd.DataFrame:
+def profile(run: Run) -> pd.DataFrame:
     """A steady pulse, its corners at the front and at the trailing edge kept sharp."""
-    level, ratio = scene.prestress.right, scene.damping_ratio
-    pulse = steady_pulse(level, scene.gamma, scene.beta, damping_ratio=ratio, release=scene.release)
+    level, ratio = run.prestress.right, run.damping_ratio
+    pulse = steady_pulse(level, run.gamma, run.beta, damping_ratio=ratio, release=run.release)
     even = np.linspace(-(1.0 + BEHIND), AHEAD, POINTS) * pulse.width
     edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
     xi = np.unique(np.concatenate([even, edges]))
@@ -40,9 +40,9 @@ def profile(scene: Scene) -> pd.DataFrame:
     return pd.DataFrame({"x": xi - pulse.peak_position} | fields)
 
 
-def far_profile(scene: Scene) -> pd.DataFrame:
+def far_profile(run: Run) -> pd.DataFrame:
     """The pulse far from its nucleation under a stress boundary, its integral and derivative."""
-    crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
+    crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
     pulse = np.array(crack.far_pulse())
     delay, velocity = pulse[:, np.argsort(pulse[0], kind="stable")]
     start = max(0, int(np.argmax(velocity > TAIL * velocity.max())) - 1)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..model.checks import check_choice, check_kind, check_number, check_runaway
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES
+from ..model.release import RELEASES
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel, Point
 from .prestress_pieces import EXTENT, Piece, analytic, gaussians, pieces
 from .riemann import kernel_rate

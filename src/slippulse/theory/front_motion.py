@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.checks import check_choice, check_number
-from ..model.scene import RELEASES
+from ..model.release import RELEASES
 
 # Velocity and stress are known at this number of substeps of a period.
 SUBSTEPS = 16

@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_number, check_runaway
-from ..model.roots import increasing_roots
-from ..model.scene import RELEASES
+from ..model.release import RELEASES
 from .domains import DOMAINS, broadcast_numbers, check_domains
+from .vector_roots import increasing_roots
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]

@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ..model.roots import roots_between
 from .curve import Point
 from .part import Part
 from .trailing_edge import TrailingEdge
+from .vector_roots import roots_between
 
 # The grid for the largest velocity has DENSER positions for each knot, where knots are farther
 # apart than this fraction of `Part.scale`.

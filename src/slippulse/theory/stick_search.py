@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.roots import roots_between
+from .vector_roots import roots_between
 
 # The first sample comes this fraction of a step after the release.
 LEAST = 0.01

@@ -20,9 +20,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.roots import root_between, roots_between
+from ..model.roots import root_between
 from .curve import SAME, Point
 from .part import Part
+from .vector_roots import roots_between
 
 # Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
 # this, and du/dt at the end to this fraction of itself.

@@ -1,0 +1,23 @@
+"""The physics of one run, which is all that theory needs of it."""
+
+from typing import NamedTuple
+
+from .friction_laws.law import Friction
+from .prestress import Prestress
+
+
+class Run(NamedTuple):
+    """One run of a simulation; a `Scene` has its duration and its numerical method, too."""
+
+    boundary: str
+    prestress: Prestress
+    gamma: float
+    dx: float
+    beta: float
+    release: str
+    friction: Friction
+
+    @property
+    def damping_ratio(self) -> float:
+        """The ratio beta/dx, which selects the front speed."""
+        return self.beta / self.dx
