@@ -15,6 +15,7 @@ import pytest
 import yaml
 from selection import small_sweep
 
+from slippulse.data.lock import take
 from slippulse.data.tables import load_table, save_table
 from slippulse.steps.inputs import given
 from slippulse.steps.reach import declared
@@ -24,20 +25,13 @@ from slippulse.steps.targets import selected
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # The first files run no kernel, while the kernels are compiled. Then come those that take longest,
-# so that the workers end together.
+# so that the workers end together, and those whose studies others read.
 WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals")
 WITHOUT_KERNELS += ("test_dependencies", "test_plans")
-FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
-# Folders of the compiled kernels that the workers share, and of a copy as `compile_all` left them.
-SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
-# The file beside both that says that they are ready; a worker waits this long for it, in seconds.
-READY, LONGEST_WAIT = "ready", 300.0
-
-
-def compile_into(folder: Path) -> None:
-    program = "from slippulse.solver.compilation import compile_all; compile_all()"
-    how = {"env": os.environ | {SHARED: str(folder)}, "check": True}
-    subprocess.run([sys.executable, "-c", program], **how)
+FIRST = (*WITHOUT_KERNELS, "test_studies", "test_every_figure", "test_faults")
+# The folder of what the workers share, and a file in it that says that the kernels are compiled; a
+# worker waits this long for it, in seconds.
+SHARED, READY, LONGEST_WAIT = "SLIPPULSE_SHARED_BY_TESTS", "ready", 300.0
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
@@ -45,40 +39,30 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if getattr(session.config.option, "numprocesses", None) and not hasattr(
         session.config, "workerinput"
     ):
-        folder = Path(tempfile.mkdtemp(prefix="slippulse-kernels-"))
-        os.environ |= {SHARED: str(folder / "shared"), UNTOUCHED: str(folder / "untouched")}
-        Thread(target=prepare, args=(folder,)).start()
+        folder = Path(tempfile.mkdtemp(prefix="slippulse-tests-"))
+        os.environ[SHARED] = str(folder)
+        Thread(target=compile_kernels, args=(folder,)).start()
 
 
-def prepare(folder: Path) -> None:
+def compile_kernels(folder: Path) -> None:
+    program = "from slippulse.solver.compilation import compile_all; compile_all()"
     try:
-        compile_into(folder / "untouched")
-        shutil.copytree(folder / "untouched", folder / "shared", dirs_exist_ok=True)
+        subprocess.run([sys.executable, "-c", program], check=True)
     finally:
         (folder / READY).touch()
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    worker = hasattr(item.config, "workerinput") and UNTOUCHED in os.environ
+    worker = hasattr(item.config, "workerinput") and SHARED in os.environ
     if worker and item.path.stem not in WITHOUT_KERNELS:
-        ready, end = Path(os.environ[UNTOUCHED]).with_name(READY), time.monotonic() + LONGEST_WAIT
+        ready, end = Path(os.environ[SHARED]) / READY, time.monotonic() + LONGEST_WAIT
         while not ready.exists() and time.monotonic() < end:
             time.sleep(0.1)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    if UNTOUCHED in os.environ and not hasattr(session.config, "workerinput"):
-        shutil.rmtree(Path(os.environ[UNTOUCHED]).parent)
-
-
-@pytest.fixture(scope="session")
-def untouched_kernels(tmp_path_factory) -> Path:
-    """A cache that holds the kernels that `compile_all` compiles, and no others."""
-    if UNTOUCHED in os.environ:
-        return Path(os.environ[UNTOUCHED])
-    folder = tmp_path_factory.mktemp("kernels")
-    compile_into(folder)
-    return folder
+    if SHARED in os.environ and not hasattr(session.config, "workerinput"):
+        shutil.rmtree(os.environ[SHARED])
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -111,8 +95,8 @@ def paper_accuracy(shipped: dict) -> dict:
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory) -> Path:
     """A folder in which workers read files that another has written."""
-    kernels = os.environ.get(UNTOUCHED)
-    return Path(kernels).parent if kernels else tmp_path_factory.mktemp("shared")
+    folder = os.environ.get(SHARED)
+    return Path(folder) if folder else tmp_path_factory.mktemp("shared")
 
 
 @pytest.fixture(scope="session")
@@ -121,14 +105,16 @@ def study(project, shipped, shared):
 
     def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = shared / f"studies/{name}.csv"
-        if not path.exists():
-            needs = declared(f"studies.{name}", "NEEDS")
-            settings = selected(shipped, needs.get("settings", ()), {})
-            sweeps = {sweep: small_sweep(shipped, sweep) for sweep in needs.get("sweeps", ())}
-            settings |= {"sweeps": sweeps} if sweeps else {}
-            module = import_module(f"slippulse.studies.{name}")
-            lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
-            save_table(module.table(data or {}, (tables or {}) | lists, settings), path)
+        # The other worker may be at work on it.
+        with take(path.with_suffix(".lock"), wait=True):
+            if not path.exists():
+                needs = declared(f"studies.{name}", "NEEDS")
+                settings = selected(shipped, needs.get("settings", ()), {})
+                sweeps = {sweep: small_sweep(shipped, sweep) for sweep in needs.get("sweeps", ())}
+                settings |= {"sweeps": sweeps} if sweeps else {}
+                module = import_module(f"slippulse.studies.{name}")
+                lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
+                save_table(module.table(data or {}, (tables or {}) | lists, settings), path)
         return load_table(path)
 
     return run

@@ -73,10 +73,6 @@ TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
 # Closed forms of the undamped pulse; the profile in its equation, by differences of step 1e-4.
 PULSE_THEORY, PULSE_EQUATION = 1e-12, 1e-5
 
-# The damped theory against its independently computed table, which has 7 digits.
-TABLE_DIGITS = 1e-6
-# Extrapolation of T_trans and L_trans from three spacings to the exact theory.
-TRANSITION = 5e-4
 # Share times and peak under a stress boundary at dx = 0.01.
 SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 # Observed orders may differ from the formal one by this much where the next order is not

@@ -1,4 +1,4 @@
-"""References for the speed of kernels: branch-free stencils, and the textbook scheme in numpy."""
+"""References for the speed of kernels: a branch-free stencil, and the textbook scheme in numpy."""
 
 import numpy as np
 
@@ -36,38 +36,6 @@ def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
         for k in range(3, 6):
             second_difference(w[k, 1 : n - 1], w[k - 2], w[k - 1], per_dx2, leaf, damping)
         advance_polynomials(w[0], w[1], w[2], w[3], w[4], w[5], h)
-
-
-@inner()
-def force_and_velocity(velocity, force, slip, tau, h, per_dx2, leaf, damping):
-    for i in range(force.shape[0]):
-        force[i] = (
-            per_dx2 * (slip[i + 2] - 2.0 * slip[i + 1] + slip[i])
-            - leaf * slip[i + 1]
-            + tau[i + 1]
-            + damping * (velocity[i + 2] - 2.0 * velocity[i + 1] + velocity[i])
-        )
-
-
-@inner()
-def kick_and_drift(slip, velocity, force, h):
-    for i in range(slip.shape[0]):
-        velocity[i] += h * force[i]
-        slip[i] += h * velocity[i]
-
-
-@entry
-def two_stage_steps(w, tau, steps, h, per_dx2, leaf, damping):
-    """Symplectic Euler in two branch-free passes over slip, velocity and force, the rows of w.
-
-    No scheme has less work on a block.
-    """
-    n = tau.shape[0]
-    slip, velocity = w[0], w[1]
-    force = w[2]
-    for _ in range(steps):
-        force_and_velocity(velocity, force[1 : n - 1], slip, tau, h, per_dx2, leaf, damping)
-        kick_and_drift(slip[1 : n - 1], velocity[1 : n - 1], force[1 : n - 1], h)
 
 
 def numpy_steps(

@@ -5,7 +5,6 @@ from itertools import chain
 import numpy as np
 import pytest
 
-from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve
 from slippulse.data.chunks import runs_of
 from slippulse.data.files import CONFIGURATION as VARIABLE
@@ -45,16 +44,6 @@ def test_costs_that_repeat_are_spread_whatever_their_period(inner):
     sums = np.array([cost[list(runs_of(number, 10, cost.size))].sum() for number in range(1, 11)])
     # With a fixed first chunk one of ten would have half of all costs at 10, 20 and 100.
     assert sums.max() < 1.2 * sums.mean()
-
-
-def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
-    sweep = config["simulations"]["transition_convergence"] | {"chunks": 5}
-    block = resolve(sweep, config["model"], paper_accuracy | {"dx": 0.01})
-    assert "chunks" not in block
-    scenes, _ = expand(block)
-    for number in range(1, 6):
-        chunk, _ = expand(block | {"chunk": [number, 5]})
-        assert chunk == [scenes[run] for run in runs_of(number, 5, len(scenes))]
 
 
 @pytest.fixture(scope="module")

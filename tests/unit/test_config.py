@@ -25,7 +25,6 @@ PULSE = {"boundary": "displacement", "gamma": 0.65, "damping_ratio": 0.1}
 PULSE["prestress"] = sp.Prestress(0.5, 0.5)
 CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
 
-
 accuracy_for = lambda config, **to: accuracy_of(Configuration.model_validate(config | to))
 ASKED = {"continuum_fixed_ratio": "dx", "burridge_knopoff_speed": "spacing"}
 ASKED |= {"continuum_fixed_beta": "beta"}

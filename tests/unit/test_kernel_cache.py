@@ -19,6 +19,14 @@ def run_with(folder, program: str, **variables: str) -> str:
     return subprocess.check_output(command, env=environment, text=True).strip()
 
 
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory):
+    """A cache that holds the kernels that `compile_all` compiles, and no others."""
+    folder = tmp_path_factory.mktemp("kernels")
+    run_with(folder, COMPILE_ALL)
+    return folder
+
+
 def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path, monkeypatch):
     copied = tmp_path / "solver"
     shutil.copytree(jit.SOURCES, copied, ignore=shutil.ignore_patterns("__pycache__"))
@@ -59,30 +67,27 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
 
 
 @pytest.mark.slow
-def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
-    compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}
-    assert {name.partition(".")[0] for name in compiled} == {"taylor", "fixed_step", "layer"}
+def test_a_simulation_finds_every_kernel_compiled(compiled):
+    kernels = {path.name for path in compiled.rglob("*.nbc")}
+    assert {name.partition(".")[0] for name in kernels} == {"taylor", "fixed_step", "layer"}
     for scheme in SCHEMES:
         profile = "'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1"
         scene = f"sp.Scene({profile}, beta=0.01, scheme={scheme!r}, order=8)"
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
-        run_with(untouched_kernels, f"import slippulse as sp; sp.simulate({scene}, {samples})")
-    assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
+        run_with(compiled, f"import slippulse as sp; sp.simulate({scene}, {samples})")
+    assert {path.name for path in compiled.rglob("*.nbc")} == kernels
 
 
 @pytest.mark.slow
-def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp_path):
+def test_kernels_that_are_compiled_are_not_compiled_again(compiled):
     """A kernel that is missing is compiled, and no other."""
-    folder = tmp_path / "kernels"
-    shutil.copytree(untouched_kernels, folder)
-
-    times = lambda: {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
+    times = lambda: {path.name: path.stat().st_mtime_ns for path in compiled.rglob("*.nbc")}
     before = times()
-    run_with(folder, COMPILE_ALL)
+    run_with(compiled, COMPILE_ALL)
     assert times() == before
-    textbook = next(path for path in folder.rglob("*advance_fixed*.nbc"))
+    textbook = next(path for path in compiled.rglob("*advance_fixed*.nbc"))
     textbook.unlink()
-    run_with(folder, COMPILE_ALL)
+    run_with(compiled, COMPILE_ALL)
     after = times()
     assert set(after) == set(before)
     assert {name for name in before if before[name] != after[name]} == {textbook.name}

@@ -78,7 +78,6 @@ CASES = [
     (STEADY, dict(left=0.04, centre=0.0, speeds=SLOW)),
 ]
 
-
 LATE = "late_front_speed_left"
 # The same, with numbers that decide.
 DECIDING = [

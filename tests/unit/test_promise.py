@@ -27,7 +27,6 @@ CRACK = COMMON | {"boundary": "stress", "left": -1.0, "right": 0.0, "beyond": 0.
 CRACK |= {"front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0}
 CRACK |= {"transition_state": "resolved"}
 
-
 # Numbers that are not promised under either boundary, by the beginning of their names; reasons.
 NOT_COVERED = {
     "front_intercept": "a small difference of large numbers",
@@ -46,7 +45,6 @@ NOT_COVERED = {
     "balance_distance": "computed from the pre-stress, no simulation",
     "beyond": "a parameter",
 }
-
 
 # Numbers of a run with changes that are covered, and others that are not.
 COVERS = [

@@ -217,7 +217,9 @@ def pulse_algebra(layer, tau, random):
     # (v^2 - 1)/v^2 = tau_0^2.
     equation = relative(tau**2 * printed[2] + gamma * printed[0], np.full(8, tau))
     fields = map(relative, pulse.profile(chi - 0.5 * np.pi / k), printed)
-    return [equation, pulse.width * k / np.pi, pulse.stress_drop / (2.0 * tau), *fields]
+    peak, speed = pulse.peak_velocity * np.sqrt(gamma), pulse.speed / front_speed_undamped(tau)
+    drop = np.array([pulse.stress_drop, gamma * pulse.slip]) / (2.0 * tau)
+    return [equation, pulse.width * k / np.pi, peak, speed, *drop, *fields]
 
 
 def transition_estimate_algebra(layer, tau, random):

@@ -60,8 +60,7 @@ def test_every_event_and_every_slip_agrees(case):
     assert max(differences(figure, chain).values()) < tol.CHAIN_ORDER_4
 
 
-@pytest.mark.parametrize("step", [0.5, 0.2])
-def test_no_event_is_stepped_over(step):
+def test_no_event_is_stepped_over():
     random, names = np.random.default_rng(1), ("releases", "sticks", "re_releases")
     for number in range(200):
         gamma, beta = random.uniform(0.05, 1.5), random.choice([0.0, 0.05, 0.2])
@@ -71,6 +70,6 @@ def test_no_event_is_stepped_over(step):
         gamma *= boundary == "displacement"
         scene = {"boundary": boundary, "gamma": gamma, "beta": beta, "prestress": profile}
         scene |= {"duration": 25.0, "dx": 1.0, "order": 8, "resolved_blocks": 1}
-        long = sp.simulate(sp.Scene(**scene, max_step=step)).attrs
-        short = sp.simulate(sp.Scene(**scene, max_step=0.02)).attrs
-        assert [long[name] for name in names] == [short[name] for name in names], (number, scene)
+        runs = [sp.simulate(sp.Scene(**scene, max_step=step)).attrs for step in (0.5, 0.2, 0.02)]
+        counts = {tuple(run[name] for name in names) for run in runs}
+        assert len(counts) == 1, (number, scene)

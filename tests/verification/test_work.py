@@ -1,4 +1,4 @@
-"""Only sliding blocks cost work: updates and bytes a block, their growth, positions of rows."""
+"""Only sliding blocks cost work: updates and bytes a block; growth and pages of a lattice."""
 
 from dataclasses import replace
 
@@ -7,6 +7,8 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
+from slippulse.solver import lattice as lattices
+from slippulse.solver.fixed_step import LATTICES
 from slippulse.solver.lattice import FIRST_BLOCKS, Lattice
 from slippulse.solver.solution import solve_on_lattice
 
@@ -86,3 +88,18 @@ def test_rows_begin_at_different_places_of_their_pages(right):
         assert size <= lattice.size < 3 * size + 512
         size = lattice.size
     assert size > 4 * FIRST_BLOCKS
+
+
+@pytest.mark.parametrize("scheme", LATTICES)
+@pytest.mark.parametrize("right", [0.4, 0.6], ids=["half lattice", "whole lattice"])
+def test_the_first_size_and_the_length_of_a_call_do_not_change_a_bit(monkeypatch, right, scheme):
+    profile, fractions = sp.Prestress(0.4, right, peak=1.05, steps=((4.0, 0.5), (-4.0, 0.5))), []
+    scene = replace(PULSE, prestress=profile, duration=8.0, max_step=0.3, scheme=scheme)
+    plain = sp.simulate(scene)
+    for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3, "CALL_STEPS": 7}.items():
+        monkeypatch.setattr(lattices, name, value)
+    grown = sp.simulate(scene, progress=fractions.append)
+    assert grown.equals(plain) and plain.attrs["releases"] > 100
+    assert grown.attrs["block_updates"] == plain.attrs["block_updates"]
+    assert len(fractions) > 10
+    assert fractions == sorted(fractions) and fractions[0] > 0.0 and fractions[-1] <= 1.0
