@@ -23,10 +23,9 @@ MOST_UNDECIDED = 0.1
 class Claim(ABC):
     """The result about one claim; every kind may have further numbers by name, and two texts.
 
-    ``tolerance`` is 0 where no number is compared with one; ``at_earlier`` is then the verdict at
-    an earlier one. ``besides`` has the verdict, at a tolerance, on what must hold besides;
-    ``beyond`` is true if the paper does not make the claim. ``why`` is a sentence or two on the
-    verdict, ``note`` replaces that in manuscript/claims.yaml.
+    ``tolerance`` is 0 where no number is compared with one. ``besides`` has the verdict, at a
+    tolerance, on what must hold besides; ``beyond`` is true if the paper does not make the claim.
+    ``why`` is a sentence or two on the verdict, ``note`` replaces that in manuscript/claims.yaml.
     """
 
     tolerance: float = 0.0
@@ -35,7 +34,6 @@ class Claim(ABC):
     further: Mapping[str, float] = field(default_factory=dict)
     why: str = ""
     note: str = ""
-    at_earlier: str = ""
 
     @abstractmethod
     def alone(self, tolerance: float) -> str:
@@ -78,8 +76,7 @@ class Claim(ABC):
     def written(self) -> dict[str, Any]:
         """All fields in claims.json that the result sets."""
         rest = {"further": dict(self.further), "why": self.why, "flips_at": self.flips()}
-        rest |= {"at_earlier": self.at_earlier} | ({"note": self.note} if self.note else {})
-        return self.fields() | rest
+        return self.fields() | rest | ({"note": self.note} if self.note else {})
 
 
 @dataclass(frozen=True, kw_only=True)

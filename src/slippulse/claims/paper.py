@@ -102,7 +102,7 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     out |= {"id": id} | claim.written()
     counted = not out["follows_from"] and not out["beyond"]
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
-    if "earlier_tolerance" in entry and not out["at_earlier"]:
+    if "earlier_tolerance" in entry:
         out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
     out = finite(out)
     return out | {"why": with_texts(out).why_text()}
