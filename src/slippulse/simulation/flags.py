@@ -31,8 +31,10 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
     flags = {
         "nothing_sticks": nothing_sticks(scene, solution),
         "first_stick_undone": first_stick_undone(scene, solution),
-        "long_step": scene.scheme == "localised" and long_step(scene),
     }
+    if scene.scheme == "localised":
+        longest = accurate_step(LONG_STEP, scene.order, *scene.ratios)
+        flags["long_step"] = scene.max_step > longest
     if scene.scheme == "continuum":
         flags["construction_ended"] = numbers["limit_reason"] != ""
     else:
@@ -48,11 +50,6 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
             "locked_front": scene.scheme == "fixed_step" and locked_front(solution),
         }
     return {"pulse_blocks": blocks, "run_flags": ",".join(flag for flag in flags if flags[flag])}
-
-
-def long_step(scene: Scene) -> bool:
-    """True if a Taylor step errs, above all where damping is strong."""
-    return scene.max_step > accurate_step(LONG_STEP, scene.order, *scene.ratios)
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:

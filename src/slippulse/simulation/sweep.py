@@ -1,6 +1,6 @@
 """Solutions as Datasets: one, or those of many scenes, solved in threads and joined."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from threading import Event
 
@@ -47,8 +47,13 @@ def solve_sweep(
     alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
-            finished = _one_by_one(solve_one, order, pool, alone)
-            for count, _ in enumerate(finished, start=1):
+            # Calls of this thread, or futures of those of the pool, as they are done.
+            finished: Iterable = map(solve_one, order)
+            if not alone:
+                finished = as_completed([pool.submit(solve_one, i) for i in order])
+            for count, future in enumerate(finished, start=1):
+                if future is not None:
+                    future.result()
                 if progress is not None:
                     progress(count, len(scenes))
         except BaseException:
@@ -56,17 +61,6 @@ def solve_sweep(
             pool.shutdown(cancel_futures=True)
             raise
     return combine([results[i] for i in range(len(scenes))], record)
-
-
-def _one_by_one(
-    solve: Callable[[int], None], order: Sequence[int], pool: ThreadPoolExecutor, alone: bool
-) -> Iterator[None]:
-    """Solve each, alone in this thread or in those of the pool, and yield after each."""
-    if alone:
-        yield from map(solve, order)
-    else:
-        for future in as_completed([pool.submit(solve, i) for i in order]):
-            yield future.result()
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:

@@ -4,16 +4,37 @@ It is of first order in the step, and its front speed locks to dx / (n dt) with 
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
+from numba.extending import register_jitable
+
+from ..model.friction import LAWS
+from ..model.friction_laws.law import Friction
 from ..model.samples import Samples
 from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
-from .friction import law_of_friction
 from .jit import entry, inner
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
 from .taylor import BLOW_UP, note_release, note_stick
+
+
+def choose(laws: Sequence[type[Friction]]):
+    """Compiled function of the number of a law among ``laws`` and of what the law depends on."""
+    if not laws:
+        return inner()(lambda law, slip, velocity, one, two: 0.0)
+    first, rest = register_jitable(laws[0].friction), choose(laws[1:])
+
+    @inner()
+    def chosen(law, slip, velocity, one, two):
+        if law == 0:
+            return first(slip, velocity, one, two)
+        return rest(law - 1, slip, velocity, one, two)
+
+    return chosen
+
+
+law_of_friction = choose(LAWS)
 
 
 @inner()

@@ -1,13 +1,9 @@
-"""Laws of friction in the kernels: piecewise linear in the Taylor step, any in the textbook one.
+"""Friction in the kernels of the Taylor step, which is piecewise linear.
 
-In the Taylor step, the dissipation by a term -alpha v belongs to the viscous loss. Friction with a
-bend falls with the slip or slip rate of a block until that is at the bend, which is an event, as is
-the way back. Kernels are compiled anew for it: where ``bend`` is None, its functions are empty.
+The dissipation by a term -alpha v belongs to the viscous loss. Friction with a bend falls with the
+slip or slip rate of a block until that is at the bend, which is an event, as is the way back.
+Kernels are compiled anew for it: where ``bend`` is None, its functions are empty.
 """
-
-from collections.abc import Sequence
-
-from numba.extending import register_jitable
 
 from ..model.friction import LAWS
 from ..model.friction_laws.law import Bend, Friction
@@ -22,24 +18,6 @@ def constants_of(
     if localised or "continuum" in friction.schemes:
         return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.bend
     return 0.0, LAWS.index(type(friction)), *friction.constants, None
-
-
-def choose(laws: Sequence[type[Friction]]):
-    """Compiled function of the number of a law among ``laws`` and of what the law depends on."""
-    if not laws:
-        return inner()(lambda law, slip, velocity, one, two: 0.0)
-    first, rest = register_jitable(laws[0].friction), choose(laws[1:])
-
-    @inner()
-    def chosen(law, slip, velocity, one, two):
-        if law == 0:
-            return first(slip, velocity, one, two)
-        return rest(law - 1, slip, velocity, one, two)
-
-    return chosen
-
-
-law_of_friction = choose(LAWS)
 
 
 @inner()
