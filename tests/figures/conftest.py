@@ -10,6 +10,7 @@ import pytest
 from selection import small_sweep
 
 from slippulse.configuration.expand import expand
+from slippulse.configuration.runs import runs
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.figures.style import house_style
@@ -51,13 +52,14 @@ class Drawings:
             if not measured.exists():
                 save_dataset(run_sweep(scenes, samples, block["record"], threads=2), data)
                 save_table(measured_table(load_dataset(data), self.shipped["measure"]), measured)
-            self.simulated[name] = (load_dataset(data), load_table(measured), scenes)
+            self.simulated[name] = (load_dataset(data), load_table(measured))
         return self.simulated[name]
 
     def predict(self, name: str, topics: list[str]) -> pd.DataFrame:
         path = self.shared / f"sweeps/{name}.{'_'.join(topics)}.csv"
         if not path.exists():
-            save_table(predictions(topics, self.simulate(name)[2], self.shipped["measure"]), path)
+            swept = [*runs(small_sweep(self.shipped, name))]
+            save_table(predictions(topics, swept, self.shipped["measure"]), path)
         return load_table(path)
 
     def inputs(self, needs: dict) -> tuple[dict, dict]:

@@ -12,6 +12,7 @@ from PIL import Image
 import slippulse as sp
 from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve, scene_simulation
+from slippulse.configuration.runs import runs
 from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
@@ -161,17 +162,18 @@ SWEEPS = {
 
 @pytest.mark.parametrize("name", SWEEPS)
 def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
-    varied, lines, runs = SWEEPS[name]
+    varied, lines, count = SWEEPS[name]
     sweep = varied | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
-    scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
+    resolved = resolve(sweep, config["model"], config["presets"]["draft"])
+    scenes, samples = expand(resolved)
     measured = measured_table(sp.run_sweep(scenes, samples, sweep["record"]), config["measure"])
-    predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
+    predicted = predict.predictions(predict.TOPICS, [*runs(resolved)], config["measure"])
     table = user_defined_sweep.table({}, {name: measured.join(predicted)}, {})
     save_table(table, tmp_path / "sweep.csv")
     drawn = user_defined_sweep.draw(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
     assert len(speeds.lines) == 3 * lines
-    assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
+    assert all(len(line.get_xdata()) == count for line in speeds.lines[::3])
     held = sweep["boundary"] == "displacement"
     assert drawn.get_suptitle().startswith(rf"$\Gamma = {int(held)}$")
     assert ("$b = " in drawn.get_suptitle()) is ("damping_ratio" not in varied)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..model.balance import prestress_balance_position
+from ..model.friction import friction_from
 from ..model.prestress import Prestress
 from ..model.run import Run
 from ..model.samples import Samples
@@ -38,7 +39,8 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
 def _scene(simulation: Mapping, run: Run) -> Scene:
     accuracy, scheme = simulation["accuracy"], simulation["scheme"]
     # The simulation's own step, or the preset's, cut where it is not stable or accurate.
-    traits, largest = run.friction.traits, accuracy["max_step"]
+    friction, largest = friction_from(run.friction), accuracy["max_step"]
+    traits = friction.traits
     ratios = run.damping_ratio, run.gamma * run.dx**2, traits.steepest * run.dx
     step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
     step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / run.dx))
@@ -47,7 +49,7 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
     if "fixed" in simulation["spacing"]:
         step *= simulation["coarser"]
     return Scene(
-        **run._asdict(),
+        **(run._asdict() | {"friction": friction}),
         duration=_duration(simulation["duration"], run.prestress, run.gamma),
         scheme=scheme,
         max_step=step,

@@ -6,7 +6,6 @@ from itertools import product
 from typing import Any
 
 from ..data.chunks import runs_of
-from ..model.friction import COULOMB, friction_from
 from ..model.prestress import Prestress
 from ..model.run import Run
 
@@ -18,7 +17,7 @@ def runs(simulation: Mapping) -> Iterator[Run]:
         dx = _spacing(simulation, profile, gamma, given, index)
         beta = damping if "beta" in simulation else damping * dx
         boundary = simulation["boundary"]
-        yield Run(boundary, profile, gamma, dx, beta, release, friction_from(law))
+        yield Run(boundary, profile, gamma, dx, beta, release, law)
 
 
 def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
@@ -61,7 +60,7 @@ def _axes(simulation: Mapping) -> list[Sequence]:
         shapes = [simulation["left"], rights, simulation["width"], steps]
     gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
     damping = simulation.get("beta", simulation["damping_ratio"])
-    laws = simulation.get("friction", [COULOMB.mapping()])
+    laws = simulation.get("friction", [{"law": "coulomb"}])
     return [releases, *shapes, gamma, dx, damping, laws]
 
 

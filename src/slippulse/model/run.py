@@ -1,8 +1,8 @@
 """The physics of one run, which is all that theory needs of it."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from .friction_laws.law import Friction
 from .prestress import Prestress
 
 
@@ -15,7 +15,7 @@ class Run(NamedTuple):
     dx: float
     beta: float
     release: str
-    friction: Friction
+    friction: Mapping  # law of friction, and its parameters by name
 
     @property
     def damping_ratio(self) -> float:
