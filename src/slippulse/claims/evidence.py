@@ -40,8 +40,10 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     """The answer in each run of two lattices; None where they differ or have none."""
-    pairs = zip(first, second, strict=True)
-    return [bool(one) if one is not None and one == other else None for one, other in pairs]
+    answers: list[bool | None] = []
+    for one, other in zip(first, second, strict=True):
+        answers.append(bool(one) if one is not None and one == other else None)
+    return answers
 
 
 def studied(tables: Lattices, values: Sequence[float]) -> Uncertain:
@@ -118,10 +120,12 @@ class Evidence:
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
         """Runs on three lattices, of which a condition is true on the finest."""
-        chosen = [evaluated(self._lattices[name][0], where) for name in simulations]
         lattices = []
-        for tables in zip(*(self._lattices[name] for name in simulations), strict=True):
-            parts = [table[runs] for table, runs in zip(tables, chosen, strict=True)]
+        for lattice in range(3):
+            parts = []
+            for name in simulations:
+                tables = self._lattices[name]
+                parts.append(tables[lattice][evaluated(tables[0], where)])
             lattices.append(pd.concat(parts) if len(parts) > 1 else parts[0])
         return lattices
 

@@ -171,10 +171,8 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     further["slowest front, over the fastest wave"] = slowest
     allowed = evidence.tolerance(id)
     thin = 1.0 / width <= allowed
-    gammas, ratios = (
-        " and ".join(setting(value) for value in np.unique(table[name]))
-        for name in ("gamma", "damping_ratio")
-    )
+    values = [np.unique(table[name]) for name in ("gamma", "damping_ratio")]
+    gammas, ratios = (" and ".join(map(setting, several)) for several in values)
     why = "The paper assumes it and gives no range. "
     why += rf"At $\gamma$ = {gammas} and $b$ = {ratios} it is met at {thin.sum()} of {len(thin)} "
     why += r"levels; by the formula of the width it is where $\gamma(1-\tau_0^2)/\tau_0^2$ is "

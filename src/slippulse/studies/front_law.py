@@ -3,7 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from ..configuration.runs import parameters
+from ..configuration.expand import expand
+from ..model.scene import Scene
 from ..predict.numbers import or_nan
 from ..theory.front_speeds import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
@@ -30,8 +31,9 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Panels prestress, springs (over gamma dx^2), refined (over dx), and limit (dx -> 0)."""
-    sweeps = (parameters(settings["sweeps"][name]) for name in NEEDS["sweeps"])
-    swept, springs, fixed_ratio, *fixed_beta = map(pd.DataFrame, sweeps)
+    sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    parameters = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
+    swept, springs, fixed_ratio, *fixed_beta = parameters
     held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     held += [scenes.assign(held="beta", fixed=scenes["beta"]) for scenes in fixed_beta]
     parts = []
@@ -44,9 +46,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         line |= {"damping_ratio": ratio, "springs": SPRINGS}
         line["speed"] = [_speed(left, spring, 1.0, ratio, "total") for spring in SPRINGS]
         parts.append(pd.DataFrame(line))
-    # Lines over the spacing, at a fixed damping or damping ratio, and their limits.
+    return pd.concat([*parts, over_spacing(pd.concat(held))], ignore_index=True)
+
+
+def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
+    """Lines over the spacing, at a fixed damping or damping ratio, and their limits."""
     rows = []
-    for values, dx in pd.concat(held).query(REFINED).groupby(LINE)["dx"]:
+    for values, dx in scenes.query(REFINED).groupby(LINE)["dx"]:
         line = dict(zip(LINE, values, strict=True))
         left, gamma = line["left"], line["gamma"]
         if line["held"] == "beta" and line["release"] == "elastic":
@@ -57,7 +63,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             speed = _speed(left, gamma, spacing, ratio, line["release"])
             point = {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed}
             rows.append(line | point)
-    return pd.concat([*parts, pd.DataFrame(rows)], ignore_index=True)
+    return pd.DataFrame(rows)
 
 
 def _speed(left: float, gamma: float, dx: float, ratio: float, release: str) -> float:
