@@ -6,10 +6,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
+from functools import partial
 from importlib import import_module
 from pathlib import Path
-from threading import Thread
 
 import pytest
 import yaml
@@ -26,43 +25,20 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # The first files run no kernel, while the kernels are compiled. Then come those that take longest,
 # so that the workers end together, and those whose studies others read.
-WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals")
-WITHOUT_KERNELS += ("test_dependencies", "test_plans")
-FIRST = (*WITHOUT_KERNELS, "test_studies", "test_every_figure", "test_faults")
-# The folder of what the workers share, and a file in it that says that the kernels are compiled; a
-# worker waits this long for it, in seconds.
-SHARED, READY, LONGEST_WAIT = "SLIPPULSE_SHARED_BY_TESTS", "ready", 300.0
+FIRST = ("test_final_regime", "test_refused_commands", "test_refusals", "test_dependencies")
+FIRST += ("test_plans", "test_studies", "test_every_figure", "test_faults")
+# The variable that names the folder of what the workers share.
+SHARED = "SLIPPULSE_SHARED_BY_TESTS"
+COMPILE = "from slippulse.solver.compilation import compile_all; compile_all()"
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile the kernels once, while the workers collect their tests."""
-    if getattr(session.config.option, "numprocesses", None) and not hasattr(
-        session.config, "workerinput"
-    ):
-        folder = Path(tempfile.mkdtemp(prefix="slippulse-tests-"))
-        os.environ[SHARED] = str(folder)
-        Thread(target=compile_kernels, args=(folder,)).start()
-
-
-def compile_kernels(folder: Path) -> None:
-    program = "from slippulse.solver.compilation import compile_all; compile_all()"
-    try:
-        subprocess.run([sys.executable, "-c", program], check=True)
-    finally:
-        (folder / READY).touch()
-
-
-def pytest_runtest_setup(item: pytest.Item) -> None:
-    worker = hasattr(item.config, "workerinput") and SHARED in os.environ
-    if worker and item.path.stem not in WITHOUT_KERNELS:
-        ready, end = Path(os.environ[SHARED]) / READY, time.monotonic() + LONGEST_WAIT
-        while not ready.exists() and time.monotonic() < end:
-            time.sleep(0.1)
-
-
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    if SHARED in os.environ and not hasattr(session.config, "workerinput"):
-        shutil.rmtree(os.environ[SHARED])
+    """Begin to compile the kernels, unless they are in the user's cache, before workers start."""
+    config = session.config
+    if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
+        os.environ[SHARED] = tempfile.mkdtemp(prefix="slippulse-tests-")
+        config.add_cleanup(partial(shutil.rmtree, os.environ[SHARED]))
+        config.add_cleanup(subprocess.Popen([sys.executable, "-c", COMPILE]).wait)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
