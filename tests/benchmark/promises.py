@@ -1,13 +1,11 @@
 """Random scenes at a promised accuracy against the exact solution, and what they cost.
 
-python tests/benchmark/promises.py FILE ACCURACY FIRST COUNT MOST_STEPS appends the scenes' rows to
-a CSV file; with the FILE alone it prints the table in config/README.md. Scenes from number 1000 on
-have a barrier of negative pre-stress on both sides.
+python tests/benchmark/promises.py ACCURACY FIRST COUNT MOST_STEPS prints rows of the table in
+config/README.md. Scenes from number 1000 on have a barrier of negative pre-stress on both sides.
 """
 
 import math
 import sys
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -25,7 +23,7 @@ FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 # Scenes with this number of covered numbers or more have a pulse or a transition among them.
 MANY = 5
 KINDS = ["kept", "wrong", "missed", "missed_rightly", "unknown"]
-COLUMNS = ["accuracy", "scene", "family", "steps", *KINDS, "cost", "not_kept"]
+COLUMNS = ["scene", "family", *KINDS, "cost", "not_kept"]
 BARRIERS = 1000
 RATIOS = (0.0, 0.02, 0.05, 0.1, 0.3, 1.0)
 between = lambda chance, low, high: float(np.exp(chance.uniform(math.log(low), math.log(high))))
@@ -98,13 +96,13 @@ def numbers(layer, duration, dx, ratio, **scheme):
 
 
 def judge(number, accuracy, most_steps):
-    """Row of one scene: how many numbers of each kind it has; only its steps if those are too many.
+    """Row of one scene: how many numbers of each kind it has; none if it takes too many steps.
 
     Its cost is that of its spacing over that of the largest one that keeps all covered numbers.
     """
     family, layer, ratio, duration = drawn(number)
     dx = sp.settings_for(accuracy, damping_ratio=ratio, **layer)["dx"]
-    result = {"accuracy": accuracy, "scene": number, "family": family, "steps": duration / dx}
+    result = {"scene": number, "family": family}
     if duration / dx > most_steps:
         return result
     rows = []
@@ -138,15 +136,6 @@ def judge(number, accuracy, most_steps):
     return result
 
 
-def run(path, accuracy, first, count, most_steps):
-    """Append the rows of scenes to a file, but for those that it has."""
-    done = pd.read_csv(path) if path.exists() else pd.DataFrame(columns=COLUMNS)
-    known = done.loc[done["accuracy"] == accuracy, "scene"]
-    for number in {*range(first, first + count)}.difference(known):
-        row = pd.DataFrame([judge(number, accuracy, most_steps)], columns=COLUMNS)
-        row.to_csv(path, mode="a", header=not path.exists(), index=False)
-
-
 def median(costs):
     """Median cost with its range; "-" for none."""
     if not len(costs):
@@ -154,24 +143,20 @@ def median(costs):
     return f"{costs.median():.0f} ({costs.min():.0f} to {costs.max():.0f})"
 
 
-def table(path):
-    """Print the table of config/README.md, the numbers not kept, and the scenes left out."""
-    rows = pd.read_csv(path).sort_values(["accuracy", "scene"], ascending=[False, True])
-    for (accuracy, family), group in rows.groupby(["accuracy", "family"], sort=False):
+def main(accuracy, first, count, most_steps):
+    """Print rows of the table of config/README.md, numbers not kept, and scenes left out."""
+    judged_scenes = (judge(number, accuracy, most_steps) for number in range(first, first + count))
+    rows = pd.DataFrame(judged_scenes, columns=COLUMNS)
+    for family, group in rows.groupby("family", sort=False):
         done, costly = group.dropna(subset="kept"), group.dropna(subset="cost")
         costs = [median(part["cost"]) for part in (costly, costly[costly["kept"] >= MANY])]
         sums = done[KINDS].sum().astype(int)
         cells = [family, f"{accuracy:g}", len(done), len(group) - len(done), *sums, *costs]
         print("|", " | ".join(map(str, cells)), "|")
     for row in rows.dropna(subset="not_kept").itertuples():
-        print(f"not within {row.accuracy:g} in scene {row.scene}:{row.not_kept}")
-    for accuracy, group in rows[rows["kept"].isna()].groupby("accuracy"):
-        print(f"too long at {accuracy:g}:", *group["scene"])
+        print(f"not within {accuracy:g} in scene {row.scene}:{row.not_kept}")
+    print("too long:", *rows.loc[rows["kept"].isna(), "scene"])
 
 
 if __name__ == "__main__":
-    file, given = Path(sys.argv[1]), sys.argv[2:]
-    if given:
-        run(file, float(given[0]), int(given[1]), int(given[2]), float(given[3]))
-    else:
-        table(file)
+    main(float(sys.argv[1]), *map(int, sys.argv[2:]))
