@@ -28,7 +28,7 @@ CHAIN_ORDER_4 = 2e-4
 ORDER_BELOW, ORDER_ABOVE = 0.5, 0.4
 # First order of the textbook scheme, root mean square over blocks: a release jumps by whole steps.
 FIRST_ORDER = (0.85, 1.25)
-# The same for a quantity that does not jump: one free block, and the energy balance.
+# The same for a quantity that does not jump, the energy balance.
 FIRST_ORDER_SMOOTH = 0.05
 # The balance has the order of the step, with damping the third, that of the viscous loss.
 ENERGY_ORDER = 0.5

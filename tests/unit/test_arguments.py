@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import slippulse as sp
 from slippulse import theory
@@ -58,12 +57,10 @@ WITHOUT_SPRINGS = GOOD | {"gamma": 0.0}
 # Values of the right kind that are refused, by what the refusal says of argument and value.
 SCENES = {
     "boundary: 'strain'; allowed: displacement, stress": {"boundary": "strain"},
-    "boundary: None; allowed: displacement, stress": {"boundary": None},
     "gamma: 0.65; allowed: 0 or left out under boundary 'stress'": {"boundary": "stress"},
     "gamma: nan; allowed: 0 or left out": {"boundary": "stress", "gamma": math.nan},
     "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
     "gamma: 1e+200": {"gamma": 1e200},
-    "gamma: 1e+250": {"gamma": 1e250, "beta": 1e200},
     "beta: -0.001; allowed: a finite number and >= 0": {"beta": -1e-3},
     "dx: 0.0; allowed: a finite number and > 0": {"dx": 0.0},
     "prestress.width: 1.0; allowed: >= dx = 1.5": {"dx": 1.5},
@@ -72,7 +69,6 @@ SCENES = {
     "release: 'Total'; allowed: total, elastic": {"release": "Total"},
     "scheme: 'euler'; allowed: localised, fixed_step": {"scheme": "euler"},
     "order: 2; allowed: 3, 4, 5, 6, 7, 8": {"order": 2},
-    "order: 9; allowed: 3, 4, 5, 6, 7, 8": {"order": 9},
     "order: 4.0; allowed: a whole number": {"order": 4.0},
     "max_step: 0.0; allowed: a finite number and > 0": {"max_step": 0.0},
     "friction_ratio: -0.1; allowed: a finite number and >= 0": {"friction_ratio": -0.1},
@@ -121,7 +117,6 @@ ATTRIBUTES = {
 RUPTURES = {
     "gamma: -1.0; allowed: a finite number and >= 0": {"gamma": -1.0},
     "damping_ratio: 1000000000.0; allowed: a finite number and >=": {"damping_ratio": 1e9},
-    "damping_ratio: 1e+200; allowed": {"damping_ratio": 1e200},
     "release: 'both'; allowed: total, elastic": {"release": "both"},
     "duration: 0.0; allowed: a finite number and >= 1e-09": {"duration": 0.0},
     "prestress: below 1 everywhere; allowed": {"prestress": sp.Prestress(0, 0, peak=0.9)},
@@ -132,7 +127,6 @@ RUPTURES = {
     },
     "-0.01; allowed: >= 0 without leaf springs, or": {"rate_strengthening": -0.01, "gamma": 0.0},
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
-    "refinement: 2.7; allowed: a whole number and >= 1": {"refinement": 2.7},
     "refinement: 1000; allowed: a whole number and >= 1": {"refinement": 1000},
 }
 SETTINGS = {
@@ -151,7 +145,6 @@ SAMPLES = {
     "samples.times: not increasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
     "not increasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
-    "samples: times and positions; allowed: one-dimensional": ([[0.0, 1.0]], [0.0]),
     "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
     "samples.positions: inf; allowed: a finite number": ([0.0, 1.0], [math.inf]),
 }
@@ -171,7 +164,6 @@ CALLS = [
     ("run: a sweep of 2; allowed: one run", sp.measure, SWEEP),
     ("allowed: a Dataset that simulate returned", sp.measure, TINY),
     ("scene: None; allowed: a Scene", sp.simulate, None),
-    ("scene: {'boundary': 'stress'}; allowed: a Scene", sp.simulate, {"boundary": "stress"}),
     ("scenes: []; allowed: a list of Scenes, at least one", sp.run_sweep, []),
     ("allowed: 'continuum' for all, or for none", sp.run_sweep, [TINY, EXACT]),
     ("record: 'samples' without samples; allowed: Samples", recorded_sweep, "samples"),
@@ -179,17 +171,14 @@ CALLS = [
     ("index: -1; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, -1),
     ("index: 2; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, 2),
     ("allowed: a Dataset that run_sweep returned", sp.point, sp.simulate(EXACT), 0),
-    ("allowed: a Dataset that run_sweep returned", sp.point, xr.Dataset(), 0),
     ("sweep: 'x.nc'; allowed: a Dataset", sp.point, "x.nc", 0),
     ("allowed: numbers of blocks whose sum", sp.point, LONGER, 0),
     ("allowed: numbers of blocks whose sum", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: Dataset; allowed: a Dataset that simulate returned", sp.plot, SWEEP),
-    ("run: dict; allowed: a Dataset that simulate returned", sp.plot, {}),
     ("attributes: 3; allowed: a mapping", sp.Scene.from_attributes, 3),
     ("tau0: 0.0; allowed: a finite number and > 0 and < 1", theory.front_speed, 0.0, 0.1),
     ("tau0: 1.0; allowed: a finite number and > 0 and < 1", theory.front_speed, [0.5, 1.0], 0.1),
     (LARGEST, theory.front_speed, 0.5, -1.0),
-    ("damping_ratio: 1e+200; allowed: a finite number", theory.front_speed, 0.5, 1e200),
     ("damping_ratio: inf; allowed: a finite number", theory.front_speed, 0.5, [0.1, math.inf]),
     ("release: 'other'; allowed: total, elastic", theory.front_speed, 0.5, 0.1, "other"),
     ("shapes (2,) and (3,); allowed", theory.front_speed, [0.1, 0.2], [0.1, 0.2, 0.3]),
