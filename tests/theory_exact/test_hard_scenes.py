@@ -9,9 +9,12 @@ from hard_scenes import FAMILIES, VARIANTS, Compared, scene
 from tolerances import NUDGED, NUDGED_DOUBLE
 
 from slippulse.theory import part
+from slippulse.theory.lower_bound import stays_positive
 
 # The first scenes are in each run of the tests, each with one variant; all with the slow tests.
 FAST, ALL = 50, 500
+# Scenes in which something sticks.
+STICK = (13, 16, 23, 28, 37, 41)
 
 
 @pytest.mark.parametrize("number", range(FAST))
@@ -22,7 +25,7 @@ def test_two_solutions_agree_before_either_has_a_limit(number):
     assert compared.faults(other) == [], variant
 
 
-@pytest.mark.parametrize("number", [13, 16, 23, 28, 37, 41])
+@pytest.mark.parametrize("number", STICK)
 def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
     """A smooth minimum or a kink of the trailing edge, before there is a knot on either side."""
     keys = scene(number)
@@ -32,6 +35,27 @@ def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
         assert found is not None, after
         assert found.time == pytest.approx(first, rel=NUDGED), after
     assert replace(keys, duration=first * (1.0 - 1e-8)).rupture().first_stick is None
+
+
+@pytest.mark.parametrize("number", STICK)
+def test_what_is_bounded_above_zero_is_so_in_between(number):
+    """Where the bound holds, 15 positions in between slide until the first stick."""
+    rupture = scene(number).rupture()
+    time = 0.97 * rupture.first_stick.time
+    part = next(p for p in rupture._solved if p.curve.covers(rupture.first_stick.x))
+    fronts = (part.curve.front_at(time, rupture.first_stick.x, side) for side in (-1.0, 1.0))
+    x = np.linspace(*fronts, 121)
+    velocity = part.velocity(x, np.full(x.size, time))
+    pairs, at_ends = (np.array([values[:-1], values[1:]]) for values in (x, velocity))
+    bounded = stays_positive(part, pairs, at_ends, time)
+    assert bounded.mean() > 0.5
+    inner = np.linspace(*pairs[:, bounded], 17)[1:-1].ravel()
+    assert np.min(part.velocity(inner, np.full(inner.size, time))) > 0.0
+    # No pair around what has stuck is bounded.
+    middle = np.array([[rupture.first_stick.x - 0.01], [rupture.first_stick.x + 0.01]])
+    later = 1.01 * rupture.first_stick.time
+    velocity = part.velocity(middle.ravel(), np.full(2, later))
+    assert not stays_positive(part, middle, velocity[:, None], later).any()
 
 
 @pytest.mark.parametrize("number", [39, 53, 59])

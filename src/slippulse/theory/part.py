@@ -55,11 +55,12 @@ class Part:
         past = self.past(x, time)
         return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
 
-    def search(self, x: np.ndarray) -> np.ndarray:
+    def search(self, x: np.ndarray, until: float | None = None) -> np.ndarray:
         """Stick times at positions, from release on, without help from other positions."""
         if not x.size:
             return np.zeros(0)
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
-        search = StickSearch(self.velocity, SEARCH * self.scale / self.refinement, self.until)
+        step = SEARCH * self.scale / self.refinement
+        search = StickSearch(self.velocity, step, until or self.until)
         return search.stick_time(x, self.curve.arrival(x), arrivals)

@@ -16,6 +16,8 @@ from .vector_roots import roots_between
 DENSER, SAME_GRID = 3, 0.01
 # Positions and times of each grid, and the last interval of positions, in units of `Part.scale`.
 FINER, NARROWEST = 17, 1e-6
+# This number of peaks between positions is followed, of those that reach this fraction of the top.
+PEAKS, PEAK = 2, 0.97
 # Slip is checked at positions this far apart, in units of `Part.scale`, to this fraction of itself.
 CHECKED, FALL = 0.25, 1e-6
 
@@ -73,16 +75,22 @@ class SolvedPart(Part):
         knots = knots[np.diff(knots, prepend=-np.inf) > SAME_GRID * self.scale]
         index = np.arange(knots.size)
         x = np.interp(np.linspace(0.0, index[-1], DENSER * index[-1] + 1), index, knots)
-        largest = 0.0
-        while True:
-            highest = self._highest(x, np.minimum(horizon(x), until))
-            row = int(np.argmax(highest))
-            largest = max(largest, float(highest[row]))
+        highest = self._highest(x, np.minimum(horizon(x), until))
+        largest = float(highest.max())
+        # The samples of the highest peak may be lower than those of another one.
+        padded = np.pad(highest, 1)
+        higher = (highest > padded[:-2]) & (highest >= padded[2:]) & (highest >= PEAK * largest)
+        peaks = np.flatnonzero(higher)
+        for row in peaks[np.argsort(-highest[peaks], kind="stable")[:PEAKS]].tolist():
             start, end = x[max(row - 1, 0)], x[min(row + 1, x.size - 1)]
             # The largest value in a shorter interval differs by rounding only.
-            if end - start <= NARROWEST * self.scale:
-                return largest
-            x = np.linspace(start, end, FINER)
+            while end - start > NARROWEST * self.scale:
+                inner = np.linspace(start, end, FINER)
+                highest = self._highest(inner, np.minimum(horizon(inner), until))
+                top = int(np.argmax(highest))
+                largest = max(largest, float(highest[top]))
+                start, end = inner[max(top - 1, 0)], inner[min(top + 1, FINER - 1)]
+        return largest
 
     def _highest(self, x: np.ndarray, last: np.ndarray) -> np.ndarray:
         """Largest slip velocity at each position before it sticks and before a last time."""

@@ -8,29 +8,29 @@ block is ever released again.
 
 The edge is known at knots: at the panels of the curve, and on both sides of where waves from its
 marks meet the edge, then halfway between knots as long as these do not predict what is found there.
-No first stick lies unseen between knots that slide: what sticks grows to both sides faster than the
-waves, so what the middle does not show has begun within half an interval of the end, and du/dt at
-the end dips below 0 there. Intervals are halved until a cubic predicts du/dt at the end halfway to
-PREDICTED_VELOCITY of itself, and as long as its tangents come near 0 (`Knots.dips`).
+No stick lies unseen between two positions that slide at a time: what sticks grows to both sides
+faster than the waves, so what neither has felt has begun in the triangle between them and the point
+from which their characteristics went apart. There du/dt is bounded (`lower_bound`): intervals that
+slide at the end, or when the first position sticks, are halved until the bound is above 0.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from ..model.roots import root_between
 from .curve import SAME, Point
+from .lower_bound import stuck_between
 from .part import Part
 from .vector_roots import roots_between
 
 # Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
-# this, and du/dt at the end to this fraction of itself.
+# this.
 PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
-PREDICTED_VELOCITY = 0.01
-# Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero.
-MARGIN = 0.5
 # The shortest interval that is halved, and the time below which sliding is brief, in units of
 # `Part.scale`; and the shortest interval in which the edge reaches the end, or a stopped front.
 SHORTEST, AT_END = 1e-3, 0.01
@@ -41,6 +41,8 @@ CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
 # that are cut into CUTS pieces.
 LOCATED, CUTS = 1e-10, 8
+# Where in its interval an edge that is nearly slow is looked at, apart from halfway.
+SHIFTED = 0.382
 # Size of Newton's last step to a stick time, and of the next one, about the product of the last
 # two, in units of the interval.
 STEP, NEXT_STEP = 1e-11, 1e-14
@@ -87,6 +89,21 @@ class Knots(NamedTuple):
         k = np.searchsorted(self.x, x, side="right") - 1
         return np.clip(k, 0, self.x.size - 2)
 
+    @property
+    def sliding(self) -> np.ndarray:
+        """Ends [left and right, interval] of the intervals that slide at the end."""
+        k = np.arange(self.x.size - 1)
+        k = k[self.of_kinds(k, SLIDES, SLIDES)]
+        return self.x[np.array([k, k + 1])]
+
+    @property
+    def nearly_slow(self) -> np.ndarray:
+        """Positions in the intervals whose edge, if it turns on as it does, may become slow."""
+        k = np.arange(self.x.size - 1)
+        pace = np.abs([self.pace[:-1], self.pace[1:]])
+        k = k[self.outruns(k) & (pace.max(axis=0) + np.abs(np.diff(self.pace)) > 1.0)]
+        return self.x[k] + SHIFTED * (self.x[k + 1] - self.x[k])
+
     def of_kinds(self, k: np.ndarray, one: int, other: int) -> np.ndarray:
         """Mask of the intervals whose two ends have these kinds in any order."""
         left, right = self.kind[k], self.kind[k + 1]
@@ -118,16 +135,11 @@ class Knots(NamedTuple):
 
     def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Stick times by cubics in intervals."""
-        return self._cubic(self.stick, self.pace, k, x)
-
-    def _cubic(
-        self, values: np.ndarray, slopes: np.ndarray, k: np.ndarray, x: np.ndarray
-    ) -> np.ndarray:
         span = self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
-        bow = span * ((1.0 - s) * slopes[k] - s * slopes[k + 1])
-        rise = values[k + 1] - values[k]
-        return values[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
+        bow = span * ((1.0 - s) * self.pace[k] - s * self.pace[k + 1])
+        rise = self.stick[k + 1] - self.stick[k]
+        return self.stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
     def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
         """Mask of the intervals whose ends predict the knot in the middle."""
@@ -139,22 +151,7 @@ class Knots(NamedTuple):
         # The closer the edge is to the speed of the waves, the less it may turn unseen.
         steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
         near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        velocity = self._cubic(self.velocity, self.by_eta - self.by_xi, k, middle.x)
-        bounded = np.abs(middle.velocity - velocity) <= PREDICTED_VELOCITY * middle.velocity
-        return one_kind & np.where(middle.kind == FAST, near, bounded | (middle.kind != SLIDES))
-
-    def dips(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals that slide, in which du/dt at the end may have a zero.
-
-        Its tangents at the ends meet below it where it bends upwards; elsewhere MARGIN has to do.
-        """
-        span, slope = self.x[k + 1] - self.x[k], self.by_eta - self.by_xi
-        slides = np.minimum(self.velocity[k], self.velocity[k + 1]) > ROUNDING
-        valley = slides & (slope[k] < -ROUNDING) & (slope[k + 1] > ROUNDING)
-        difference = self.velocity[k + 1] - self.velocity[k] - slope[k + 1] * span
-        distance = difference / np.where(valley, slope[k] - slope[k + 1], 1.0)
-        least = self.velocity[k] + slope[k] * distance
-        return valley & (least <= MARGIN * np.minimum(self.velocity[k], self.velocity[k + 1]))
+        return one_kind & (near | (middle.kind != FAST))
 
 
 @dataclass
@@ -187,12 +184,22 @@ class TrailingEdge:
         apart = Knots._make(values[::2] for values in knots)
         predicted = apart.predict(np.arange(halfway.size), Knots._make(v[1::2] for v in knots))
         again = ~np.repeat(predicted, 2)
-        left = x[:-1][again | knots.dips(np.arange(x.size - 1))]
-        x = np.union1d(self._landings(knots), self._near_end(knots))
-        left = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval(x)]])
-        knots = knots.joined(self._knots_of(x, self.part.search(x)))
-        while left.size:
-            knots, left = self._refined(knots, left)
+        x, left = np.union1d(self._landings(knots), self._near_end(knots)), x[:-1][again]
+        knots = self._with(knots, x, self.part.search(x), left)
+        while (x := stuck_between(self.part, knots.sliding, self.part.until)).size:
+            knots = self._with(knots, x, self.part.search(x))
+        # Where the edge may turn slow between knots it is looked at once more, not halfway.
+        x = knots.nearly_slow
+        return self._with(knots, x, self.stick_time(x, knots)) if x.size else knots
+
+    def _with(
+        self, knots: Knots, x: np.ndarray, stick: np.ndarray, left: Sequence[float] = ()
+    ) -> Knots:
+        """Knots with some more, and as many as predict them and the intervals right of others."""
+        todo = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval(x)]])
+        knots = knots.joined(self._knots_of(x, stick))
+        while todo.size:
+            knots, todo = self._refined(knots, todo)
         return knots
 
     def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
@@ -255,7 +262,7 @@ class TrailingEdge:
         size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
-        short[jumps | knots.dips(k)] = LOCATED * size
+        short[jumps] = LOCATED * size
         long = knots.x[k + 1] - knots.x[k] > short
         cut = k[long & (jumps | at_end)]
         halved = k[long & ~jumps & ~at_end]
@@ -270,10 +277,8 @@ class TrailingEdge:
         halves = np.append(knots.x[halved], middle)
         refined, left = knots.joined(new), np.append(halves, pieces)
         k = np.searchsorted(refined.x, left)
-        again = refined.dips(k)
-        again[: halves.size] |= np.tile(surprise, 2)
-        rough = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
-        again[halves.size :] |= rough[halves.size :]
+        again = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
+        again[: halves.size] = np.tile(surprise, 2)
         return refined, left[again]
 
     def about(self, x: np.ndarray) -> np.ndarray:
@@ -338,6 +343,15 @@ class TrailingEdge:
 
     def first_stick(self) -> FirstStick | None:
         """The first sticking; None where nothing sticks before the end."""
+        first = self._first()
+        # The knots may have missed one: then they become more.
+        while first and (x := self._earlier(first)).size:
+            self.knots = self._with(self.knots, x, self.part.search(x, first.time))
+            first = self._first()
+        return first
+
+    def _first(self) -> FirstStick | None:
+        """The first sticking that the knots show."""
         knots = self.knots
         stuck = knots.kind != SLIDES
         if not stuck.any():
@@ -358,6 +372,22 @@ class TrailingEdge:
             if minimum and minimum.time < out.time - ROUNDING:
                 out = minimum
         return out
+
+    def _earlier(self, first: FirstStick) -> np.ndarray:
+        """Positions between the knots that have stuck before the first that the knots show."""
+        knots, curve = self.knots, self.part.curve
+        # What begins between two knots comes later than its waves may come to both.
+        earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
+        slips = curve.arrival(knots.x) < first.time
+        intervals: list[tuple[float, float]] = []
+        for k in np.flatnonzero((earliest < first.time) & (slips[:-1] | slips[1:])):
+            left, right = knots.x[k : k + 2].tolist()
+            left = left if slips[k] else curve.front_at(first.time, right, -1.0)
+            right = right if slips[k + 1] else curve.front_at(first.time, left, 1.0)
+            inner = [first.x] if left < first.x < right else []
+            intervals += pairwise([left, *inner, right])
+        x = np.array(intervals).reshape(-1, 2).T
+        return stuck_between(self.part, x, first.time, first.x)
 
     def _minimum(self, left: float, right: float) -> FirstStick | None:
         """The first sticking between two positions, if the edge goes down into the interval."""
