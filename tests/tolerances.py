@@ -69,7 +69,7 @@ TRANSITION_TABLE = SHARE_TABLE = 1e-4
 # Simulated transitions converge to the continuum at first order in dx.
 TRANSITION_HALVING = (1.6, 2.5)
 # Relative error after the first-order error is extrapolated away, from dx = 0.02 and 0.01.
-TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
+SHARE_EXTRAPOLATED = 4e-3
 # Closed forms of the undamped pulse; the profile in its equation, by differences of step 1e-4.
 PULSE_THEORY, PULSE_EQUATION = 1e-12, 1e-5
 
@@ -80,9 +80,6 @@ SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 ORDER_BAND = 0.35
 # The damped theory against simulation at dx = 0.02, where the front has long been steady.
 FRONT_SPEED_STUDY = 5e-5
-# The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
-PULSE_SLIP_THEORY, PULSE_PEAK_THEORY = 5e-4, 2e-3
-PULSE_WIDTH_BLOCKS = 2.0
 
 # ln M_+(0) by panels up to 2500 with the leading tail alone: the rest is of second order in 1/2500.
 CAUCHY_BY_PANELS = 1e-6

@@ -36,19 +36,6 @@ def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     assert run.attrs["run_flags"] == ""
 
 
-@pytest.mark.parametrize(
-    ("tau0", "ratio"), [(0.3, 0.02), (0.45, 0.05), (0.6, 0.1), (0.7, 0.15), (0.85, 0.2)]
-)
-def test_steady_pulse(tau0, ratio):
-    dx, gamma = 0.01, 0.65
-    run = run_of(tau0, gamma=gamma, dx=dx, beta=ratio * dx, duration=60.0, max_step=0.2)
-    pulse = leading_pulse(run, 0.3)
-    theory = sp.theory.steady_pulse(tau0, gamma, ratio * dx, sp.theory.front_speed(tau0, ratio))
-    assert pulse.slip == pytest.approx(theory.slip, rel=tol.PULSE_SLIP_THEORY)
-    assert pulse.peak_velocity == pytest.approx(theory.peak_velocity, rel=tol.PULSE_PEAK_THEORY)
-    assert pulse.width == pytest.approx(theory.width, abs=tol.PULSE_WIDTH_BLOCKS * dx)
-
-
 def test_the_published_figure():
     run = run_of(0.25, gamma=0.55, beta=1e-3, dx=0.01, duration=10.8, release="total", max_step=0.5)
     speed, intercept, _ = fit_front(run, 0.6)
@@ -69,23 +56,6 @@ def test_transitions_are_as_tabulated(tau0, table):
     assert (exact.time, exact.length) == pytest.approx(table, rel=tol.TRANSITION_TABLE)
     fronts = sp.theory.Fronts(profile, 0.0, "total", 1.1 * exact.time)
     assert abs(sp.theory.slip_velocity(fronts, GAMMA, 0.0, exact.time)) < tol.ALGEBRA * 1e3
-
-
-def test_lattices_converge_to_the_transition(paper_accuracy):
-    """Their first sticks are tabulated, too."""
-    exact, measured = sp.theory.exact_transition_displacement(sp.Prestress(0.5, 0.5), GAMMA), []
-    for dx in (0.05, 0.02, 0.01, 0.005):
-        run = run_of(0.5, gamma=GAMMA, dx=dx, duration=1.2 * exact.time, **paper_accuracy)
-        time = run.attrs["first_stick_time"]
-        measured.append((time, 2.0 * float(position_at(run, time))))
-    first_sticks = [time for time, _ in measured]
-    assert first_sticks[:3] == pytest.approx((3.7945, 3.7863, 3.7835), rel=tol.TRANSITION_TABLE)
-    truth = np.array([exact.time, exact.length])
-    _, coarse, middle, fine = np.array(measured) - truth
-    low, high = tol.TRANSITION_HALVING
-    for ratio in (coarse / middle, middle / fine):
-        assert np.all((low < ratio) & (ratio < high))
-    assert np.all(np.abs(2.0 * middle - coarse) < tol.TRANSITION_EXTRAPOLATED * truth)
 
 
 # Level, width, damping ratio, and tabulated times without damping to 0.9, 0.95 and 0.99 of
