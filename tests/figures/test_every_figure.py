@@ -9,7 +9,6 @@ import pandas as pd
 import pytest
 import tolerances as tol
 from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.legend import Legend
 from matplotlib.path import Path as Outline
@@ -38,7 +37,7 @@ PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady
 def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tmp_path, name):
     table, figure = draw(name).table, draw(name).figure
     # At the width of the journal; the labels of two axes may meet in their corner.
-    FigureCanvasAgg(figure).draw()
+    figure.draw_without_rendering()
     ticks, unseen = set(), set()
     for axis in figure.findobj(Axis):
         low, high = sorted(axis.get_view_interval())

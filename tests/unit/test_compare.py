@@ -67,7 +67,7 @@ MISSING = [
     # A run of a single figure with another gamma leaves the old study of uncertainties.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
     (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: in one tree only"),
-    (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
+    (lambda tree: (tree / "provenance.json").unlink(), "provenance.json: missing in one tree"),
     (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
     (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
 ]

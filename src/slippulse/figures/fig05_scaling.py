@@ -9,9 +9,7 @@ from .shared.scaling import DRAWN, OTHER, QUANTITIES, run_colours, transition_ta
 from .shared.selection import spread_values
 from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, colour_scale, new_panels
 
-NEEDS = {
-    "measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
-}
+NEEDS = {"measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]}}
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 

@@ -50,11 +50,9 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (*upper, pulls) = new_panels(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
     fits = dict(iter(table.groupby(["part", "release"])))
     _draw_chi2(upper[0], table, fits)
-    _draw_region(upper[1], fits, "tau0", r"pre-stress $\tau_0$")
-    _draw_region(upper[2], fits, "gamma", r"elasticity ratio $\gamma$")
     ours = table[table["part"] == "ours"].iloc[0]
-    for axes, name in zip(upper[1:], ("tau0", "gamma"), strict=True):
-        axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
+    _draw_region(upper[1], fits, ours, "tau0", r"pre-stress $\tau_0$")
+    _draw_region(upper[2], fits, ours, "gamma", r"elasticity ratio $\gamma$")
     for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
         upper[1].fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
     upper[1].legend(loc="upper left")
@@ -102,7 +100,7 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
     axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
 
 
-def _draw_region(axes: Axes, fits: Mapping, name: str, label: str) -> None:
+def _draw_region(axes: Axes, fits: Mapping, ours: pd.Series, name: str, label: str) -> None:
     """Draw the regions of the damping ratio and a parameter, where the third one fits best."""
     for release, (colour, marker, _) in LOOKS.items():
         line, best = fits["curve", release], fits["best", release].iloc[0]
@@ -115,4 +113,5 @@ def _draw_region(axes: Axes, fits: Mapping, name: str, label: str) -> None:
             axes.fill_between(inside["damping_ratio"], low, high, linewidth=0.0, **look)
         look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
+    axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     axes.set(xlim=(0.045, 0.3), ylabel=label)

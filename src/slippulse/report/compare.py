@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -26,6 +27,12 @@ TEXTS = ("boundary", "release", "quantity")
 # uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
 DIGITS, ROUNDING = 1e-8, 1e-6
 SHOWN = 10
+Tables: TypeAlias = Sequence[pd.DataFrame]
+# Lines about a difference between two files of one name.
+LINES = {
+    "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
+    "claims.json": "{key}: verdict {here!r} against {shipped!r}",
+}
 
 
 @dataclass
@@ -48,24 +55,15 @@ def compare(here: Path, other: Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    line = "configuration: {key}: {here!r} against {shipped!r}"
-    _compare_contents(result, trees, "provenance.json", "configurations", line)
-    line = "{key}: verdict {here!r} against {shipped!r}"
-    _compare_contents(result, trees, "claims.json", "verdicts", line)
+    for name, line in LINES.items():
+        contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
+        if len(contents) < 2:
+            result.other.append(f"{name}: missing in one tree; not compared")
+        else:
+            result.other += [line.format(**change) for change in changes(contents[1], contents[0])]
     for name in sorted(names[0] & names[1]):
         _compare_tables(result, trees, name)
     return result
-
-
-def _compare_contents(
-    result: Comparison, trees: Sequence[Path], name: str, subject: str, line: str
-) -> None:
-    """Compare one JSON file of both trees; `line` formats each difference."""
-    contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
-    if len(contents) < 2:
-        result.other.append(f"{name}: missing in one tree; {subject} not compared")
-    else:
-        result.other += [line.format(**change) for change in changes(contents[1], contents[0])]
 
 
 def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
@@ -95,11 +93,7 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> Non
 
 
 def _compare_numbers(
-    result: Comparison,
-    name: str,
-    values: Sequence[pd.DataFrame],
-    uncertainties: Sequence[pd.DataFrame],
-    same_lattice: np.ndarray,
+    result: Comparison, name: str, values: Tables, uncertainties: Tables, same_lattice: np.ndarray
 ) -> None:
     """Compare numbers; a difference is unknown where lattices differ and no study was made."""
     ours, theirs = (table.to_numpy() for table in values)

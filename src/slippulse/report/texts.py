@@ -121,18 +121,15 @@ def _values(values: Sequence[float]) -> str:
 
 
 class Line(NamedTuple):
-    """A line of manuscript/summary.yaml.
-
-    ``claim`` is the worst of the claims that decide it, ``said`` the clause of the answer for that
-    verdict, if there is one. ``verdicts`` has a claim of each verdict, those told beside included,
-    with what has that verdict, in words if there are several.
-    """
+    """A line of manuscript/summary.yaml, judged by claims."""
 
     topic: str
     named: str
-    said: str
     text: str
+    # The worst of the claims that decide it, and the clause of the answer for its verdict, if any.
     claim: Entry
+    said: str
+    # A claim of each verdict, those told beside included, with what has it if there are several.
     verdicts: Sequence[tuple[Entry, str]]
 
 
@@ -151,7 +148,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         for ids in groups.values():
             words = listed([*dict.fromkeys(names[id] for id in ids)])
             told.append((ledger(ids[0]), f"({words})" if len(groups) > 1 else ""))
-        lines.append(Line(entry["topic"], entry["named"], said, fill(entry["text"]), worst, told))
+        lines.append(Line(entry["topic"], entry["named"], fill(entry["text"]), worst, said, told))
     return lines
 
 
