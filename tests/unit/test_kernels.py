@@ -9,7 +9,9 @@ import pytest
 import tolerances as tol
 from numpy.polynomial.polynomial import polyfromroots
 
+import slippulse as sp
 from slippulse.solver import arrays, foresight, stencils
+from slippulse.solver.lattice import Lattice
 
 
 @cache
@@ -93,7 +95,7 @@ def test_a_block_is_released_when_its_stress_passes_the_threshold(case):
     (height, speed, slowing), (h, now, release) = case[:3], case[3:]
     motion, forecast = arrays.make_motion(6, 5), arrays.make_scratch(5, 4).forecast
     motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
-    medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)
+    medium = Lattice(sp.Scene("stress", sp.Prestress(0.5, 0.5), 1.0, dx=1.0), None, 0.0).medium
     time, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
     assert time == pytest.approx(release, abs=tol.ROOT)
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)

@@ -193,16 +193,3 @@ def make_scratch(size: int, order: int) -> Scratch:
     first, last, stuck = np.zeros((3, MOST_EVENTS), dtype=np.int64)
     changed = Changed(first, last, stuck, record(COUNT), record(KINKS), record(KINKS))
     return Scratch(make_segments(size), forecast, difference, changed)
-
-
-def make_medium(
-    dx: float,
-    leaf: float,
-    beta: float,
-    mirror: bool,
-    total: bool,
-    friction: tuple[float, int, float, float, Bend | None] = (0.0, 0, 0.0, 0.0, None),
-) -> Medium:
-    """Constants of one scene; ``friction`` has alpha to bend of `Medium`."""
-    per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
-    return Medium(dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, mirror, total)

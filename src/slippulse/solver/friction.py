@@ -32,9 +32,9 @@ def begin_to_fall(motion, bend, block):
 
 
 @inner(inline=True)
-def resistance(motion, bend, block, place):
-    """Friction of a block with a bend at a slip, or at a slip rate."""
-    return bend.beyond + motion.falls[block] * (motion.released[block] + bend.end - place)
+def resistance(motion, bend, block, reached):
+    """Friction of a block with a bend, at its slip or slip rate."""
+    return bend.beyond + motion.falls[block] * (motion.released[block] + bend.end - reached)
 
 
 @inner()

@@ -38,9 +38,12 @@ class Lattice:
         self.scene, self.samples = scene, samples
         self.call_steps = CALL_STEPS
         self.mirror = scene.symmetric
-        leaf = scene.gamma if scene.boundary == "displacement" else 0.0
-        total, friction = scene.release == "total", constants_of(scene.friction, self.localised)
-        self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, friction)
+        dx, leaf, total = scene.dx, scene.gamma, scene.release == "total"
+        friction = constants_of(scene.friction, self.localised)
+        per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
+        self.medium = arrays.Medium(
+            dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, self.mirror, total
+        )
         # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
         weakening = max(-scene.friction.traits.linear_rate, 0.0) * scene.duration
         self.growth = float(np.exp(min(weakening, 600.0)))

@@ -143,15 +143,12 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         return -1.0 if solution is None or solution[1].first_turn()[1] else 1.0
 
     upper = SLOWEST
-    while too_fast(upper) < 0.0:
+    while upper < FASTEST and too_fast(upper) < 0.0:
         upper *= FASTER
-        if upper > FASTEST:
-            raise ValueError(
-                f"weakening: {weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g},"
-                f" beta = {beta:.4g}; allowed: numbers with a steady rupture"
-            )
-    if upper == SLOWEST:
-        raise ValueError(f"weakening: {weakening:.4g}; allowed: less, for a speed above {SLOWEST}")
+    if not SLOWEST < upper < FASTEST:
+        numbers = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
+        allowed = f"numbers with a steady rupture of a speed from {SLOWEST} to {FASTEST}"
+        raise ValueError(f"weakening: {numbers}; allowed: {allowed}")
     speed = root_to_last_bit(too_fast, upper / FASTER, upper)
     solution = _tail(speed, tau0, gamma, beta, weakening)
     assert solution is not None
