@@ -8,7 +8,7 @@ from scipy.optimize import least_squares
 from slippulse.measurement.inference import curve, inference, likely
 from slippulse.model.prestress import Prestress
 from slippulse.studies import published_figure as study_module
-from slippulse.studies.published_figure import BETA, LeftPanel
+from slippulse.studies.published_figure import BETA, NEAR, LeftPanel
 
 # How many readings are fitted: all, or all but the two arrows.
 READINGS = {"profile": 10, "arrows": 12}
@@ -54,15 +54,14 @@ def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release,
     def pulls(trial: np.ndarray) -> np.ndarray:
         return ((panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error)[fitted]
 
-    near = [0.25, 0.55]
-    result = least_squares(pulls, near, x_scale=near, diff_step=0.01, xtol=1e-4)
+    result = least_squares(pulls, NEAR, x_scale=NEAR, diff_step=0.01, xtol=1e-4)
     assert 2.0 * result.cost == pytest.approx(best["chi2"], abs=0.05)
     assert result.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
     assert fits["best"]["chi2"] == min(fits["total"]["chi2"], fits["elastic"]["chi2"])
     profile = table[(table["part"] == part) & (table["release"] == release)]
     line, fitted = curve(profile), profile.loc[profile["weight"] > 0.0, "reading"].unique()
     for level, (low, high) in best["regions"].items():
-        assert low < best["damping_ratio"] < high
+        assert low < ratio < high
         chi_square = np.interp([low, high], line["damping_ratio"], line["chi2"])
         assert chi_square == pytest.approx(best["chi2"] + likely(level), abs=0.15)
     assert best["chi2"] == pytest.approx(sum(best["pulls"][name] ** 2 for name in fitted))
@@ -75,13 +74,12 @@ def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release,
 def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, part):
     profile = table[(table["part"] == part) & (table["release"] == "total")]
     rows = profile[profile["damping_ratio"] == profile["damping_ratio"].unique()[2]]
-    first = rows.iloc[0]
-    correction, weight = rows["correction"].to_numpy(), rows["weight"].to_numpy()
-    smallest = (weight * rows["pull"] ** 2).sum()
+    trial, ratio = rows[["tau0", "gamma"]].to_numpy()[0], rows["damping_ratio"].iloc[0]
+    smallest = (rows["weight"] * rows["pull"] ** 2).sum()
     for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
-        trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
-        pulls = panel.exact(trial, first["damping_ratio"], "total") + correction - panel.drawn
-        assert (weight * (pulls / panel.error) ** 2).sum() > smallest + 0.5
+        exact = panel.exact(trial + change, ratio, "total")
+        pulls = (exact + rows["correction"] - panel.drawn) / panel.error
+        assert (rows["weight"] * pulls**2).sum() > smallest + 0.5
 
 
 def test_an_end_beyond_the_fits_is_not_known(table):

@@ -171,13 +171,11 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
     return Evidence(named, ENTRIES, 0.02)
 
 
-def exact(*measured, **flagged) -> dict:
-    """The claim of an equation that a function of level and spacing should meet."""
-    sweep = evidence(*measured, **flagged)
-    return sweep.equation("equation", sweep.finest("sweep"), "number", "paper").fields()
-
-
 def test_an_equation_is_judged_at_spacing_zero_and_fails_by_one_run_that_is_not_flagged():
+    def exact(*measured, **flagged):
+        sweep = evidence(*measured, **flagged)
+        return sweep.equation("equation", sweep.finest("sweep"), "number", "paper").fields()
+
     claim = exact(lambda level, factor: level * (1.0 + 0.002 * factor))
     assert claim == claim | {"verdict": YES, "runs": 4, "left_out": 0}
     assert claim["deviation"] < 1e-9
@@ -190,15 +188,14 @@ def test_an_equation_is_judged_at_spacing_zero_and_fails_by_one_run_that_is_not_
 
 
 def test_an_estimate_is_judged_by_its_median_not_by_the_worst_run():
-    claims = []
-    for measure in (lambda level, factor: level * (1.05 + 1e-3 * factor), lambda x, _: 1.3 * x):
+    def estimate(measure):
         sweep = evidence(measure)
-        lattices = sweep.lattices("sweep")
-        claims.append(sweep.approximate("estimate", lattices, "number", "paper").fields())
-    good, bad = claims
+        return sweep.approximate("estimate", sweep.lattices("sweep"), "number", "paper").fields()
+
+    good = estimate(lambda level, factor: level * (1.05 + 1e-3 * factor))
     assert good["verdict"] == YES and good["measured"] == pytest.approx(1.051)
     assert (good["largest"], good["uncertainty"]) == pytest.approx((0.051, 1e-3), rel=1e-3)
-    assert bad["verdict"] == NO
+    assert estimate(lambda level, _: 1.3 * level)["verdict"] == NO
 
 
 def test_a_scaling_is_judged_by_its_exponent():
@@ -226,7 +223,7 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
 
 
 def test_a_qualitative_claim_counts_runs():
-    claim = Qualitative(decided=[True] * 37 + [None] * 2 + [np.bool_(True)]).written()
+    claim = Qualitative(decided=[*answers(37, 0, 2), np.bool_(True)]).written()
     assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
     assert claim["flips_at"] == []
     assert Qualitative(decided=np.array([True, False])).verdict() == NO
