@@ -52,6 +52,8 @@ BOUNDARY_BELOW = 0.011
 BOUNDARY_ABOVE, BOUNDARY_ABOVE_UNDAMPED = 0.03, 0.05
 # A locked front advances one block in whole steps; the fit ends within a step.
 LOCKED = 1e-3
+# Work may be above its bound where undamped blocks slip again and again, which cuts steps short.
+BOUND_FACTOR = 3.0
 # Work over sliding blocks and steps, mean over time against mean over steps; exponents of the work,
 # for a rupture that is a crack at first.
 WORK = EXPONENT = 0.02
