@@ -107,7 +107,7 @@ def judge(number, accuracy, most_steps):
         return result
     rows = []
     for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
-        step = chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2, enough=1.0)
+        step = min(1.0, chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2))
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
     study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)

@@ -133,7 +133,7 @@ def settings_for(
     else:
         spacings = _spacings_without_springs(demand, prestress)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    step = chosen_step("localised", ORDER, damping_ratio, gamma * dx**2, enough=STEP)
+    step = min(STEP, chosen_step("localised", ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
     settings["order"] = ORDER
     # The scene refuses a wrong boundary, and a gamma that does not go with it.

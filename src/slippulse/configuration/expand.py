@@ -42,7 +42,7 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
     friction, largest = friction_from(run.friction), accuracy["max_step"]
     traits = friction.traits
     ratios = run.damping_ratio, run.gamma * run.dx**2, traits.steepest * run.dx
-    step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
+    step = min(largest, chosen_step(scheme, accuracy["order"], *ratios))
     step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / run.dx))
     if "promise" in accuracy:
         step = min(step, largest)

@@ -50,7 +50,16 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     pulse = None
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
-        row |= pulse_numbers(run, pulse)
+        row |= {
+            "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
+            **{f"pulse_{name}": getattr(pulse, name) for name in WHOLE_PULSE},
+            "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
+            "pulse_acceleration": acceleration_amplitude(run, pulse),
+            "slip_variation": slip_variation(run, pulse),
+            "pulse_half_width": half_width(run, pulse),
+            "lattice_noise": lattice_noise(run),
+            "sliding_at_once": sliding_at_once(run),
+        }
     if "sample_velocity" in run and run["sample_position"].size > 1:
         row |= classify(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
@@ -68,20 +77,6 @@ def transition(run: AnyRun, fraction: float) -> dict:
         with suppress(ArithmeticError):
             return transition_stress(run, fraction)
     return {}
-
-
-def pulse_numbers(run: AnyRun, pulse: LeadingPulse) -> dict[str, float]:
-    """Numbers of the slip velocity at the end, most of them of the leading pulse."""
-    return {
-        "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
-        **{f"pulse_{name}": getattr(pulse, name) for name in WHOLE_PULSE},
-        "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
-        "pulse_acceleration": acceleration_amplitude(run, pulse),
-        "slip_variation": slip_variation(run, pulse),
-        "pulse_half_width": half_width(run, pulse),
-        "lattice_noise": lattice_noise(run),
-        "sliding_at_once": sliding_at_once(run),
-    }
 
 
 def half_width(run: AnyRun, pulse: LeadingPulse) -> float:

@@ -13,7 +13,7 @@ from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, prestress_from
 from .recorded_law import law_of
 from .release import RELEASES
-from .stability import MARGIN, largest_step
+from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")
 # The lattice in two ways, and the exact solution of its continuum limit.
@@ -153,7 +153,7 @@ class Scene:
             raise ValueError(f"scheme: {self.scheme!r}; allowed: {allowed}")
 
     def _check_step(self) -> None:
-        bound = self._stable_step(enough=self.max_step / MARGIN)
+        bound = self.largest_stable_step
         damping_ratio, stiffness, _ = self.ratios
         ratios = f"beta/dx = {damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
@@ -188,17 +188,14 @@ class Scene:
     @property
     def largest_stable_step(self) -> float:
         """Largest stable time step in units of dx."""
-        return self._stable_step(math.inf)
+        bound = largest_step(self.scheme, self.order, *self.ratios)
+        return min(bound, self.friction.traits.longest_step / self.dx)
 
     @property
     def ratios(self) -> tuple[float, float, float]:
         """The numbers that a stable step follows from, for `slippulse.model.stability`."""
         traits = self.friction.traits
         return self.damping_ratio, self.gamma * self.dx**2, traits.steepest * self.dx
-
-    def _stable_step(self, enough: float) -> float:
-        bound = largest_step(self.scheme, self.order, *self.ratios, enough=enough)
-        return min(bound, self.friction.traits.longest_step / self.dx)
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file.

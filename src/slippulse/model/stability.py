@@ -19,25 +19,21 @@ STEP_ERROR = 1e-2
 ROUNDS, PARTS = 4, 32
 
 
-def _of_modes(
-    damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
-) -> tuple[float, float, float]:
-    # Slip that grows physically may grow.
-    return damping_ratio, gamma_dx2, max(alpha_dx, 0.0)
+def largest_step(
+    scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
+) -> float:
+    """Largest stable time step in units of dx, by b = beta/dx, gamma dx^2 and alpha dx.
 
-
-def largest_step(scheme: str, order: int, *ratios: float, enough: float = math.inf) -> float:
-    """Largest stable time step in units of dx, or any number between it and ``enough``.
-
-    The ratios are b = beta/dx, gamma dx^2 and, if not 0, alpha dx. A mode of the lattice has
-    stiffness s + gamma dx^2 and damping rate b s + alpha dx, where s is in [0, 4], in units of dx.
-    Symplectic Euler is stable for dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2)
-    and c = b + alpha dx/4. A Taylor step is stable where it amplifies no mode; it expands slip to
-    one order more than velocity. The bound is 0 where the polynomials cannot be computed.
+    A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, where s is
+    in [0, 4], in units of dx. Symplectic Euler is stable for dt <= sqrt(dt_c^2 + c^2) - c, where
+    dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4. A Taylor step is stable where it amplifies
+    no mode; it expands slip to one order more than velocity. The bound is 0 where the polynomials
+    cannot be computed.
     """
     if scheme == "continuum":
         return math.inf
-    damping_ratio, gamma_dx2, drag = _of_modes(*ratios)
+    # Slip that grows physically may grow.
+    drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # sqrt(dt_c^2 + c^2) - c cancels at large damping; this form of it does not.
@@ -47,35 +43,34 @@ def largest_step(scheme: str, order: int, *ratios: float, enough: float = math.i
     if not all(map(math.isfinite, parameters)):
         return 0.0
     rounded = [float(f"{value:.6g}") for value in parameters]
-    return _taylor_bound(order, *rounded, enough)
+    return _taylor_bound(order, *rounded)
 
 
-def accurate_step(error: float, order: int, *ratios: float) -> float:
+def accurate_step(
+    error: float, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
+) -> float:
     """Largest Taylor step, in units of dx, that errs by a fraction of any mode at most.
 
     The error is the remainder (r dt)^(order + 1)/(order + 1)!, where r is the largest rate of a
     mode: sqrt(k), or c + sqrt(c^2 - k) where damping c^2 > k, with its stiffness k and c of half
     its damping rate.
     """
-    damping_ratio, gamma_dx2, drag = _of_modes(*ratios)
     stiffness = math.sqrt(4.0 + gamma_dx2)
-    half = 2.0 * damping_ratio + 0.5 * drag
+    half = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
     over = math.sqrt(max(half - stiffness, 0.0)) * math.sqrt(half + stiffness)
     rate = max(half, stiffness) + over
     return (error * math.factorial(order + 1)) ** (1.0 / (order + 1)) / rate
 
 
-def chosen_step(scheme: str, order: int, *ratios: float, enough: float = math.inf) -> float:
-    """Step in units of dx, ``enough`` at most, that is stable by a margin and accurate."""
-    step = min(enough, MARGIN * largest_step(scheme, order, *ratios, enough=enough / MARGIN))
+def chosen_step(scheme: str, order: int, *ratios: float) -> float:
+    """Longest step, in units of dx, that is stable by a margin and accurate."""
+    step = MARGIN * largest_step(scheme, order, *ratios)
     return min(step, accurate_step(STEP_ERROR, order, *ratios)) if scheme == "localised" else step
 
 
 @lru_cache(maxsize=4096)
 @np.errstate(over="ignore", invalid="ignore")
-def _taylor_bound(
-    order: int, damping_ratio: float, gamma_dx2: float, drag: float, enough: float
-) -> float:
+def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
     stiffness, damping = modes + gamma_dx2, damping_ratio * modes + drag
     # Each time derivative of the slip of a mode combines the slip and the velocity at the start.
@@ -88,19 +83,12 @@ def _taylor_bound(
         # An amplification of NaN is not stable.
         return ~(np.max(_amplifications(steps, np.array(derivatives)), axis=-1) <= allowed)
 
-    # The first unstable step counts, so steps are looked at from small ones on, a few at a time.
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if smallest == 0.0:
         return 0.0
+    # The first unstable step counts. No order is stable at the last one.
     steps = np.geomspace(smallest, 8.0, 160)
-    for start in range(0, steps.size, PARTS):
-        positions = np.flatnonzero(unstable(steps[start : start + PARTS]))
-        if positions.size:
-            break
-        stable = float(steps[start + PARTS - 1])
-        if stable >= min(enough, steps[-1]):
-            return stable
-    first = start + int(positions[0])
+    first = int(np.argmax(unstable(steps)))
     lower, upper = steps[first - 1] if first else 0.0, steps[first]
     for _ in range(ROUNDS):
         parts = np.linspace(lower, upper, PARTS + 1)

@@ -39,7 +39,8 @@ def solve_exactly(
     fields = _fields(rupture, x, scene.duration)
     numbers = _numbers(rupture, fields, scene.duration)
     recorded = _sampled(rupture, samples) if samples is not None else {}
-    return Solution(x, scene.prestress(x), numbers=numbers, **fields | recorded)
+    flags = ("construction_ended",) if numbers["limit_reason"] else ()
+    return Solution(x, scene.prestress(x), numbers=numbers, flags=flags, **fields | recorded)
 
 
 def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:

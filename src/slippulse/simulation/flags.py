@@ -18,9 +18,6 @@ ENERGY_RESIDUAL = 1e-2
 # A Taylor step that errs by this fraction of the fastest mode is flagged. Front speeds err by up to
 # 7 per cent of it, and of chains with rough pre-stress none moved by 2 per cent below ten times it.
 LONG_STEP = 2e-2
-# A front of the textbook scheme that takes equally many steps for each of these last blocks runs at
-# a fraction of dx/dt. With fewer steps than this, that speed errs by up to 1 per cent.
-LAST_BLOCKS, FEW_STEPS = 30, 50
 
 
 def flags_of(scene: Scene, solution: Solution) -> dict:
@@ -35,9 +32,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
     if scene.scheme == "localised":
         longest = accurate_step(LONG_STEP, scene.order, *scene.ratios)
         flags["long_step"] = scene.max_step > longest
-    if scene.scheme == "continuum":
-        flags["construction_ended"] = numbers["limit_reason"] != ""
-    else:
+    if scene.scheme != "continuum":
         fastest = max(1.0, float(np.max(solution.slip_velocity)))
         lowest_velocity = -NEGATIVE_VELOCITY[scene.scheme] * fastest
         flags |= {
@@ -47,9 +42,9 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
             "negative_velocity": numbers["min_velocity"] < lowest_velocity,
             # A residual of NaN is flagged, too.
             "energy": not numbers["energy_residual"] <= ENERGY_RESIDUAL,
-            "locked_front": scene.scheme == "fixed_step" and locked_front(solution),
         }
-    return {"pulse_blocks": blocks, "run_flags": ",".join(flag for flag in flags if flags[flag])}
+    names = [*filter(flags.get, flags), *solution.flags]
+    return {"pulse_blocks": blocks, "run_flags": ",".join(names)}
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:
@@ -70,18 +65,6 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
         return False
     last = np.max(solution.stick_time, initial=0.0, where=np.isfinite(solution.stick_time))
     return scene.duration - last > 2.0 * math.pi / math.sqrt(scene.gamma)
-
-
-def locked_front(solution: Solution) -> bool:
-    """True if a front of the textbook scheme is locked to a fraction of dx/dt."""
-    step = solution.numbers["end_time"] / solution.numbers["steps"]
-    for side in (-1.0, 1.0):
-        released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
-        times = np.sort(solution.release_time[released])
-        counts = np.rint(np.diff(times[-LAST_BLOCKS:]) / step)
-        if counts.size == LAST_BLOCKS - 1 and counts.min() == counts.max() < FEW_STEPS:
-            return True
-    return False
 
 
 def narrowest_pulse(scene: Scene, solution: Solution) -> int:

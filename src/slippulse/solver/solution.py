@@ -31,6 +31,7 @@ class Solution:
     numbers: dict
     sample_slip: np.ndarray | None = None
     sample_velocity: np.ndarray | None = None
+    flags: tuple[str, ...] = ()  # those that only its solver can raise
 
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays by name."""

@@ -93,7 +93,7 @@ class Case:
         if held and self.quantity == "T_trans":
             # The lattice is late by some of its blocks.
             duration += 4.0 * self.dx
-        step = chosen_step("localised", 4, self.ratio, self.gamma * self.dx**2, enough=0.5)
+        step = min(0.5, chosen_step("localised", 4, self.ratio, self.gamma * self.dx**2))
         boundary = "displacement" if held else "stress"
         other = {"max_step": step} | self.other
         return Scene(

@@ -3,8 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..configuration.expand import expand
-from ..model.scene import Scene
+from ..configuration.runs import parameters
 from ..predict.numbers import or_nan
 from ..theory.front_speeds import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
@@ -31,9 +30,8 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Panels prestress, springs (over gamma dx^2), refined (over dx), and limit (dx -> 0)."""
-    sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
-    parameters = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
-    swept, springs, fixed_ratio, *fixed_beta = parameters
+    sweeps = (parameters(settings["sweeps"][name]) for name in NEEDS["sweeps"])
+    swept, springs, fixed_ratio, *fixed_beta = map(pd.DataFrame, sweeps)
     held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     held += [scenes.assign(held="beta", fixed=scenes["beta"]) for scenes in fixed_beta]
     parts = []
