@@ -132,16 +132,18 @@ def test_what_was_not_measured_or_has_no_theory_is_said_to_be_so(report, manuscr
     assert not re.search(r"\bnan\b", re.sub(r"`[^`]*`", "", text), re.I)
 
 
-def test_what_fails_is_one_line_that_names_it(report, tmp_path):
-    division = r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)"
-    for source, reason in {
-        "# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n": r"small\.md: .*no_such",
-        "```python\nwidth = 1 / 0\n```\n": division,
-    }.items():
-        (tmp_path / "small.md").write_text(source, encoding="utf-8")
-        with pytest.raises(ValueError, match=reason) as caught:
-            execute(tmp_path / "small.md", report.inputs)
-        assert "\n" not in str(caught.value)
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        ("# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n", ".*no_such"),
+        ("```python\nwidth = 1 / 0\n```\n", r"ZeroDivisionError: .*\(cell 'width = 1 / 0'\)"),
+    ],
+)
+def test_what_fails_is_one_line_that_names_it(report, tmp_path, source, reason):
+    (tmp_path / "small.md").write_text(source, encoding="utf-8")
+    with pytest.raises(ValueError, match=rf"small\.md: {reason}") as caught:
+        execute(tmp_path / "small.md", report.inputs)
+    assert "\n" not in str(caught.value)
 
 
 def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path, monkeypatch):
