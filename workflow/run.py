@@ -17,7 +17,6 @@ from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
 
-# The options and targets of the last run.
 CALL = Path("results/records/.call")
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -29,33 +28,31 @@ def arguments(command: str) -> list[str]:
     names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
     options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
-    if command == "verify":
-        if not options:
-            # Without options, the results are compared with what the last run was to make.
-            with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-                called = json.loads(CALL.read_text(encoding="utf-8"))
-                targets = [*{"everything"} & {*called["targets"]}]
-                options = [str(option) for option in called["options"]]
-        look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
-        return [*look, "--cores", "1", *options, "--", "verify", *targets]
-    return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
+    if command == "replicate":
+        return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
+    if not options:
+        # Without options, the results are compared with what the last run was to make.
+        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
+            called = json.loads(CALL.read_text(encoding="utf-8"))
+            targets = [*{"everything"} & {*called["targets"]}]
+            options = [str(option) for option in called["options"]]
+    look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
+    return [*look, "--cores", "1", *options, "--", "verify", *targets]
 
 
 def full_target(target: str) -> str:
     """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
     name, _, ending = target.removeprefix("results/figures/").partition(".")
-    figures = sorted(path.stem for path in Path("src/slippulse/figures").glob("*_*.py"))
-    figures = [figure for figure in figures if figure.startswith(("fig", "study_"))]
+    paths = sorted(Path("src/slippulse/figures").glob("*_*.py"))
+    figures = {path.stem for path in paths if path.stem.startswith(("fig", "study_"))}
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
-    start = f"fig{int(numbered[1]):02d}_" if numbered else None
-    for figure in figures:
-        if figure == name or (start and figure.startswith(start)):
-            return f"results/figures/{figure}.{ending or 'png'}"
     if numbered:
-        sys.exit(f"TARGET: {target}; allowed: {', '.join(figures)}, sweep_NAME")
-    if name.startswith("sweep_"):
-        return f"results/figures/{name}.{ending or 'png'}"
-    return target
+        start = f"fig{int(numbered[1]):02d}_"
+        name = next((figure for figure in figures if figure.startswith(start)), "")
+        if not name:
+            sys.exit(f"TARGET: {target}; allowed: {', '.join(sorted(figures))}, sweep_NAME")
+    known = name in figures or name.startswith("sweep_")
+    return f"results/figures/{name}.{ending or 'png'}" if known else target
 
 
 def answer() -> str:
@@ -67,13 +64,13 @@ def answer() -> str:
         from slippulse.claims.reading import read_text
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        shipped, changed = read_text("manuscript/shipped_verdicts.yaml"), ""
+        shipped = read_text("manuscript/shipped_verdicts.yaml")
+        lines = [ledger.summary()]
         for claim in ledger if called["altered"] else ():
             before = shipped.get(claim.id, "absent")
             if before != claim.verdict:
-                changed += f"  {claim.id}: {before} -> {claim.verdict}\n"
-        headline = "Verdicts that differ from the shipped ones:\n" if changed else ""
-        text = f"{ledger.summary()}\n{headline}{changed}"
+                lines.append(f"Differs from the shipped: {claim.id}: {before} -> {claim.verdict}")
+        text = "".join(f"{line}\n" for line in lines)
     if called["page"]:
         return f"{text}Open results/index.html"
     if called["targets"] == ["all"]:
@@ -96,8 +93,8 @@ def main(command: str) -> int:
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         end()
-        cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
-        os.write(2, f"{cursor}\nStopped; the next run goes on from what is there.\n".encode())
+        cursor = b"\x1b[?25h" if sys.stderr.isatty() else b""
+        os.write(2, cursor + b"\nStopped; the next run goes on from what is there.\n")
         sys.exit(128 + number)
 
     for number in SIGNALS:

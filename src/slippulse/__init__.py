@@ -22,7 +22,7 @@ _HOMES = {
     "friction": "model.friction",
     "measure": "predict.one_run",
     "plot": "figures.run",
-    "point": "data.points",
+    "point": "data.point",
     "run_sweep": "simulation.simulate",
     "settings_for": "configuration.accuracy",
     "simulate": "simulation.simulate",

@@ -1,7 +1,7 @@
 # The names that the package loads when they are used, for editors and type checkers.
 from . import theory as theory
 from .configuration.accuracy import settings_for as settings_for
-from .data.points import point as point
+from .data.point import point as point
 from .figures.run import plot as plot
 from .model.friction import friction as friction
 from .model.prestress import Prestress as Prestress

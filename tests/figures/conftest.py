@@ -11,7 +11,8 @@ from selection import small_sweep
 
 from slippulse.configuration.expand import expand
 from slippulse.configuration.runs import runs
-from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.saving import save_dataset
+from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.figures.style import house_style
 from slippulse.predict.comparison import measured_table

@@ -8,7 +8,7 @@ import pytest
 from slippulse.configuration.resolve import resolve
 from slippulse.data.chunks import runs_of
 from slippulse.data.files import CONFIGURATION as VARIABLE
-from slippulse.data.join import ChunksDiffer
+from slippulse.data.files import UnreadableFile
 from slippulse.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
@@ -95,6 +95,6 @@ def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
     outputs = {"joined": tmp_path / "joined"}
     for index, kind in enumerate(KINDS):
         files = {"chunks": [short[index], long[index]], "finest": [sweep[1]]}
-        with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
+        with pytest.raises(UnreadableFile, match="not the runs of one sweep"):
             join.run(files, outputs, {"kind": kind, "record": ["fronts", "fields"]})
     assert not any(tmp_path.iterdir())

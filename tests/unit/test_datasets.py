@@ -12,7 +12,8 @@ import xarray as xr
 
 import slippulse as sp
 from slippulse.data.files import write_whole
-from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.saving import save_dataset
+from slippulse.data.store import load_dataset
 from slippulse.data.sweeps import FIELDS, FRONTS
 from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import VARIABLES

@@ -9,7 +9,8 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.saving import save_dataset
+from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.predict.comparison import measured_table
 

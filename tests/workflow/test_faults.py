@@ -20,7 +20,7 @@ from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, made, planned, re
 
 from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
-from slippulse.data.store import save_dataset
+from slippulse.data.saving import save_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.steps.job import logged
 from slippulse.steps.processes import JobFailed, Jobs

@@ -23,7 +23,6 @@ from slippulse.steps.targets import SOURCES, selected
 JOBS, FAILED = Jobs(), []
 if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
     end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
-
 # Inputs of each figure and study, as its module says: names by kind of file, and keys.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
 try:
@@ -45,13 +44,15 @@ ACCURACY = accuracy_of(CONFIG)
 # A scene is a simulation of one run that records everything.
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
-# Simulations and scenes that an overlay adds; they are made with the rest.
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 
 def environment(wildcards):
-    """Folder that all jobs depend on. Snakemake asks for it when it has read its options."""
+    """Folder that jobs without other inputs depend on, of which every target needs some.
+
+    Snakemake asks for it when it has read its options, before it looks at results.
+    """
     if workflow.dag_settings is None:
         return []
     if workflow.is_main_process:
@@ -63,19 +64,18 @@ def run_step(rule, wildcards, input, output, params, threads, log):
     """Run the step of a rule in another process, which need not load Snakemake."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
     origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
+    files, outputs = (
+        {key: str(file) if isinstance(file, str) else [*file] for key, file in named.items()}
+        for named in (input, output)
+    )
     try:
-        JOBS.run(origin, name, plain(input), plain(output), settings, str(log))
+        JOBS.run(origin, name, files, outputs, settings, str(log))
     except JobFailed as reason:
         # Snakemake reads the log of a failed job, which a process that never began has not written.
         with suppress(OSError):
             Path(str(log)).touch()
         FAILED.append(str(reason))
         raise
-
-
-def plain(named):
-    """Files of a rule by name, as builtins."""
-    return {key: str(file) if isinstance(file, str) else [*file] for key, file in named.items()}
 
 
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
@@ -86,7 +86,6 @@ CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if
 # The front speeds are those of one level, without a grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
-# Predictions that are read: topics by simulation.
 READ = [CLAIM_PREDICTED, *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
 # Paths by kind of file, for a name; a list is named by its path.
 FILES = {
@@ -102,8 +101,7 @@ FILES = {
     "animations": "results/scenes/{name}.gif",
     "kernels": "results/kernels/{name}.txt",
 }
-# The kernels of each scheme, and of the layer in the plane. A job whose modules reach them waits
-# until they are compiled.
+# A job whose modules reach these kernels waits until they are compiled.
 KERNELS = {
     "layer": "src/slippulse/solver/layer.py",
     "localised": "src/slippulse/solver/taylor.py",
@@ -152,12 +150,11 @@ def settings_of(job):
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
-    coarser = [{**sweep, "coarser": float(factor)} for factor in ACCURACY["coarser"]]
+    factors = map(float, ACCURACY["coarser"])
     return {
         # Where an accuracy is asked for, the sweep has the spacing of each run.
         "sweep": promised(sweep),
-        # The sweep on the coarser lattices of the preset, by factor of the spacing.
-        "sweeps": {one["coarser"]: promised(one) for one in coarser},
+        "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
         "measure": {**config["measure"], "share": share},
         # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
@@ -177,7 +174,7 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
-# Files that are joined from chunks, below results/, each with its kind and its simulation.
+# Kind and simulation of each joined file, below results/.
 KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
 JOINED = {below(*made(kind, [name])): (kind, name) for name in CHUNKS for kind in KINDS}
 # Values of the wildcards. The simulation of one job is one without chunks, or a chunk of another.

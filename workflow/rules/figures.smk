@@ -1,7 +1,6 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
 for study, needs in STUDY_NEEDS.items():
-    # The resolved simulations that the study names.
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
     reached = [scheme for scheme in KERNELS if KERNELS[scheme] in sources(f"studies.{study}")]
 
@@ -60,9 +59,8 @@ for figure, needs in (NEEDS | SWEEPS).items():
             run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule draw_scene:
+use rule step as draw_scene with:
     input:
-        environment,
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
         predicted="results/predictions/{scene}.csv",
@@ -80,13 +78,10 @@ rule draw_scene:
         altered=lambda wildcards: note_of({"data": [wildcards.scene]}),
     message:
         "Drawing scene {wildcards.scene}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule animate_scene:
+use rule step as animate_scene with:
     input:
-        environment,
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",
@@ -96,5 +91,3 @@ rule animate_scene:
         title=lambda wildcards: TITLES[wildcards.scene],
     message:
         "Animating scene {wildcards.scene}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)

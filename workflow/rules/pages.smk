@@ -1,4 +1,4 @@
-# Files to read: claims, explorer, report, provenance, and the page that leads to all.
+# Files to read: claims, explorer, report, and the page that leads to all, with the provenance.
 
 from slippulse.data.provenance import changes, source_files
 
@@ -25,9 +25,8 @@ DRAFT += made("scenes", OWN_SCENES)
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
 
 
-rule write_claims:
+use rule step as write_claims with:
     input:
-        environment,
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
@@ -48,13 +47,10 @@ rule write_claims:
         altered=changes(SHIPPED, config),
     message:
         "Judging the claims"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule write_explorer:
+use rule step as write_explorer with:
     input:
-        environment,
         law="results/studies/explorer_law.csv",
         measured=made("measured", declared("steps.write_explorer", "SIMULATIONS")),
     output:
@@ -63,13 +59,10 @@ rule write_explorer:
         "results/logs/write_explorer.log",
     message:
         "Writing results/explorer.html"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule write_report:
+use rule step as write_report with:
     input:
-        environment,
         "manuscript/references.bib",
         expand("manuscript/{text}.yaml", text=TEXTS),
         expand("results/figures/{name}.png", name=NEEDS),
@@ -92,11 +85,9 @@ rule write_report:
         config=config,
     message:
         "Writing the replication report"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule write_scenes_page:
+use rule step as write_scenes_page with:
     input:
         environment,
         expand("results/scenes/{scene}.png", scene=SCENES),
@@ -108,57 +99,34 @@ rule write_scenes_page:
         scenes=TITLES,
     message:
         "Writing the list of scenes"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule write_provenance:
+use rule step as write_index with:
     input:
-        environment,
         [path.as_posix() for path in source_files(".")],
         results=RESULTS,
         captions="manuscript/captions.yaml",
+        summary="manuscript/summary.yaml",
+        errata="manuscript/errata.yaml",
     output:
+        html="results/index.html",
         provenance="results/provenance.json",
         checksums="results/checksums.txt",
         manifest="results/codecheck.yml",
     log:
-        "results/logs/write_provenance.log",
+        "results/logs/write_index.log",
     params:
         config=config,
         shipped=SHIPPED,
-    message:
-        "Noting what the results were made from"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
-
-
-rule write_index:
-    input:
-        environment,
-        captions="manuscript/captions.yaml",
-        summary="manuscript/summary.yaml",
-        errata="manuscript/errata.yaml",
-        # The provenance is made from all other files that the page shows or leads to.
-        provenance="results/provenance.json",
-    output:
-        html="results/index.html",
-    log:
-        "results/logs/write_index.log",
-    params:
         figures=[*NEEDS, *SWEEPS],
         scenes=TITLES,
     message:
         "Writing results/index.html, the page to open"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-# Names for several files.
 GATHERED = {
     "everything": EVERYTHING,
     "scenes": [*made("scenes", SCENES), *made("animations", SCENES), "results/scenes/index.html"],
-    # The short name of each figure of the paper.
     **{figure.partition("_")[0]: made("figures", [figure]) for figure in FIGURES},
 }
 for name, files in GATHERED.items():

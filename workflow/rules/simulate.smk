@@ -1,6 +1,4 @@
-# Data, measured numbers, predictions and uncertainties of each simulation, or of each of its
-# chunks, as NAME/3-of-8. Files of chunks are joined, and stay for another measurement.
-
+# Data, measured numbers, predictions and uncertainties of each simulation, or of its chunks.
 
 BOUNDS = {
     "runtime": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().minutes,
@@ -8,9 +6,17 @@ BOUNDS = {
 }
 
 
-rule compile_kernels:
+# What the rules have in common; it makes nothing itself.
+rule step:
     input:
         environment,
+    log:
+        "results/logs/step.log",
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
+
+
+use rule step as compile_kernels with:
     output:
         kernels="results/kernels/{scheme}.txt",
     log:
@@ -18,11 +24,9 @@ rule compile_kernels:
     priority: 3
     message:
         "Compiling the kernels: {wildcards.scheme} (once)"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule simulate:
+use rule step as simulate with:
     input:
         environment,
         kernels=setting("kernels"),
@@ -40,13 +44,10 @@ rule simulate:
         sweep=setting("sweep"),
     message:
         "Simulating {wildcards.simulation}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule measure:
+use rule step as measure with:
     input:
-        environment,
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
@@ -57,13 +58,9 @@ rule measure:
         measure=setting("measure"),
     message:
         "Measuring {wildcards.simulation}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule predict:
-    input:
-        environment,
+use rule step as predict with:
     output:
         predicted="results/predictions/{simulation}.csv",
     log:
@@ -76,13 +73,10 @@ rule predict:
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule study_grid:
+use rule step as study_grid with:
     input:
-        environment,
         kernels=setting("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
@@ -99,13 +93,10 @@ rule study_grid:
         measure=setting("measure"),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule join:
+use rule step as join with:
     input:
-        environment,
         chunks=joined(lambda kind, name: made(kind, CHUNKS[name])),
         finest=joined(
             lambda kind, name: made("measured", [name] if kind == "uncertainties" else [])
@@ -125,5 +116,3 @@ rule join:
         record=joined(lambda kind, name: SIMULATIONS[name].record),
     message:
         "Putting {wildcards.joined} together"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)

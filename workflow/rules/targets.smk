@@ -11,12 +11,10 @@ from slippulse.data.tree import Tree
 from slippulse.steps.origins import LOCK, jobs_of
 from slippulse.steps.targets import Plan, unlike, write_faulty
 
-GIVEN = {
-    "--configfile": [*map(os.path.relpath, workflow.overwrite_configfiles)],
-    "--config": workflow.config_settings.config_args,
-}
-OPTIONS = [word for key, values in GIVEN.items() if values for word in (key, *values)]
-RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
+overlays, values = workflow.overwrite_configfiles, workflow.config_settings.config_args
+OPTIONS = ["--configfile", *map(os.path.relpath, overlays)] if overlays else []
+OPTIONS += ["--config", *values] if values else []
+RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules if rule.name != "step"}
 # Targets by name: rules without wildcards; `verify` looks at what a run makes by default.
 NAMED = {
     name: rule.output or rule.input
@@ -32,31 +30,32 @@ PLAN = Plan(MADE_BY, NAMED, shlex.join(OPTIONS))
 
 
 def in_one_line(function):
-    """Call a function; a refusal ends the run with its own words."""
-    try:
-        return function()
-    except (ConfigError, OSError) as error:
-        failed = isinstance(error, OSError)
-        sys.exit(f"{error.filename}: {error.strerror}" if failed else str(error))
+    """Let the refusals of a function end the run with their own words."""
+
+    def called(*arguments):
+        try:
+            return function(*arguments)
+        except ConfigError as error:
+            sys.exit(str(error))
+        except OSError as error:
+            sys.exit(f"{error.filename}: {error.strerror}")
+
+    return called
 
 
 @cache
+@in_one_line
 def begin():
-    """Refuse what is asked for, or have faulty results found old. Returns the lock of the run."""
-    return in_one_line(lambda: begin_with(sorted(workflow.dag_settings.targets) or ["all"]))
-
-
-def begin_with(targets):
-    """Check the targets and what they cost, and compare the results that they need."""
+    """Check targets and their cost, and have faulty results found old. Returns the run's lock."""
+    targets = sorted(workflow.dag_settings.targets) or ["all"]
     wanted = PLAN.wanted(targets)
     if problem := unlike(LOCK):
         raise ConfigError(problem)
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
-    simulated = {
-        Path(name).parts[1].removesuffix(".nc") for name in wanted if name.startswith("data/")
-    }
-    costs = [line for name in sorted(simulated) for line in settings_of(name)["cost"]()]
+    data = [Path(name).parts[1] for name in wanted if name.startswith("data/")]
+    simulated = sorted({name.removesuffix(".nc") for name in data})
+    costs = [line for name in simulated for line in settings_of(name)["cost"]()]
     if costs and not CONFIG.allow_large:
         raise ConfigError(format_problems(costs))
     # Without an executor Snakemake only looks, as for a graph.
@@ -69,8 +68,7 @@ def begin_with(targets):
         # `make verify` and the last line of a run read how the run was called.
         called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
         called["judged"] = "claims.json" in wanted
-        kept = {**config, "preset": SHIPPED["preset"]}
-        called["altered"] = bool(ALTERED and changes(SHIPPED, kept))
+        called["altered"] = changes(SHIPPED, {**config, "preset": SHIPPED["preset"]}) != []
         write_json(called, "results/records/.call")
     return held
 
@@ -106,4 +104,4 @@ def end():
 
 if workflow.is_main_process:
     logger.addFilter(explain)
-    in_one_line(lambda: PLAN.check_places(".snakemake", "results/logs"))
+    in_one_line(PLAN.check_places)(".snakemake", "results/logs")

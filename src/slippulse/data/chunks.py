@@ -1,8 +1,7 @@
-"""Division of the runs of a sweep into chunks: a rule that needs only the number of chunks.
+"""Division of the runs of a sweep into chunks.
 
-Each chunk gets one run a round: neighbours, which cost about the same, go to different chunks. The
-first chunk changes at random from round to round, always in the same way: else a list of as many
-values as there are chunks would give each chunk one value of it.
+Each chunk gets one run a round, so that neighbours, which cost about the same, are apart. The first
+chunk of a round is random: else one chunk could get all runs with one value of a list.
 """
 
 import random

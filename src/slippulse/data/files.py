@@ -14,8 +14,7 @@ class UnreadableFile(ValueError):
 
     def __init__(self, path: str | Path, reason: object) -> None:
         text = " ".join(str(reason).split())[:120]
-        remedy = "delete it and run again, and it is made anew"
-        super().__init__(f"{path}: cannot be read ({text}); {remedy}")
+        super().__init__(f"{path}: cannot be read ({text}); delete it and run again")
 
 
 def configuration() -> str:

@@ -8,19 +8,14 @@ import pandas as pd
 import xarray as xr
 
 from .chunks import runs_of
+from .files import UnreadableFile
 from .points import Recorded, runs_in
 from .store import load_dataset
 from .sweeps import combine
 from .tables import load_table, save_table
 from .variables import described
 
-
-class ChunksDiffer(ValueError):
-    """Files that are not the chunks of one sweep."""
-
-    def __init__(self, paths: Sequence[str | Path]) -> None:
-        others = f"{paths[0]} and the other {len(paths) - 1}"
-        super().__init__(f"{others}: not the runs of one sweep; delete them and run again")
+DIFFERENT = "with the other chunks, it has not the runs of one sweep"
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
@@ -43,7 +38,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
     count = blocks[0].max() + 1
     for chunk, block, numbers in zip(chunks, blocks, runs, strict=True):
         if block.max() + 1 != count or len(chunk) != len(numbers) * count:
-            raise ChunksDiffer(paths)
+            raise UnreadableFile(paths[0], DIFFERENT)
         chunk.index = pd.MultiIndex.from_arrays([block, np.tile(numbers, count)])
     # The chunk with the first run says the order of the columns.
     ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])
@@ -59,7 +54,7 @@ def join_grid_studies(
     chunks = _texts(paths)
     runs = _run_numbers(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
     if sum(map(len, runs)) != len(measured):
-        raise ChunksDiffer(paths)
+        raise UnreadableFile(paths[0], DIFFERENT)
     for chunk, numbers in zip(chunks, runs, strict=True):
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
@@ -81,5 +76,5 @@ def _run_numbers(paths: Sequence[str | Path], counts: Sequence[int]) -> list[lis
     """Numbers of the runs of each chunk, whose counts must be those of the chunks of one sweep."""
     runs = [[*runs_of(chunk, len(counts), sum(counts))] for chunk in range(1, len(counts) + 1)]
     if [len(numbers) for numbers in runs] != [*counts]:
-        raise ChunksDiffer(paths)
+        raise UnreadableFile(paths[0], DIFFERENT)
     return runs

@@ -1,12 +1,12 @@
-"""The runs of a sweep, read from its Dataset. No compiler is loaded."""
+"""The runs of a sweep, read from its Dataset."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..model.checks import check_number, short_repr
+from ..model.checks import short_repr
 
 AXES = ("sample_time", "sample_position")
 DIMENSIONS = {name: (name,) for name in AXES} | {"sample_slip": AXES, "sample_velocity": AXES}
@@ -28,42 +28,9 @@ class Recorded(dict[str, np.ndarray]):
 AnyRun = Recorded | xr.Dataset
 
 
-def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
-    """Take one run out of a sweep, as `simulate` returned it.
-
-    Parameters
-    ----------
-    sweep : xarray.Dataset
-        data of a sweep, from `run_sweep` or from a file of ``results/data``
-    index : int
-        number of the run, from 0
-
-    Returns
-    -------
-    xarray.Dataset
-        the run over x, with the fields that were recorded; its numbers are attributes
-
-    Raises
-    ------
-    TypeError, ValueError
-        if ``sweep`` is not a sweep, has no such run, or blocks that are not those of its runs
-
-    Examples
-    --------
-    >>> run = sp.point(xarray.open_dataset("results/data/arrest.nc"), 0)
-    """
-    if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
-        allowed = "a Dataset that run_sweep returned, or of results/data"
-        raise TypeError(f"sweep: {short_repr(sweep)}; allowed: {allowed}")
-    check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
-    (run,) = runs_in(sweep, [index])
-    return run.dataset()
-
-
-def runs_in(sweep: xr.Dataset, indices: Iterable[int] | None = None) -> Iterator[Recorded]:
-    """Yield the runs of a sweep with some numbers, or all; raises ValueError as `point` does."""
-    numbers = _over(sweep, "point")
-    blocks = _over(sweep, "block")
+def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
+    """Yield the runs of a sweep; or ValueError."""
+    numbers, blocks = _over(sweep, "point"), _over(sweep, "block")
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
     size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
     if np.any(size < 0) or np.sum(size) != blocks.get("x", size[:0]).size:
@@ -71,7 +38,7 @@ def runs_in(sweep: xr.Dataset, indices: Iterable[int] | None = None) -> Iterator
         raise ValueError(f"row_size: {short_repr(size.tolist())}; allowed: {allowed}")
     ends = np.cumsum(size)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
-    for index in range(size.size) if indices is None else indices:
+    for index in range(size.size):
         rows = slice(ends[index] - size[index], ends[index])
         arrays = {name: values[rows] for name, values in blocks.items()}
         arrays |= {name: values[index] for name, values in samples.items()}

@@ -113,11 +113,9 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
             comment = f"{comments[path.stem]} ({path.suffix[1:].upper()})"
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
-    content = {
-        "version": "https://codecheck.org.uk/spec/config/1.0/",
-        "paper": {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]},
-        "manifest": entries,
-    }
+    paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
+    form = "https://codecheck.org.uk/spec/config/1.0/"
+    content = {"version": form, "paper": paper, "manifest": entries}
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 
 

@@ -9,7 +9,6 @@ from .points import DIMENSIONS, Recorded
 
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
-# Attributes of every data file.
 FILE = {
     "Conventions": "CF-1.11",
     "title": "Ruptures of the minimal model for the onset of slip pulses",

@@ -69,9 +69,9 @@ class Tree:
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int, list[str]]:
         """Say what is wrong with files that are there or ``complete``, count them, name others'."""
-        files = [path for path in self.results.rglob("*") if path.is_file() and path.name[0] != "."]
-        paths = [path.relative_to(self.results) for path in files]
-        present = {path.as_posix() for path in paths if path.parts[0] not in BESIDE}
+        paths = [path for path in self.results.rglob("[!.]*") if path.is_file()]
+        names = [path.relative_to(self.results) for path in paths]
+        present = {name.as_posix() for name in names if name.parts[0] not in BESIDE}
         compared = [name for name in self.origins if name in present.union(complete)]
         records = {record_path(origin) for origin in self.origins.values()}
         unknown = sorted(present - self.origins.keys() - records)

@@ -11,8 +11,7 @@ VARIABLES = {
     "right": "pre-stress level far to the right, tau_{0,r}",
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
-    "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width) "
-    "of the pre-stress, as JSON",
+    "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
     "duration": "time that is simulated, in units of H over the wave speed",
     "dx": "spacing of the blocks, in units of H",
     "release": "whether the released stress includes the damping force: total or elastic",
@@ -23,15 +22,13 @@ VARIABLES = {
     "friction_ratio": "mu_k/(mu_s - mu_k)",
     "resolved_blocks": "sliding blocks below which a pulse is flagged",
     "friction": "law of friction of sliding blocks with its parameters, as JSON",
-    "rate_strengthening": "alpha, by which friction grows with slip rate, "
-    "in units of the wave speed over H",
+    "rate_strengthening": "alpha, by which friction grows with slip rate, in units of c/H",
     "work_of_prestress": "work of the pre-stress on the slip",
     "kinetic_energy": "kinetic energy at the end",
     "elastic_energy": "elastic energy of the strain at the end",
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to the damping and to what friction gains with slip rate",
-    "friction_loss": "work against friction above the kinetic one: the fracture energy of slip "
-    "weakening; with law linear_rate a part of viscous_loss",
+    "friction_loss": "work against friction above the kinetic one; by linear_rate in viscous_loss",
     "event_loss": "energy lost as blocks stick within a step (textbook scheme)",
     "energy_residual": "what the energy balance misses, over its largest part",
     "end_time": "time at which the run ended",
@@ -49,8 +46,7 @@ VARIABLES = {
     "first_stick_position": "position of the first stick, in units of H",
     "half_lattice_used": "1 where half of the scene was simulated",
     "pulse_blocks": "blocks across the narrowest pulse at the end",
-    "run_flags": "what would make the numbers something else than the model's; "
-    "empty where nothing does",
+    "run_flags": "what makes the numbers other than the model's; empty where nothing does",
     "limit_position": "where the construction of the exact solution ends, in units of H",
     "limit_time": "when it ends there",
     "limit_reason": "why it ends",

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ..data.points import point
+from ..data.point import point
 from ..measurement.fronts import position_at
 from . import style
 from .shared import space_time

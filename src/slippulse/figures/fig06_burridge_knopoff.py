@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from ..data.points import point
+from ..data.point import point
 from ..model.prestress import prestress_from
 from .style import BLACK, BLUE, GREY, ORANGE, Look, entry, legend_below, panel_letter
 

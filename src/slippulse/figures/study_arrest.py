@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from ..data.points import point
+from ..data.point import point
 from ..measurement.fronts import path
 from . import style
 from .style import GREY, MARKERS, OPEN, ORANGE, PAGE, Look, entry

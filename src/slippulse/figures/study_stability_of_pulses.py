@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..data.numerals import setting
-from ..data.points import point
+from ..data.point import point
 from ..model.prestress import prestress_from
 from . import style
 from .style import BLACK, GREY, OPEN, PAGE, SMALL, Look, entry

@@ -1,6 +1,6 @@
 """Write the animation of one scene."""
 
-from ..data.points import point
+from ..data.point import point
 from ..data.store import load_dataset
 from ..figures.scene_animation import animate, save_animation
 from ..figures.style import house_style

@@ -1,7 +1,7 @@
 """Write the numbers, the table, the figure and the page of one scene."""
 
 from ..data.files import write_text
-from ..data.points import point
+from ..data.point import point
 from ..data.store import load_dataset
 from ..data.tables import load_table, save_table
 from ..figures import scene

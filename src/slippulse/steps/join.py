@@ -1,7 +1,7 @@
 """Join one file of each chunk of a simulation: data, or a table of any kind."""
 
 from ..data.join import join_datasets, join_grid_studies, join_tables
-from ..data.store import save_dataset
+from ..data.saving import save_dataset
 from ..measurement.table import PARAMETERS
 from ..measurement.uncertainty import quantities
 

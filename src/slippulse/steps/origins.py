@@ -9,7 +9,6 @@ from ..data.records import Origin, digest_of, record_path
 from .reach import content_digest, sources
 
 RESULTS = Path("results")
-# All steps load libraries that the lock names.
 LOCK = "requirements.lock"
 
 

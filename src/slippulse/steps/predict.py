@@ -10,7 +10,6 @@ from ..configuration.runs import runs
 from ..data.tables import save_table
 from ..model.run import Run
 
-# Modules of `predict`.
 TOPICS = ("final_regime", "front", "pulse", "transition")
 # Formulas are compared to more digits than measured numbers have.
 DIGITS = 15

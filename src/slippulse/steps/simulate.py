@@ -5,7 +5,7 @@ from collections import Counter
 from pkgutil import resolve_name
 
 from ..configuration.expand import expand
-from ..data.store import save_dataset
+from ..data.saving import save_dataset
 from ..data.variables import described
 from ..simulation.sweep import solve_sweep
 

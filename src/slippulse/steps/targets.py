@@ -4,6 +4,7 @@ import os
 import re
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
@@ -18,8 +19,7 @@ from ..data.tree import Tree
 from ..model.checks import short_repr
 from .origins import RESULTS, Job, below, origins_of
 
-# Folder that every job depends on, and the time of a faulty result, which is older. Snakemake takes
-# 0 for none.
+# A faulty result is older than the folder of the sources. Snakemake takes 0 for no time.
 SOURCES, OLD = "src", 1.0
 
 
@@ -73,13 +73,14 @@ class Plan:
         """Print what is not as a complete run would make it; returns the exit code."""
         problems, count, foreign = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
-        for line in foreign[:1]:
-            print(f"Not looked at: {len(foreign)} files of another configuration, as {line}")
         others = [name for name in self.wanted(["everything"]) if name not in complete]
-        missing = [name for name in others if not (RESULTS / name).exists()]
-        if missing:
-            also = f"files that TARGET=everything makes besides, as {missing[0]}"
-            print(f"Not looked at: {len(missing)} {also}")
+        aside = {"of another configuration": foreign}
+        aside["that TARGET=everything makes besides"] = [
+            name for name in others if not (RESULTS / name).exists()
+        ]
+        for kind, files in aside.items():
+            if files:
+                print(f"Not looked at: {len(files)} files {kind}, as {files[0]}")
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], makes: bool = True) -> TextIO | None:
@@ -111,21 +112,19 @@ class Plan:
         paths = {SOURCES}.union(*(job.inputs + job.outputs for job in jobs)) - faulty
         times = {path: os.path.getmtime(path) for path in filter(os.path.exists, paths)}
         now = time.time()
-        late = sorted(path for path, changed in times.items() if changed > now)
-        if late:
-            text = f"{len(late)} files have a time in the future, as {late[0]}: set to now."
+        old = sorted(path for path, changed in times.items() if changed > now)
+        if old:
+            text = f"{len(old)} files have a time in the future, as {old[0]}: set to now."
             print(text, file=sys.stderr)
-        if late or any(_made_before_inputs(job, times) for job in jobs):
-            for path in {*late, *(path for path in times if below(path) != path)}:
-                with suppress(OSError):
-                    os.utime(path, (now, now))
-
-
-def _made_before_inputs(job: Job, times: Mapping[str, float]) -> bool:
-    """Tell whether an output of a job is older than one of its inputs, of those that are there."""
-    read = [times[path] for path in (SOURCES, *job.inputs) if path in times]
-    made = [os.lstat(path).st_mtime for path in job.outputs if path in times]
-    return bool(made) and max(read) > min(made)
+        for job in jobs:
+            newest = max(times.get(path, 0.0) for path in (SOURCES, *job.inputs))
+            old += [
+                path for path in job.outputs if path in times and os.lstat(path).st_mtime < newest
+            ]
+        # Some order would be wrong if only these were new.
+        for path in {*old, *(path for path in times if old and below(path) != path)}:
+            with suppress(OSError):
+                os.utime(path, (now, now))
 
 
 def _remove_unfinished() -> None:
@@ -140,13 +139,15 @@ def _remove_unfinished() -> None:
 
 def unlike(lock: str | Path) -> str:
     """First package whose installed version is not in a lock, in one line; or an empty text."""
-    pins = re.findall(r"^([\w.-]+)==([^\s;\\]+)", Path(lock).read_text(encoding="utf-8"), re.M)
-    for name in dict.fromkeys(name for name, _ in pins):
+    pins: defaultdict[str, set[str]] = defaultdict(set)
+    text = Path(lock).read_text(encoding="utf-8")
+    for name, pinned in re.findall(r"^([\w.-]+)==([^\s;\\]+)", text, re.M):
+        pins[name].add(pinned)
+    for name, wanted in pins.items():
         # Another system, or another Python, needs other packages: the lock names those of all.
         with suppress(PackageNotFoundError):
-            wanted = sorted({pinned for pinned_name, pinned in pins if pinned_name == name})
             if version(name) not in wanted:
-                allowed = f"{' or '.join(wanted)}, as in requirements.lock"
+                allowed = f"{' or '.join(sorted(wanted))}, as in requirements.lock"
                 remedy = "(rm -r .venv; make setup)"
                 return f"{name}: {version(name)} is installed; allowed: {allowed} {remedy}"
     return ""

@@ -6,7 +6,6 @@ from ..figures.style import VELOCITY_MAP
 from ..report.explorer_page import explorer_page
 
 FILES = ("report/templates/explorer.html", "report/templates/explorer/*")
-# Sweeps that the page shows with the exact solution.
 SIMULATIONS = [
     "scaling_displacement",
     "damping_displacement",

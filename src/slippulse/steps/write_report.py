@@ -14,7 +14,6 @@ from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
 from .inputs import given
 
 FILES = ("report/templates/report.*",)
-# Tables that the report quotes.
 NEEDS = {
     "measured": {
         "scaling_displacement": ["transition"],

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..data.points import point
+from ..data.point import point
 from ..model.scene import Scene
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.rupture import Rupture

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...data.points import point
+from ...data.point import point
 from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
 from .. import style

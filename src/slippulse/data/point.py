@@ -1,0 +1,39 @@
+"""One run of a sweep as a Dataset."""
+
+from itertools import islice
+
+import xarray as xr
+
+from ..model.checks import check_number, short_repr
+from .points import runs_in
+
+
+def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
+    """Take one run out of a sweep, as `simulate` returned it.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        data of a sweep, from `run_sweep` or from a file of ``results/data``
+    index : int
+        number of the run, from 0
+
+    Returns
+    -------
+    xarray.Dataset
+        the run over x, with the fields that were recorded; its numbers are attributes
+
+    Raises
+    ------
+    TypeError, ValueError
+        if ``sweep`` is not a sweep, has no such run, or blocks that are not those of its runs
+
+    Examples
+    --------
+    >>> run = sp.point(xarray.open_dataset("results/data/arrest.nc"), 0)
+    """
+    if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
+        allowed = "a Dataset that run_sweep returned, or of results/data"
+        raise TypeError(f"sweep: {short_repr(sweep)}; allowed: {allowed}")
+    check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
+    return next(islice(runs_in(sweep), index, None)).dataset()
