@@ -42,12 +42,10 @@ PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer",
 PAGES_OF |= {"write_report": ["report.html", "report.typ"]}
 PAGES_OF |= {"draw_scene": ["scene.html"], "write_scenes_page": ["scenes.html"]}
 # Texts beside the package, by the rules that read them; all others only the report reads.
-ON_CLAIMS, ON_INDEX = {"write_report", "write_claims"}, {"write_report", "write_index"}
-READ_BY = {name: ON_INDEX for name in ("captions.yaml", "summary.yaml", "errata.yaml")}
-READ_BY |= {"claims.yaml": ON_CLAIMS, "statements.yaml": ON_CLAIMS}
-READ_BY |= {"open_choices.yaml": {"study_of_open_choices"}}
+READ_BY = dict.fromkeys(("claims.yaml", "statements.yaml"), {"write_report", "write_claims"})
+READ_BY["open_choices.yaml"] = {"study_of_open_choices"}
 # The rule that notes a digest of every source.
-EVERY_SOURCE = {"write_provenance"}
+EVERY_SOURCE = {"write_index"}
 # All files of the package and all texts.
 PATHS = [path for path in [*PACKAGE.rglob("*"), *TEXTS.rglob("*")] if path.is_file()]
 FILES = [path.relative_to(PROJECT).as_posix() for path in PATHS if "__pycache__" not in path.parts]

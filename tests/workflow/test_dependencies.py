@@ -50,7 +50,7 @@ def test_every_file_marks_the_rules_whose_step_reaches_it_and_nothing_else_does(
     for name in DRAWN:
         assert rules_of(f"src/slippulse/figures/{name}.py") == {name} | EVERY_SOURCE
     others = {rule: depends.difference(FILES) for rule, depends in seen.items()}
-    assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_provenance")
+    assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_index")
     # The report says what differs from the shipped configuration, and its version.
     assert others.pop("write_report") == {"CITATION.cff", "config/config.yaml"}
     assert not any(others.values())
@@ -68,7 +68,7 @@ def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
 
 
 def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(inputs):
-    listed = {file for file in inputs["write_provenance"] if file.startswith("results/")}
+    listed = {file for file in inputs["write_index"] if file.startswith("results/")}
     assert inputs["everything"] == listed | {"results/provenance.json", "results/index.html"}
     for name in ("mine", "one", "barrier"):
         files = (f"data/{name}.nc", f"measurements/{name}.csv", f"uncertainties/{name}.csv")
@@ -117,7 +117,7 @@ def test_an_edit_runs_what_depends_on_the_file(imitated, downstream, file):
 
 # The whole configuration stands in the report and in the provenance, what an overlay alters on the
 # pages; and a study draws the claims.
-ALWAYS = {"write_claims", "study_open_choices", "write_report", "write_provenance", "write_index"}
+ALWAYS = {"write_claims", "study_open_choices", "write_report", "write_index"}
 CHAIN = ("simulate", "measure", "predict", "study_grid")
 PUBLISHED = ("study_published_figure", "study_of_exact_space_time", "study_of_derivations")
 PUBLISHED += ("fig04_space_time",)

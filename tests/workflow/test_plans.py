@@ -12,7 +12,7 @@ FIGURE = "fig07_damage_zone"
 @pytest.mark.slow
 def test_the_default_is_the_whole_paper_and_a_figure_needs_only_its_simulations(linked):
     jobs = planned(snakemake(linked, "--dry-run"))
-    pages = {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"}
+    pages = {"write_claims", "write_report", "write_index", "draw_scene"}
     assert pages | DRAWN | {*STUDIED} <= set(jobs)
     jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
     once = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)

@@ -39,9 +39,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
             environment,
             **inputs_of(needs),
         output:
-            png=report(
-                f"results/figures/{figure}.png", category=category, labels={"figure": figure}
-            ),
+            png=report(f"results/figures/{figure}.png", category=category),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
         log:
@@ -66,13 +64,14 @@ use rule step as draw_scene with:
         predicted="results/predictions/{scene}.csv",
         uncertainties="results/uncertainties/{scene}.csv",
     output:
-        png=report("results/scenes/{scene}.png", category="Scenes", labels={"scene": "{scene}"}),
+        png=report("results/scenes/{scene}.png", category="Scenes"),
         pdf="results/scenes/{scene}.pdf",
         csv="results/scenes/{scene}.csv",
         numbers="results/scenes/{scene}_numbers.csv",
         html="results/scenes/{scene}.html",
     log:
         "results/logs/draw_scene/{scene}.log",
+    priority: 0
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
         altered=lambda wildcards: note_of({"data": [wildcards.scene]}),
@@ -87,7 +86,6 @@ use rule step as animate_scene with:
         gif="results/scenes/{scene}.gif",
     log:
         "results/logs/animate_scene/{scene}.log",
+    priority: 0
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
-    message:
-        "Animating scene {wildcards.scene}"

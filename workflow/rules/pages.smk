@@ -37,16 +37,13 @@ use rule step as write_claims with:
     output:
         json="results/claims.json",
         findings="results/findings.json",
-        html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
+        html=report("results/claims.html", category="Claims"),
     log:
         "results/logs/write_claims.log",
-    priority: 2
     params:
         **{key: config[key] for key in ("claims", "published", "measure")},
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
-    message:
-        "Judging the claims"
 
 
 use rule step as write_explorer with:
@@ -57,8 +54,7 @@ use rule step as write_explorer with:
         html="results/explorer.html",
     log:
         "results/logs/write_explorer.log",
-    message:
-        "Writing results/explorer.html"
+    priority: 0
 
 
 use rule step as write_report with:
@@ -83,8 +79,6 @@ use rule step as write_report with:
     params:
         figures=list(NEEDS),
         config=config,
-    message:
-        "Writing the replication report"
 
 
 use rule step as write_scenes_page with:
@@ -95,10 +89,9 @@ use rule step as write_scenes_page with:
         html="results/scenes/index.html",
     log:
         "results/logs/write_scenes_page.log",
+    priority: 0
     params:
         scenes=TITLES,
-    message:
-        "Writing the list of scenes"
 
 
 use rule step as write_index with:
@@ -120,8 +113,6 @@ use rule step as write_index with:
         shipped=SHIPPED,
         figures=[*NEEDS, *SWEEPS],
         scenes=TITLES,
-    message:
-        "Writing results/index.html, the page to open"
 
 
 GATHERED = {

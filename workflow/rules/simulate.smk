@@ -12,6 +12,10 @@ rule step:
         environment,
     log:
         "results/logs/step.log",
+    # The report waits for the claims: what these wait for goes before what only draws.
+    priority: 2
+    message:
+        "Writing {output[0]}"
     run:
         run_step(rule, wildcards, input, output, params, threads, log)
 
@@ -34,8 +38,6 @@ use rule step as simulate with:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
-    # The report waits for the claims: what these wait for goes before what only draws.
-    priority: 2
     threads: lambda wildcards: setting("bound")(wildcards)().threads
     resources:
         **BOUNDS,
@@ -53,7 +55,6 @@ use rule step as measure with:
         measured="results/measurements/{simulation}.csv",
     log:
         "results/logs/measure/{simulation}.log",
-    priority: 2
     params:
         measure=setting("measure"),
     message:
@@ -65,14 +66,11 @@ use rule step as predict with:
         predicted="results/predictions/{simulation}.csv",
     log:
         "results/logs/predict/{simulation}.log",
-    priority: 2
     params:
         sweep=setting("sweep"),
         topics=setting("topics"),
         share=lambda wildcards: setting("measure")(wildcards)["share"],
         still=config["measure"]["still"],
-    message:
-        "Predicting {wildcards.simulation}"
 
 
 use rule step as study_grid with:
@@ -84,7 +82,6 @@ use rule step as study_grid with:
         coarser="results/uncertainties/coarser/{simulation}.csv",
     log:
         "results/logs/study_grid/{simulation}.log",
-    priority: 2
     resources:
         **BOUNDS,
     params:
@@ -105,7 +102,6 @@ use rule step as join with:
         joined="results/{joined}",
     log:
         "results/logs/join/{joined}.log",
-    priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
         # A million runs took 1.2 kB each; other sweeps may take twice as much.
@@ -114,5 +110,3 @@ use rule step as join with:
     params:
         kind=joined(lambda kind, name: kind),
         record=joined(lambda kind, name: SIMULATIONS[name].record),
-    message:
-        "Putting {wildcards.joined} together"

@@ -75,25 +75,24 @@ class Tree:
         compared = [name for name in self.origins if name in present.union(complete)]
         records = {record_path(origin) for origin in self.origins.values()}
         unknown = sorted(present - self.origins.keys() - records)
-        others = self._made_by_others(unknown)
-        reasons = self.faults(compared)
-        reasons |= {name: "not known; no rule makes it" for name in unknown if name not in others}
-        lines = [f"{self.results / name}: {reason}" for name, reason in reasons.items()]
-        return lines, len(compared), [f"{self.results / name}: {others[name]}" for name in others]
-
-    def _made_by_others(self, unknown: Iterable[str]) -> dict[str, str]:
-        """Find files that are as records of their own say, each with the options of its run."""
-        made: dict[str, str] = {}
+        # Files that are as records of their own say, by the options of their run.
+        others: dict[str, str] = {}
         for name in unknown:
-            first = name.removeprefix(f"{FOLDER}/").removesuffix(".json")
             # A file that is no record says nothing.
             with suppress(OSError, ValueError, KeyError, TypeError):
                 record = read_record(self.results / name)
                 digests = {output: file_digest(self.results / output) for output in record.outputs}
-                if first in digests and digests == record.outputs:
+                if (
+                    name in [f"{FOLDER}/{output}.json" for output in digests]
+                    and digests == record.outputs
+                ):
                     options = record.used["options"] or "the shipped configuration"
-                    made |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
-        return {name: made[name] for name in unknown if name in made}
+                    others |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
+        reasons = self.faults(compared)
+        reasons |= {name: "not known; no rule makes it" for name in unknown if name not in others}
+        lines = [f"{self.results / name}: {reason}" for name, reason in reasons.items()]
+        foreign = [f"{self.results / name}: {others[name]}" for name in unknown if name in others]
+        return lines, len(compared), foreign
 
     def _record(self, name: str) -> Record:
         return self._read(self.results / record_path(self.origins[name]))

@@ -6,12 +6,12 @@ import os
 import signal
 import sys
 from contextlib import suppress
+from importlib import import_module
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from threading import Lock, Thread
 from typing import Any
 
-from . import reading
 from .job import run_job
 
 
@@ -74,7 +74,7 @@ class Jobs:
 
 def _run_jobs(jobs: Connection) -> None:
     """Run the jobs that come through a pipe, until one fails or the pipe is closed."""
-    reading.begin()
+    import_module("slippulse.steps.libraries")
     with suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             job = jobs.recv()

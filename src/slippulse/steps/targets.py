@@ -38,9 +38,7 @@ def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
 class Plan:
     """All jobs, the files of rules that may be named as targets, and the folder of results."""
 
-    def __init__(
-        self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]], options: str = ""
-    ) -> None:
+    def __init__(self, jobs: Sequence[Job], named: Mapping, options: str = "") -> None:
         self.jobs, self.named = jobs, named
         self.origins = origins_of(jobs, options)
         self.tree = Tree(RESULTS, self.origins)
@@ -84,18 +82,21 @@ class Plan:
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], makes: bool = True) -> TextIO | None:
-        """Lock the folder until the returned file is closed, and set the times of its results.
+        """Lock the folder until the returned file is closed, and have its faulty results found old.
 
-        Faulty ones are made old, so that Snakemake decides which are made anew. Where it ``makes``
-        none, the folder of another run is left as it is.
+        Where the run ``makes`` none, the folder of another run is left as it is.
         """
         if not (makes or os.access(RESULTS, os.W_OK)):
             return None
         held = take(RESULTS / ".run.lock")
         if held is None and makes:
             raise ConfigError("Another run is at work in this folder: wait for it, or stop it.")
-        if makes:
-            _remove_unfinished()
+        left = [*Path(".snakemake").glob("locks/*.lock")] if makes else []
+        if left:
+            # The last run was killed. A file has a hidden name of its own until it is whole.
+            for path in [*left, *RESULTS.rglob(".*-????????.*")]:
+                path.unlink(missing_ok=True)
+            sys.stderr.write("The last run was killed: what it left unfinished is made anew.\n")
         faulty = self.tree.to_renew(wanted)
         write_faulty(faulty, "; made anew where needed.")
         if held:
@@ -118,23 +119,12 @@ class Plan:
             print(text, file=sys.stderr)
         for job in jobs:
             newest = max(times.get(path, 0.0) for path in (SOURCES, *job.inputs))
-            old += [
-                path for path in job.outputs if path in times and os.lstat(path).st_mtime < newest
-            ]
+            made = [path for path in job.outputs if path in times]
+            old += [path for path in made if os.lstat(path).st_mtime < newest]
         # Some order would be wrong if only these were new.
         for path in {*old, *(path for path in times if old and below(path) != path)}:
             with suppress(OSError):
                 os.utime(path, (now, now))
-
-
-def _remove_unfinished() -> None:
-    """Remove the locks of Snakemake that a killed run has left, and the files it was writing."""
-    left = [*Path(".snakemake").glob("locks/*.lock")]
-    if left:
-        # A file has a hidden name of its own until it is whole.
-        for path in [*left, *RESULTS.rglob(".*-????????.*")]:
-            path.unlink(missing_ok=True)
-        sys.stderr.write("The last run was killed: what it left unfinished is made anew.\n")
 
 
 def unlike(lock: str | Path) -> str:
@@ -158,6 +148,5 @@ def write_faulty(reasons: Mapping[str, str], outcome: str) -> None:
     if reasons:
         first = min(reasons, key=lambda name: "older than" in reasons[name])
         count = "1 result is" if len(reasons) == 1 else f"{len(reasons)} results are"
-        sys.stderr.write(
-            f"{count} out of date, such as results/{first}: {reasons[first]}{outcome}\n"
-        )
+        reason = f"such as results/{first}: {reasons[first]}"
+        sys.stderr.write(f"{count} out of date, {reason}{outcome}\n")
