@@ -29,10 +29,8 @@ include: "workflow/rules/targets.smk"
 
 onsuccess:
     end()
-    begin().close()
 
 
 onerror:
-    begin().close()
     # The last words are the reasons.
     sys.stderr.write("".join(f"{reason}\n" for reason in FAILED))

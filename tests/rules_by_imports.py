@@ -42,7 +42,8 @@ PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer",
 PAGES_OF |= {"write_report": ["report.html", "report.typ"]}
 PAGES_OF |= {"draw_scene": ["scene.html"], "write_scenes_page": ["scenes.html"]}
 # Texts beside the package, by the rules that read them; all others only the report reads.
-READ_BY = dict.fromkeys(("claims.yaml", "statements.yaml"), {"write_report", "write_claims"})
+ON_CLAIMS = {"write_report", "write_claims"}
+READ_BY = {"claims.yaml": ON_CLAIMS, "statements.yaml": ON_CLAIMS}
 READ_BY["open_choices.yaml"] = {"study_of_open_choices"}
 # The rule that notes a digest of every source.
 EVERY_SOURCE = {"write_index"}

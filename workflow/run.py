@@ -2,8 +2,7 @@
 
     python workflow/run.py replicate|verify
 
-The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE. Files are
-written whole or not at all: after a kill the next run goes on from what is there.
+The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
 """
 
 import json

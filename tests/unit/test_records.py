@@ -7,6 +7,7 @@ import socket
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import yaml
@@ -235,7 +236,8 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
 def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
     params = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
     inputs = ["texts", lambda wildcards: [f"results/{wildcards.name}"]]
-    assert [*jobs_of("run", inputs, ["results/{name}.csv"], params, {"name": "ab"})] == [
+    rule = SimpleNamespace(input=inputs, output=["results/{name}.csv"], params=params)
+    assert [*jobs_of("run", rule, {"name": "ab"})] == [
         ("study", ("texts", "results/a"), ("results/a.csv",), {"level": "aa"}),
         ("study", ("texts", "results/b"), ("results/b.csv",), {"level": "bb"}),
     ]

@@ -6,7 +6,7 @@ import tomllib
 import yaml
 from rules_by_imports import DRAWN
 
-RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
+RULE = re.compile(r"^(?:use )?rule (?:step as )?(\w+)(?: with)?:$(.*?)(?=^\S|\Z)", re.M | re.S)
 
 
 def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(project):

@@ -45,7 +45,6 @@ ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
-OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 
 def environment(wildcards):

@@ -2,6 +2,7 @@
 
 import logging
 import shlex
+from itertools import chain
 
 from snakemake.logging import logger
 
@@ -22,11 +23,8 @@ NAMED = {
     if "{" not in "".join(rule.output)
 }
 NAMED |= dict.fromkeys(("all", "verify"), EVERYTHING if ACCURACY.get("whole", True) else DRAFT)
-MAKING = [
-    (name, rule.input, rule.output, rule.params) for name, rule in RULES.items() if rule.output
-]
-MADE_BY = [job for rule in MAKING for job in jobs_of(*rule, VALUES)]
-PLAN = Plan(MADE_BY, NAMED, shlex.join(OPTIONS))
+MADE_BY = [jobs_of(name, rule, VALUES) for name, rule in RULES.items() if rule.output]
+PLAN = Plan([*chain.from_iterable(MADE_BY)], NAMED, shlex.join(OPTIONS))
 
 
 def in_one_line(function):

@@ -28,10 +28,10 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     return described(combine([runs[number] for number in sorted(runs)], record))
 
 
-def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:
-    """Join tables of one row a run, or of blocks of them that the columns ``last`` tell apart."""
+def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
+    """Join tables of one row a run, or of a block of them for each value of the column factor."""
     chunks = _texts(paths)
-    keys = [name for name in last if name in chunks[0]]
+    keys = ["factor"] if "factor" in chunks[0] else []
     # Without keys all rows are in one block.
     blocks = [chunk.groupby(keys or (lambda row: 0), sort=False).ngroup() for chunk in chunks]
     runs = _run_numbers(paths, [int((block == 0).sum()) for block in blocks])

@@ -108,9 +108,7 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     """Write a CODECHECK manifest that lists every output with a comment."""
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
-        comment = COMMENTS.get(path.parts[0], "result")
-        if path.stem in comments:
-            comment = f"{comments[path.stem]} ({path.suffix[1:].upper()})"
+        comment = COMMENTS.get(path.parts[0], comments.get(path.stem, "result"))
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}

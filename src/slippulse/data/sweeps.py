@@ -32,15 +32,8 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
         variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
         for name in ("x", "prestress", *fields):
             variables[name] = "block", np.concatenate([run[name] for run in runs])
-    if "samples" in record:
-        variables |= _samples(runs)
+    for name in DIMENSIONS if "samples" in record else ():
+        axes = [dimension.removeprefix("sample_") for dimension in DIMENSIONS[name]]
+        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
     # A variable that is added to a Dataset is aligned with those that are there: all go in at once.
     return xr.Dataset(variables, attrs=attributes)
-
-
-def _samples(runs: Sequence[Recorded]) -> dict[str, tuple]:
-    samples: dict[str, tuple] = {}
-    for name, dimensions in DIMENSIONS.items():
-        axes = [dimension.removeprefix("sample_") for dimension in dimensions]
-        samples[name] = ("point", *axes), np.stack([run[name] for run in runs])
-    return samples

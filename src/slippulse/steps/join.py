@@ -15,4 +15,4 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     elif kind == "uncertainties":
         join_grid_studies(chunks, files["finest"][0], PARAMETERS, quantities, joined)
     else:
-        join_tables(chunks, joined, last=("factor",))
+        join_tables(chunks, joined)

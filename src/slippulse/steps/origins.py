@@ -1,12 +1,13 @@
 """Jobs of the rules, and by which job, configuration and sources each result is made."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ..data.records import Origin, digest_of, record_path
-from .reach import content_digest, sources
+from ..data.records import Origin, digest_of, file_digest, record_path
+from .reach import ROOT, sources
 
 RESULTS = Path("results")
 LOCK = "requirements.lock"
@@ -26,51 +27,43 @@ def below(path: str) -> str:
     return path.removeprefix(f"{RESULTS}/")
 
 
-def jobs_of(
-    name: str, inputs: Iterable, outputs: Sequence[str], params: Mapping, values: Mapping
-) -> Iterator[Job]:
+def jobs_of(name: str, rule: Any, values: Mapping) -> Iterator[Job]:
     """Yield the jobs of a rule, one for each of the ``values`` of its wildcard, if it has one."""
-    wildcard = next((key for key in values if f"{{{key}}}" in outputs[0]), "none")
+    wildcard = next((key for key in values if f"{{{key}}}" in rule.output[0]), "none")
     for value in values.get(wildcard, [""]):
         wildcards = SimpleNamespace(**{wildcard: value})
         read: list[str] = []
-        for entry in inputs:
+        for entry in rule.input:
             read += entry(wildcards) if callable(entry) else [entry]
         settings = {}
-        for key, param in params.items():
+        for key, param in rule.params.items():
             settings[key] = param(wildcards) if callable(param) else param
         # Snakemake's files are text that remembers its rule.
         files = [str(path).format(**{wildcard: value}) for path in read]
-        made = [str(path).format(**{wildcard: value}) for path in outputs]
+        made = [str(path).format(**{wildcard: value}) for path in rule.output]
         # A rule whose params name no step has the step of its own name.
         yield Job(settings.pop("step", name), tuple(files), tuple(made), settings)
 
 
 def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
     """Find the origin of each result; its configuration is also that of all it is made from."""
-    makers: dict[str, Job] = {}
-    for job in jobs:
-        makers.update(dict.fromkeys(map(below, job.outputs), job))
-    origins: dict[str, Origin] = {}
+    makers = {below(output): job for job in jobs for output in job.outputs}
+    digest = cache(file_digest)
 
+    @cache
     def origin(name: str) -> Origin:
-        if name not in origins:
-            job = makers[name]
-            texts = sorted(path for path in job.inputs if below(path) == path)
-            names = sorted(map(below, {*job.inputs}.difference(texts)))
-            inputs = {name: record_path(origin(name)) for name in names}
-            earlier = sorted({origin(name).configuration for name in names})
-            configuration = digest_of([job.settings, *earlier])
-            read = [*sources(*modules_of(job.step, job.settings)), *texts, LOCK]
-            files = {path: content_digest(path) for path in read}
-            outputs, digest = tuple(map(below, job.outputs)), digest_of(files)
-            made = Origin(outputs, job.step, configuration, digest, inputs, files, options)
-            origins.update(dict.fromkeys(outputs, made))
-        return origins[name]
+        job = makers[name]
+        texts = sorted(path for path in job.inputs if below(path) == path)
+        names = sorted(map(below, {*job.inputs}.difference(texts)))
+        inputs = {name: record_path(origin(name)) for name in names}
+        earlier = sorted({origin(name).configuration for name in names})
+        by = job.step, digest_of([job.settings, *earlier])
+        read = [*sources(*modules_of(job.step, job.settings)), *texts, LOCK]
+        files = {path: digest(ROOT / path) for path in read}
+        outputs = tuple(map(below, job.outputs))
+        return Origin(outputs, *by, digest_of(files), inputs, files, options)
 
-    for name in makers:
-        origin(name)
-    return origins
+    return {name: origin(name) for name in makers}
 
 
 def modules_of(step: str, settings: Mapping) -> list[str]:

@@ -6,7 +6,6 @@ import os
 import signal
 import sys
 from contextlib import suppress
-from importlib import import_module
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from threading import Lock, Thread
@@ -74,7 +73,8 @@ class Jobs:
 
 def _run_jobs(jobs: Connection) -> None:
     """Run the jobs that come through a pipe, until one fails or the pipe is closed."""
-    import_module("slippulse.steps.libraries")
+    from . import libraries  # noqa: F401
+
     with suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
             job = jobs.recv()

@@ -1,7 +1,6 @@
 """Source files that a module reaches by its imports; constants and digests of source files."""
 
 import ast
-import hashlib
 import re
 from functools import cache
 from pathlib import Path
@@ -39,12 +38,6 @@ def needs_of(room: str) -> dict[str, dict]:
     names = sorted(path.stem for path in (PACKAGE / room).glob("*.py"))
     needs = {name: declared(f"{room}.{name}", "NEEDS") for name in names}
     return {name: value for name, value in needs.items() if value is not None}
-
-
-@cache
-def content_digest(path: str | Path) -> str:
-    """SHA-256 of a file of the project, as it is read here first."""
-    return hashlib.sha256((ROOT / path).read_bytes()).hexdigest()
 
 
 @cache

@@ -60,22 +60,20 @@ class Plan:
         files = {RESULTS / name for name in self.origins}
         files |= {RESULTS / record_path(origin) for origin in self.origins.values()}
         parents = set(map(Path, folders)).union(*(path.parents[:-1] for path in files))
-        taken = {path: "folder" for path in files if path.is_dir()}
-        taken |= {path: "file" for path in parents if os.path.lexists(path) and not path.is_dir()}
-        for path in sorted(taken)[:1]:
-            needed = "folder" if path in parents else "file"
-            remedy = f"remove or rename it: a {needed} of that name is needed"
-            raise ConfigError(f"{path} is a {taken[path]}; {remedy}")
+        for path in sorted(files | parents):
+            needed, kind = ("folder", "file") if path in parents else ("file", "folder")
+            if os.path.lexists(path) and path.is_dir() == (kind == "folder"):
+                remedy = f"remove or rename it: a {needed} of that name is needed"
+                raise ConfigError(f"{path} is a {kind}; {remedy}")
 
     def verify(self, complete: Iterable[str]) -> int:
         """Print what is not as a complete run would make it; returns the exit code."""
         problems, count, foreign = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
         others = [name for name in self.wanted(["everything"]) if name not in complete]
+        missing = [name for name in others if not (RESULTS / name).exists()]
         aside = {"of another configuration": foreign}
-        aside["that TARGET=everything makes besides"] = [
-            name for name in others if not (RESULTS / name).exists()
-        ]
+        aside["that TARGET=everything makes besides"] = missing
         for kind, files in aside.items():
             if files:
                 print(f"Not looked at: {len(files)} files {kind}, as {files[0]}")
