@@ -48,9 +48,9 @@ OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["s
 
 
 def environment(wildcards):
-    """Folder that jobs without other inputs depend on, of which every target needs some.
+    """Folder that all jobs depend on, since Snakemake goes by the content of files, not their time.
 
-    Snakemake asks for it when it has read its options, before it looks at results.
+    It asks for the folder when it has read its options.
     """
     if workflow.dag_settings is None:
         return []

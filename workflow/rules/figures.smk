@@ -59,6 +59,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
 
 use rule step as draw_scene with:
     input:
+        environment,
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
         predicted="results/predictions/{scene}.csv",
@@ -81,6 +82,7 @@ use rule step as draw_scene with:
 
 use rule step as animate_scene with:
     input:
+        environment,
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",

@@ -27,6 +27,7 @@ TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statem
 
 use rule step as write_claims with:
     input:
+        environment,
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
@@ -48,6 +49,7 @@ use rule step as write_claims with:
 
 use rule step as write_explorer with:
     input:
+        environment,
         law="results/studies/explorer_law.csv",
         measured=made("measured", declared("steps.write_explorer", "SIMULATIONS")),
     output:
@@ -59,6 +61,7 @@ use rule step as write_explorer with:
 
 use rule step as write_report with:
     input:
+        environment,
         "manuscript/references.bib",
         expand("manuscript/{text}.yaml", text=TEXTS),
         expand("results/figures/{name}.png", name=NEEDS),
@@ -96,6 +99,7 @@ use rule step as write_scenes_page with:
 
 use rule step as write_index with:
     input:
+        environment,
         [path.as_posix() for path in source_files(".")],
         results=RESULTS,
         captions="manuscript/captions.yaml",

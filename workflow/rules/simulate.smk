@@ -50,6 +50,7 @@ use rule step as simulate with:
 
 use rule step as measure with:
     input:
+        environment,
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
@@ -75,6 +76,7 @@ use rule step as predict with:
 
 use rule step as study_grid with:
     input:
+        environment,
         kernels=setting("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
@@ -94,6 +96,7 @@ use rule step as study_grid with:
 
 use rule step as join with:
     input:
+        environment,
         chunks=joined(lambda kind, name: made(kind, CHUNKS[name])),
         finest=joined(
             lambda kind, name: made("measured", [name] if kind == "uncertainties" else [])

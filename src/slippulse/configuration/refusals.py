@@ -28,11 +28,9 @@ def format_problems(problems: Sequence[str]) -> str:
 
 def dotted(path: Path) -> str:
     """A key as a refusal names it: its path with dots."""
-    return ".".join(map(_shown, path)) or "the configuration"
-
-
-def _shown(part: str | int) -> str:
-    return str(part) if re.fullmatch(r"\w{1,80}", str(part), re.ASCII) else short_repr(part)
+    plain = re.compile(r"\w{1,80}", re.ASCII).fullmatch
+    parts = [str(part) if plain(str(part)) else short_repr(part) for part in path]
+    return ".".join(parts) or "the configuration"
 
 
 def problem_line(problem: Mapping, config: Mapping) -> str:
@@ -65,9 +63,8 @@ def _elsewhere(key: str | int) -> str:
 
 def _missing_line(path: Path, config: Mapping) -> str:
     line = f"{dotted(path)}: missing; it is required (null removes a key)"
-    if path == ("preset",):
-        presets = ", ".join(config.get("presets", ()))
-        line += f"; allowed: {presets}" if presets else ""
+    if path == ("preset",) and config.get("presets"):
+        line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2:
         # An incomplete new entry may be a misspelt one.
         _, _, siblings = _deepest(path[:-2], config)
