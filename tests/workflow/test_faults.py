@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from faults import WAYS, digests, fault_run, prepare, start
+from faults import SIGNALS, WAYS, digests, fault_run, prepare, start
 from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, made, planned, refused, snakemake
 
 from slippulse.data.files import UnreadableFile
@@ -38,11 +38,15 @@ def finished(tmp_path_factory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.slow)])
-def test_a_run_is_stopped_in_every_way_and_the_next_gives_the_same(tmp_path, times):
-    targets = [FIGURE] if times == 1 else [FIGURE, SCENE]
-    said = fault_run(tmp_path / "und Umläuten", times * len(WAYS), 3, targets)
-    assert all(f"{times} by {way}" in said for way in WAYS)
+def test_a_run_is_stopped_by_each_signal_and_the_next_gives_the_same(tmp_path):
+    said = fault_run(tmp_path / "und Umläuten", len(SIGNALS), 3, [FIGURE])
+    assert all(f"1 by {signal}" in said for signal in SIGNALS)
+
+
+@pytest.mark.slow
+def test_a_run_is_stopped_in_every_way_twenty_times(tmp_path):
+    said = fault_run(tmp_path / "und Umläuten", 20 * len(WAYS), 3, [FIGURE, SCENE])
+    assert all(f"20 by {way}" in said for way in WAYS)
 
 
 @pytest.mark.slow

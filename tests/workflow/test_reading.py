@@ -12,7 +12,6 @@ from slippulse.data.records import Origin, file_digest, read_record, write_recor
 from slippulse.steps.processes import JobFailed, Jobs
 
 FIGURE = "results/figures/fig07_damage_zone.png"
-SOURCES = ("figures/fig07_damage_zone.py", "figures/style.py")
 # A job that reads a file while it is another one, and puts it back.
 PROGRAM = """
 import subprocess
@@ -74,7 +73,10 @@ def test_a_result_that_was_altered_since_its_job_wrote_it_fails_the_job_that_rea
     assert not record.exists()
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize(
+    "source",
+    ["figures/fig07_damage_zone.py", pytest.param("figures/style.py", marks=pytest.mark.slow)],
+)
 def test_a_source_that_was_edited_while_a_run_was_at_work_fails_its_job(project, tmp_path, source):
     """The edit comes after the plan, and is undone once the job has loaded it."""
     folder = copy_project(project, tmp_path / "copy")

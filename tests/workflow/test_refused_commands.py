@@ -24,11 +24,7 @@ SLOW = {
     "python tag": ("preset: !!python/name:os.system\n", "--", ["no tags"]),
     "preset on the command line": (DRAFT, "--config preset=$(touch\twritten)", ["'$(touch"]),
     "unknown scene": (DRAFT, "-- results/scenes/bariere.html", ["mean 'results/scenes/barrier"]),
-    "accuracy that costs too much": (
-        "accuracy: 1.0e-4\n",
-        "-- results/figures/fig05_scaling.png",
-        ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
-    ),
+    "accuracy": ("accuracy: 1.0e-4\n", "-- fig05", ["simulations.scaling_stress.cost", "updates"]),
 }
 CASES = [pytest.param(*case, id=name) for name, case in COMMANDS.items()]
 CASES += [pytest.param(*case, marks=pytest.mark.slow, id=name) for name, case in SLOW.items()]
@@ -159,6 +155,7 @@ def test_an_odd_note_on_the_last_run_counts_as_absent(project, tmp_path, monkeyp
     assert arguments("verify")[-3:] == ["1", "--", "verify"]
 
 
+@pytest.mark.slow
 def test_an_environment_that_differs_from_the_lock_is_refused(folder):
     (folder / "mine.yaml").write_text(DRAFT, encoding="utf-8")
     other = folder / "elsewhere/xarray-0.0.1.dist-info"
@@ -170,7 +167,13 @@ def test_an_environment_that_differs_from_the_lock_is_refused(folder):
     assert not (folder / "results").exists()
 
 
-@pytest.mark.parametrize("command", ["-m snakemake --cores 1 -- fig07", "workflow/run.py verify"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "workflow/run.py verify",
+        pytest.param("-m snakemake --cores 1 -- fig07", marks=pytest.mark.slow),
+    ],
+)
 def test_a_folder_of_caches_that_cannot_be_written_is_one_line(folder, project, command):
     where = "/proc/none"
     (folder / "profiles").symlink_to(project / "profiles")

@@ -2,6 +2,7 @@
 
 import logging
 import shlex
+from contextlib import contextmanager
 from itertools import chain
 
 from snakemake.logging import logger
@@ -27,22 +28,19 @@ MADE_BY = [jobs_of(name, rule, VALUES) for name, rule in RULES.items() if rule.o
 PLAN = Plan([*chain.from_iterable(MADE_BY)], NAMED, shlex.join(OPTIONS))
 
 
-def in_one_line(function):
-    """Let the refusals of a function end the run with their own words."""
-
-    def called(*arguments):
-        try:
-            return function(*arguments)
-        except ConfigError as error:
-            sys.exit(str(error))
-        except OSError as error:
-            sys.exit(f"{error.filename}: {error.strerror}")
-
-    return called
+@contextmanager
+def in_one_line():
+    """Let refusals end the run with their own words."""
+    try:
+        yield
+    except ConfigError as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"{error.filename}: {error.strerror}")
 
 
 @cache
-@in_one_line
+@in_one_line()
 def begin():
     """Check targets and their cost, and have faulty results found old. Returns the run's lock."""
     targets = sorted(workflow.dag_settings.targets) or ["all"]
@@ -102,4 +100,5 @@ def end():
 
 if workflow.is_main_process:
     logger.addFilter(explain)
-    in_one_line(PLAN.check_places)(".snakemake", "results/logs")
+    with in_one_line():
+        PLAN.check_places(".snakemake", "results/logs")

@@ -12,10 +12,7 @@ FOLDER = "records"
 
 
 class Origin(NamedTuple):
-    """A job as planned: paths below results/, and digests of its configuration and sources.
-
-    inputs : the record of the maker of each; files : SHA-256 of all other files that it may read
-    """
+    """A job as planned: paths below results/, records of inputs, SHA-256 of other files to read."""
 
     outputs: tuple[str, ...]
     step: str

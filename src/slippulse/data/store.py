@@ -36,8 +36,6 @@ def load_dataset(path: str | Path) -> xr.Dataset:
                     values = _values(item, h5py.h5s.ALL, h5py.h5s.ALL)
                     variables[name] = dimensions[item], values, attributes[name]
             return xr.Dataset(variables, attrs=file.attrs)
-    except FileNotFoundError:
-        raise
     except (OSError, ValueError, LookupError, RuntimeError) as error:
         raise UnreadableFile(path, error) from error
 
