@@ -1,7 +1,6 @@
 # The whole paper from one configuration: simulate, measure, draw.
 #   snakemake --cores 2                                        everything
 #   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and its inputs
-#   snakemake --cores 2 --config preset=draft                  its figures, coarse and quick
 #   snakemake --cores 2 --configfile mine.yaml                 with an overlaid configuration
 
 

@@ -20,7 +20,7 @@ from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import read_config, read_overlay
 from slippulse.data.files import write_text
 from slippulse.data.provenance import machine_class
-from slippulse.data.versions import versions
+from slippulse.data.sweeps import versions
 from slippulse.measurement.fronts import fit_front
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene

@@ -28,7 +28,7 @@ for study, needs in STUDY_NEEDS.items():
             run_step(rule, wildcards, input, output, params, threads, log)
 
 
-# One rule a figure: it writes a table (CSV), and draws the figure from that table alone.
+# A figure is drawn from its table (CSV) alone.
 for figure, needs in (NEEDS | SWEEPS).items():
     category = "Figures of the paper" if figure in FIGURES else "Studies and sweeps"
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import yaml
 
 from .records import FOLDER, digest_of, file_digest, read_record
-from .versions import PACKAGES
+from .sweeps import PACKAGES
 
 PAPER = {
     "title": "A minimal model for the onset of slip pulses in frictional rupture",

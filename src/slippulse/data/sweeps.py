@@ -1,12 +1,16 @@
 """The runs of a sweep as one Dataset."""
 
 from collections.abc import Sequence
+from functools import cache
+from importlib.metadata import version
 
 import numpy as np
 import xarray as xr
 
 from .points import DIMENSIONS, Recorded
 
+# Packages that a number depends on.
+PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 FILE = {
@@ -15,6 +19,12 @@ FILE = {
     "source": "slippulse, simulations",
     "references": "https://doi.org/10.1103/PhysRevE.103.052802",
 }
+
+
+@cache
+def versions() -> str:
+    """Names and versions of packages, the same on every machine with the same lock."""
+    return ", ".join(f"{package} {version(package)}" for package in PACKAGES)
 
 
 def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:

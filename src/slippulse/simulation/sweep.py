@@ -7,8 +7,7 @@ from threading import Event
 import xarray as xr
 
 from ..data.points import Recorded
-from ..data.sweeps import combine
-from ..data.versions import versions
+from ..data.sweeps import combine, versions
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.solution import Solution, solve_on_lattice

@@ -38,13 +38,12 @@ def _finder(folder: str) -> FileFinder:
 
 def begin() -> None:
     """Take digests of all that this process reads from now on."""
-    if _finder not in sys.path_hooks:
-        sys.path_hooks.insert(0, _finder)
-        sys.path_importer_cache.clear()
-        sys.addaudithook(_note)
-        for name, module in [*sys.modules.items()]:
-            if name.partition(".")[0] == "slippulse":
-                _add_now(os.path.realpath(str(module.__file__)))
+    sys.path_hooks.insert(0, _finder)
+    sys.path_importer_cache.clear()
+    sys.addaudithook(_note)
+    for name, module in [*sys.modules.items()]:
+        if name.partition(".")[0] == "slippulse":
+            _add_now(os.path.realpath(str(module.__file__)))
 
 
 @contextmanager
