@@ -17,7 +17,6 @@ rule all:
         lambda wildcards: [f"results/{name}" for name in PLAN.wanted(["all"])],
 
 
-# Says whether the results are as made by what is here now.
 rule verify:
     input:
         environment,

@@ -41,7 +41,6 @@ except ValueError as error:
 
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
-# A scene is a simulation of one run that records everything.
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]

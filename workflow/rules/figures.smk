@@ -16,8 +16,6 @@ for study, needs in STUDY_NEEDS.items():
         log:
             f"results/logs/study_of_{study}.log",
         priority: 2
-        resources:
-            runtime=20,
         params:
             step="run_study",
             study=study,

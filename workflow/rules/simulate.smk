@@ -6,7 +6,7 @@ BOUNDS = {
 }
 
 
-# What the rules have in common; it makes nothing itself.
+# The rules have this in common.
 rule step:
     input:
         environment,

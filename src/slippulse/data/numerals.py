@@ -71,7 +71,6 @@ def short(value: object, longest: int = 80) -> str:
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
-# The filters by which texts and templates write a value.
 FILTERS = {
     write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)
 }

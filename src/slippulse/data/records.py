@@ -56,8 +56,9 @@ def write_record(
 ) -> None:
     """Write the record of a job that has ended; inputs are the digests of what it has read."""
     outputs = {name: file_digest(Path(results, name)) for name in origin.outputs}
-    made_by = origin.step, origin.configuration, origin.sources
-    record = Record(*made_by, outputs, dict(inputs), dict(used))
+    record = Record(
+        origin.step, origin.configuration, origin.sources, outputs, {**inputs}, {**used}
+    )
     write_json(record._asdict(), Path(results, record_path(origin)))
 
 

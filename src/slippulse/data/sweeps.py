@@ -9,7 +9,6 @@ import xarray as xr
 
 from .points import DIMENSIONS, Recorded
 
-# Packages that a number depends on.
 PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")

@@ -15,8 +15,7 @@ from ..data.files import CONFIGURATION
 from ..data.records import Origin, read_record, write_record
 from . import reading
 
-# Seconds between two lines of progress.
-BETWEEN = 2.0
+SECONDS_BETWEEN_LINES = 2.0
 
 
 def run_job(
@@ -46,7 +45,7 @@ def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
     def show(done: float, total: int) -> None:
         nonlocal shown
         now = time.monotonic()
-        if 0 < done < total and now - shown > BETWEEN:
+        if 0 < done < total and now - shown > SECONDS_BETWEEN_LINES:
             shown = now
             part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
             left = (now - began) * (total / done - 1.0)
