@@ -110,9 +110,7 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     assert [path.read_bytes() for path in joined] == before
 
 
-@pytest.mark.parametrize(
-    "chunk", ["two/1-of-3", "two/3-of-2", "two/0-of-2", "none/1-of-1", "one/1-of-1"]
-)
+@pytest.mark.parametrize("chunk", ["two/1-of-3", "two/3-of-2", "one/1-of-1"])
 def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
     said = refused(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
     assert f"target: 'results/data/in_{chunk}.nc'" in said
