@@ -28,7 +28,8 @@ VARIABLES = {
     "elastic_energy": "elastic energy of the strain at the end",
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to the damping and to what friction gains with slip rate",
-    "friction_loss": "work against friction above the kinetic one; by linear_rate in viscous_loss",
+    "friction_loss": "work against friction above the kinetic one: the fracture energy of slip "
+    "weakening; with law linear_rate a part of viscous_loss",
     "event_loss": "energy lost as blocks stick within a step (textbook scheme)",
     "energy_residual": "what the energy balance misses, over its largest part",
     "end_time": "time at which the run ended",
