@@ -83,8 +83,6 @@ ORDER_BAND = 0.35
 # The damped theory against simulation at dx = 0.02, where the front has long been steady.
 FRONT_SPEED_STUDY = 5e-5
 
-# ln M_+(0) by panels up to 2500 with the leading tail alone: the rest is of second order in 1/2500.
-CAUCHY_BY_PANELS = 1e-6
 # A Gaussian of width 1e-3 in place of uniform pre-stress: its part of lengths near 1.
 NARROW_GAUSSIAN = 1e-3
 # Random scenes on coarse lattices at nine tenths of the stability bound, damping ratio up to 1: the

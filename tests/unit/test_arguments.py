@@ -9,6 +9,8 @@ import pytest
 
 import slippulse as sp
 from slippulse import theory
+from slippulse.model.stability import largest_step
+from slippulse.solver.fixed_step import LATTICES
 
 PLAIN = sp.Prestress(0.5, 0.5)
 GOOD = {"boundary": "stress", "prestress": PLAIN, "duration": 0.2, "dx": 0.1}
@@ -80,6 +82,9 @@ SCENES = {
     "friction.alpha: -0.01; allowed: >= 0 without leaf springs, or slip runs": WITHOUT_SPRINGS
     | linear(-0.01),
 }
+for name in LATTICES:
+    refusal = f"max_step: 9.0; allowed: <= {largest_step(name, 4, 0.0, 0.0065):.4g}"
+    SCENES[refusal] = {"scheme": name, "max_step": 9.0}
 LAWS = {
     "law: 'velocity'; allowed: coulomb, linear_rate": ("velocity", {}),
     "alpha: 0.1; allowed: law 'coulomb' with nothing": ("coulomb", {"alpha": 0.1}),
