@@ -8,7 +8,7 @@ from itertools import chain
 from snakemake.logging import logger
 
 from slippulse.configuration.refusals import format_problems
-from slippulse.data.files import write_json
+from slippulse.data.records import write_json
 from slippulse.data.tree import Tree
 from slippulse.steps.origins import LOCK, jobs_of
 from slippulse.steps.targets import Plan, unlike, write_faulty

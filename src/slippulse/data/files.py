@@ -1,6 +1,5 @@
 """Writing of files, whole or not at all."""
 
-import json
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -37,8 +36,3 @@ def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
 def write_text(text: str, path: str | Path) -> None:
     """Write a text file in UTF-8."""
     write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
-
-
-def write_json(value: object, path: str | Path) -> None:
-    """Write builtins as JSON that people can read."""
-    write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from .files import write_json
+from .files import write_text
 
 FOLDER = "records"
 
@@ -49,6 +49,11 @@ def file_digest(path: str | Path) -> str:
 def record_path(origin: Origin) -> str:
     """Path of the record of a job below results/; the first output gives it its name."""
     return f"{FOLDER}/{origin.outputs[0]}.json"
+
+
+def write_json(value: object, path: str | Path) -> None:
+    """Write builtins as JSON that people can read."""
+    write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)
 
 
 def write_record(

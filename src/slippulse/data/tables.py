@@ -1,6 +1,6 @@
 """Tables as CSV files."""
 
-from collections.abc import Collection
+from collections.abc import Mapping
 from pathlib import Path
 
 import pandas as pd
@@ -13,14 +13,9 @@ def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
     write_text(table.to_csv(index=False, float_format=f"%.{digits}g", lineterminator="\n"), path)
 
 
-def load_table(path: str | Path, integers: Collection[str] | None = None) -> pd.DataFrame:
-    """Read a table; where ``integers`` are given, only these columns hold integers."""
+def load_table(path: str | Path, types: Mapping[str, type] | None = None) -> pd.DataFrame:
+    """Read a table; some columns may be of given types."""
     try:
-        table = pd.read_csv(path, low_memory=False)
-        if integers is not None:
-            # The table is read again, since -0 as an integer has lost its sign.
-            fractions = table.select_dtypes("integer").columns.difference([*integers])
-            table = pd.read_csv(path, low_memory=False, dtype=dict.fromkeys(fractions, float))
-        return table
+        return pd.read_csv(path, low_memory=False, dtype=types)
     except ValueError as error:
         raise UnreadableFile(path, error) from error

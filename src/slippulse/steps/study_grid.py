@@ -24,9 +24,11 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         scenes, samples = expand(sweeps[factor])
         data = solve_sweep(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
         tables[factor] = measured_table(data, settings["measure"])
-    # In a chunk, a column of fractions may happen to have integers alone.
-    in_chunk = any("chunk" in sweep for sweep in sweeps.values())
-    measured = load_table(files["finest"], integers=PARAMETERS if in_chunk else None)
+    measured = load_table(files["finest"])
+    if any("chunk" in sweep for sweep in sweeps.values()):
+        # A column of fractions may have integers alone, of which -0 has lost its sign.
+        fractions = measured.select_dtypes("integer").columns.difference(PARAMETERS)
+        measured = load_table(files["finest"], dict.fromkeys(fractions, float))
     uncertainties = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
     promise = promise_of(next(iter(sweeps.values())))
     if promise is not None:

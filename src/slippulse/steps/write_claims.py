@@ -6,7 +6,8 @@ from ..claims.evidence import Evidence
 from ..claims.findings import findings
 from ..claims.paper import all_claims, finite
 from ..claims.reading import read_entries, read_text
-from ..data.files import write_json, write_text
+from ..data.files import write_text
+from ..data.records import write_json
 from ..report.claims_page import claims_page
 from .inputs import given
 

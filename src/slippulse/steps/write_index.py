@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from ..data.files import write_json, write_text
+from ..data.files import write_text
 from ..data.provenance import checksums, manifest, provenance
+from ..data.records import write_json
 from ..report.index_page import index_page
 from ..report.texts import read_captions
 
