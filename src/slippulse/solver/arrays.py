@@ -132,7 +132,7 @@ class Changed(NamedTuple):
     stuck: np.ndarray  # the block that stuck, -1: a release
     count: np.record  # type: ignore[assignment]
     kinks: np.record
-    bends: np.record  # of the power of friction with a bend
+    work_kinks: np.record  # those of the work against friction with a bend
 
 
 class Scratch(NamedTuple):

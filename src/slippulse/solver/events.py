@@ -1,10 +1,11 @@
-"""The change that a release or a stick makes: a difference that spreads one block a derivative.
+"""The change that an event makes: a difference that spreads one block a derivative.
 
 The sliding lattice is linear, so an event adds a polynomial to the present ones. The lowest
-derivative of this difference that is not zero is the second, at the block of the event. Each
-further derivative reaches one block more, since damping couples neighbours through their velocities
-(without damping, one block more takes two derivatives). The difference is cut off at the order of
-the step, so the few blocks within reach change as in a new expansion of the whole lattice.
+derivative of this difference that is not zero is the second, or the third where friction bends, at
+the block of the event. Each further derivative reaches one block more, since damping couples
+neighbours through their velocities (without damping, one block more takes two derivatives). The
+difference is cut off at the order of the step, so the few blocks within reach change as in a new
+expansion of the whole lattice.
 """
 
 import numpy as np

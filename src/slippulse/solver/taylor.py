@@ -201,7 +201,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
     add_kink(changed.kinks, k, event.time)
     weight = 2.0 if medium.mirror and block > 1 else 1.0
-    add_kink(changed.bends, weight * medium.dx * bent, event.time)
+    add_kink(changed.work_kinks, weight * medium.dx * bent, event.time)
     n = changed.count.n
     changed.first[n], changed.last[n] = first, last
     changed.stuck[n] = block if stick else -1
@@ -271,7 +271,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
     instantly = SIMULTANEOUS * limits.largest_step
     tally, forecast = history.tally, scratch.forecast
     moved, changed = scratch.moved, scratch.changed
-    kinks, bends = changed.kinks, changed.bends
+    kinks, work_kinks = changed.kinks, changed.work_kinks
     lossy = medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.steps):
         t = tally.time
@@ -294,7 +294,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         last = segments.ends[segments.count.n - 1]
         if last >= size - ROOM or (segments.starts[0] <= ROOM and not medium.mirror):
             return GROW
-        kinks.k = kinks.ks = kinks.kss = bends.k = bends.ks = bends.kss = 0.0
+        kinks.k = kinks.ks = kinks.kss = 0.0
+        work_kinks.k = work_kinks.ks = work_kinks.kss = 0.0
 
         h = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if h == limits.end_time - t else t + h
@@ -325,7 +326,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 
         if lossy:
             tally.viscous_loss += loss_of_step(h, rate, change, kinks)
-        tally.friction_loss += loss_of_step(h, power, growth, bends)
+        tally.friction_loss += loss_of_step(h, power, growth, work_kinks)
         tally.pending_step = h
         updates = 0
         for r in range(moved.count.n):
