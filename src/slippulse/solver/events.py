@@ -156,7 +156,7 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     block, now, stick, bends = event
-    speed, kink, bent, friction = 0.0, 0.0, 0.0, 0.0
+    speed = kink = bent = friction = 0.0
     left, right = sliding_beside(segments, block)
     middle = medium.mirror and block == 1
     if middle:

@@ -27,14 +27,14 @@ def begin_to_fall(motion, bend, block):
         if bend.rate == 0:
             motion.released[block] = motion.w[0, block] + motion.offset[block]
         motion.falls[block] = motion.resists[block] * bend.fall
-        return bend.beyond + motion.falls[block] * bend.end
+        return bend.lowest + motion.falls[block] * bend.end
     return 0.0
 
 
 @inner(inline=True)
 def resistance(motion, bend, block, reached):
     """Friction of a block with a bend, at its slip or slip rate."""
-    return bend.beyond + motion.falls[block] * (motion.released[block] + bend.end - reached)
+    return bend.lowest + motion.falls[block] * (motion.released[block] + bend.end - reached)
 
 
 @inner()

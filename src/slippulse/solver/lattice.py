@@ -38,8 +38,8 @@ class Lattice:
         self.scene, self.samples = scene, samples
         self.call_steps = CALL_STEPS
         self.mirror = scene.symmetric
-        dx, leaf, total = scene.dx, scene.gamma, scene.release == "total"
-        friction = constants_of(scene.friction, self.localised)
+        dx, leaf = scene.dx, scene.gamma
+        total, friction = scene.release == "total", constants_of(scene.friction, self.localised)
         per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
         self.medium = arrays.Medium(
             dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, self.mirror, total

@@ -18,7 +18,7 @@ class Bend(NamedTuple):
     rate: int  # 0: it falls with the slip since the release; 1: with slip rate
     fall: float  # its slope before the bend
     end: float  # slip or slip rate at the bend
-    beyond: float  # friction beyond
+    lowest: float  # friction from there on
 
 
 class Traits(NamedTuple):
