@@ -44,9 +44,9 @@ def prestress_balance_position(prestress: Prestress) -> float:
 @lru_cache(maxsize=1024)
 def _balance_position(prestress: Prestress) -> float:
     # Beyond this distance the profile is its side levels to rounding.
-    bump_ends = [abs(centre) + 40.0 * width for centre, _, width in prestress.bumps]
-    step_ends = [abs(position) + prestress.width for position, _ in prestress.steps]
-    distance = max([40.0 * prestress.width, *bump_ends, *step_ends])
+    gaussians = [(0.0, 1.0, prestress.width), *prestress.bumps]
+    ends = [abs(centre) + 40.0 * width for centre, _, width in gaussians]
+    distance = max(ends + [abs(position) + prestress.width for position, _ in prestress.steps])
     left, right = prestress.level(np.array([-distance, distance])).tolist()
     if right != 0.0:
         allowed = "0, or the balance integral is not finite"

@@ -93,6 +93,7 @@ class Lattice:
 
     def _extend(self, left: int, right: int) -> None:
         """Add blocks at rest: these numbers on the left and on the right."""
+        self.first_block -= left
         old, segments = self.motion, self.segments
         inside = slice(left, left + self.size)
         size = left + self.size + right
@@ -140,9 +141,7 @@ class Lattice:
             largest = self.largest_force * self.growth
             status = self._advance(arrays.Limits(scene.order, step, scene.duration, largest, steps))
             if status == arrays.GROW:
-                left, right = self._extension(self.size)
-                self.first_block -= left
-                self._extend(left, right)
+                self._extend(*self._extension(self.size))
             elif status == arrays.UNSTABLE:
                 reason = "slip velocity is not finite or beyond anything the pre-stress can drive"
             elif status != arrays.CONTINUE:
