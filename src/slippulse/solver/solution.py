@@ -40,8 +40,9 @@ class Solution:
 
 def energies(lattice: Lattice, totals: dict) -> dict:
     """Energy balance of the lattice per unit depth, and its residual over the largest part."""
-    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
-    slip, velocity, strain = motion.w[0], motion.w[1], motion.strain
+    medium, motion = lattice.medium, lattice.motion
+    dx, strain = medium.dx, motion.strain
+    slip, velocity = motion.w[0], motion.w[1]
     if not lattice.localised:
         strain = np.append(np.diff(slip) / dx, 0.0)
     weight, bond = np.full((2, lattice.size), 2.0 if medium.mirror else 1.0)
@@ -73,7 +74,8 @@ def energies(lattice: Lattice, totals: dict) -> dict:
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a simulation that ended with a status of the kernel."""
     totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
-    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
+    medium, motion = lattice.medium, lattice.motion
+    dx = medium.dx
     slip, velocity = motion.w[0], motion.w[1]
     elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
     stress = (motion.tau - medium.leaf * slip)[1:-1] + elastic
