@@ -106,8 +106,8 @@ def test_bounded_weakening_with_slip_rate_by_events_tends_to_its_steady_pulse(ra
 
 def test_bends_of_friction_by_events_are_the_limit_of_short_steps():
     localised = weakening_by_events(0.05, duration=12.0)
-    whole = weakening_by_events(0.05, duration=12.0, half_lattice=False)
-    assert float(np.abs(whole["slip"] - localised["slip"]).max()) < 1e-7
+    full = weakening_by_events(0.05, duration=12.0, half_lattice=False)
+    assert float(np.abs(full["slip"] - localised["slip"]).max()) < 1e-7
     slips, releases = [], []
     for step in (0.02, 0.01, 0.005):
         textbook = run(RATE_WEAKENING, 0.05, duration=12.0, step=step)
