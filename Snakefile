@@ -30,5 +30,4 @@ onsuccess:
 
 
 onerror:
-    # The last words are the reasons.
     sys.stderr.write("".join(f"{reason}\n" for reason in FAILED))

@@ -60,9 +60,11 @@ def answer() -> str:
     text = ""
     if called["judged"]:
         from slippulse.claims.ledger import Ledger
+        from slippulse.claims.reading import read_text
 
-        claims = json.loads(Path("results/claims.json").read_text(encoding="utf-8"))
-        text = f"{Ledger(claims).summary()}\n"
+        ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
+        shipped = read_text("manuscript/shipped_verdicts.yaml") if called["altered"] else {}
+        text = f"{ledger.summary()}\n{ledger.differences(shipped)}"
     if called["page"]:
         return f"{text}Open results/index.html"
     if called["targets"] == ["all"]:

@@ -334,6 +334,8 @@ def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_
     ledger = Ledger([CLAIM | fields for fields in others])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced."
+    changed = "Differs from the shipped: c: inconclusive -> not reproduced\n"
+    assert ledger.differences({"a": "reproduced", "c": "inconclusive"}) == changed
     numbers = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], numbers)

@@ -36,6 +36,19 @@ def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     assert run.attrs["run_flags"] == ""
 
 
+@pytest.mark.parametrize(
+    ("tau0", "ratio"), [(0.3, 0.02), (0.45, 0.05), (0.6, 0.1), (0.7, 0.15), (0.85, 0.2)]
+)
+def test_steady_pulse(tau0, ratio):
+    dx, gamma = 0.01, 0.65
+    run = run_of(tau0, gamma=gamma, dx=dx, beta=ratio * dx, duration=60.0, max_step=0.2)
+    pulse = leading_pulse(run, 0.3)
+    theory = sp.theory.steady_pulse(tau0, gamma, ratio * dx, sp.theory.front_speed(tau0, ratio))
+    assert pulse.slip == pytest.approx(theory.slip, rel=tol.PULSE_SLIP_THEORY)
+    assert pulse.peak_velocity == pytest.approx(theory.peak_velocity, rel=tol.PULSE_PEAK_THEORY)
+    assert pulse.width == pytest.approx(theory.width, abs=tol.PULSE_WIDTH_BLOCKS * dx)
+
+
 def test_the_published_figure():
     run = run_of(0.25, gamma=0.55, beta=1e-3, dx=0.01, duration=10.8, release="total", max_step=0.5)
     speed, intercept, _ = fit_front(run, 0.6)

@@ -64,6 +64,7 @@ def begin():
         # `make verify` and the last line of a run read how the run was called.
         called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
         called["judged"] = "claims.json" in wanted
+        called["altered"] = changes(SHIPPED, {**config, "preset": SHIPPED["preset"]}) != []
         write_json(called, "results/records/.call")
     return held
 

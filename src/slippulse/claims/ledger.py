@@ -200,6 +200,15 @@ class Ledger:
                 listed.append(f"{count} {words}")
         return f"{self.count()} claims: {', '.join(listed)}."
 
+    def differences(self, shipped: Mapping[str, str]) -> str:
+        """A line for each claim whose verdict differs from a shipped one."""
+        lines = []
+        for claim in self:
+            before = shipped.get(claim.id, claim.verdict)
+            if before != claim.verdict:
+                lines.append(f"Differs from the shipped: {claim.id}: {before} -> {claim.verdict}\n")
+        return "".join(lines)
+
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
     if id not in entries:
