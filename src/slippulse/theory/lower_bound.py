@@ -18,7 +18,7 @@ import numpy as np
 
 from .curve import WEIGHTS
 from .part import Part
-from .riemann import partial_weights
+from .riemann import LARGEST_EXPONENT, partial_weights
 
 # The square of the first zero of J0.
 FIRST_ZERO = 5.783185962946784
@@ -29,6 +29,10 @@ CUTS, SHORTEST, SHORTEST_AT_REST = 4, 1e-6, 1e-3
 NEAR_FIRST = 0.2
 # Slip velocities of this size are 0.
 ROUNDING = 1e-12
+# Strong rate strengthening leaves a creep that may be far smaller than what pre-stress adds to it,
+# and the bound with it. Where du/dt is below FAINT at both ends of an interval that is not cut yet,
+# it is cut to SHORTEST_FAINT at most.
+FAINT, SHORTEST_FAINT = 1e-5, 1e-2
 
 
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
@@ -41,8 +45,10 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
         return part.velocity(x.ravel(), np.full(x.size, time)).reshape(x.shape)
 
     velocity = velocity_at(x)
+    faint = velocity.max(axis=0) < FAINT
     while x.size:
         least = np.where(velocity.min(axis=0) > ROUNDING, SHORTEST, SHORTEST_AT_REST)
+        least[faint] = SHORTEST_FAINT
         wide = (x[1] - x[0] > least * part.scale) & ~stays_positive(part, x, velocity, time)
         wide &= np.abs(x - first).max(axis=0) > NEAR_FIRST * part.scale
         edges = np.linspace(x[0, wide], x[1, wide], CUTS + 1)
@@ -50,6 +56,7 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
         if np.any(inner < -ROUNDING):
             return edges[1:-1][inner < -ROUNDING]
         values = np.concatenate([velocity[:1, wide], inner, velocity[1:, wide]])
+        faint = np.tile(faint[wide], CUTS)
         x, velocity = (np.array([rows[:-1], rows[1:]]).reshape(2, -1) for rows in (edges, values))
     return np.empty(0)
 
@@ -66,21 +73,22 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     k, slipped = past.stiffness, curve.arrival(middle) < early
     points = [np.concatenate(at) for at in zip(begin, past.left, past.right, end, strict=True)]
 
+    # In units of exp(alpha t/2).
+    exponent = np.clip(0.5 * alpha * (curve.time - time), -LARGEST_EXPONENT, LARGEST_EXPONENT)
+
     def gains(sign: float) -> np.ndarray:
         """Integrals of pre-stress of one sign, from c to a or b, and over both pasts."""
-        source = np.maximum(sign * curve.source, 0.0)
+        source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
         whole = source @ WEIGHTS
         panel, s, _ = points
         cut = np.sum(partial_weights(s) * source[panel], axis=-1)
         at = ((np.cumsum(whole) - whole)[panel] + cut).reshape(4, -1)
         return np.array([at[1] - at[0] + at[3] - at[2], at[3] - at[0]])
 
-    # In units of exp(alpha t/2); earlier sources count for more if alpha < 0.
-    largest = 0.5 * np.exp(0.5 * time * max(-alpha, 0.0))
     before = np.exp(-0.25 * alpha * span) * past.slip_velocity()
-    taken, negative = largest * gains(-1.0)
+    taken, negative = gains(-1.0)
     if k > 0.0:
-        added = largest * gains(1.0)[0]
+        added = gains(1.0)[0]
         lowest = sum(velocity) - before - added - k * span**2 / 16.0 * (before + added)
     else:
         lowest = before - taken
