@@ -41,6 +41,8 @@ CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
 # that are cut into CUTS pieces.
 LOCATED, CUTS = 1e-10, 8
+# So many intervals are looked at once: stick times beyond a limit may be ragged on any grid.
+MOST = 5_000
 # Where in its interval an edge that is nearly slow is looked at, apart from halfway.
 SHIFTED = 0.382
 # Size of Newton's last step to a stick time, and of the next one, about the product of the last
@@ -198,7 +200,7 @@ class TrailingEdge:
         """Knots with some more, and as many as predict them and the intervals right of others."""
         todo = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval(x)]])
         knots = knots.joined(self._knots_of(x, stick))
-        while todo.size:
+        while 0 < todo.size < MOST:
             knots, todo = self._refined(knots, todo)
         return knots
 
