@@ -71,10 +71,14 @@ TRANSITION_TABLE = SHARE_TABLE = 1e-4
 # Simulated transitions converge to the continuum at first order in dx.
 TRANSITION_HALVING = (1.6, 2.5)
 # Relative error after the first-order error is extrapolated away, from dx = 0.02 and 0.01.
-SHARE_EXTRAPOLATED = 4e-3
+TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
 # Closed forms of the undamped pulse; the profile in its equation, by differences of step 1e-4.
 PULSE_THEORY, PULSE_EQUATION = 1e-12, 1e-5
 
+# The damped theory against its independently computed table, which has 7 digits.
+TABLE_DIGITS = 1e-6
+# Extrapolation of T_trans and L_trans from three spacings to the exact theory.
+TRANSITION = 5e-4
 # Share times and peak under a stress boundary at dx = 0.01.
 SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 # Observed orders may differ from the formal one by this much where the next order is not
@@ -86,6 +90,8 @@ FRONT_SPEED_STUDY = 5e-5
 PULSE_SLIP_THEORY, PULSE_PEAK_THEORY = 5e-4, 2e-3
 PULSE_WIDTH_BLOCKS = 2.0
 
+# ln M_+(0) by panels up to 2500 with the leading tail alone: the rest is of second order in 1/2500.
+CAUCHY_BY_PANELS = 1e-6
 # A Gaussian of width 1e-3 in place of uniform pre-stress: its part of lengths near 1.
 NARROW_GAUSSIAN = 1e-3
 # Random scenes on coarse lattices at nine tenths of the stability bound, damping ratio up to 1: the

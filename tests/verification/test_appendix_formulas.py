@@ -1,5 +1,6 @@
 """Formulas of the appendices, as printed, against the code and the paper's equations."""
 
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -40,6 +41,20 @@ def test_the_factors_at_damping_ratio_one(v):
 @pytest.mark.parametrize("b", [0.05, 0.7, 5.0])
 def test_the_symbol_does_not_wind_around_zero(v, b):
     assert np.min(symbol(np.linspace(1e-3, 200.0, 20001), v, b).real) >= 1.0 - 1.0 / v**2 - 1e-9
+
+
+@pytest.mark.parametrize("v", [1.2, 2.0])
+def test_the_factor_by_cauchys_integral(v):
+    """ln M_+(0) by adaptive quadrature of the formula as printed, against the code's own."""
+    b = 0.3
+    phase = lambda z: float(np.angle(symbol(z, v, b))) / z
+    edges = np.concatenate([[1e-9, 0.5], np.arange(1.0, 400.0) * 2.0 * np.pi])
+    integral = sum(quad(phase, lo, hi, epsabs=1e-13)[0] for lo, hi in pairwise(edges))
+    # Beyond the last edge the mean of -b 4 sin^2(z/2)/(v z) is -2 b/(v z).
+    integral += -2.0 * b / (v * edges[-1])
+    printed = np.exp(0.5 * np.log(1.0 - 1.0 / v**2) + integral / np.pi)
+    prestress = theory.prestress_for_speed(v, b)
+    assert prestress == pytest.approx(printed, rel=tolerances.CAUCHY_BY_PANELS)
 
 
 @pytest.mark.parametrize("v", [1.2, 2.0, 3.0])

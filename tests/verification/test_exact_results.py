@@ -1,6 +1,6 @@
-"""Theory against tables and its equations; the solver against both and a figure."""
+"""Theory against tables, closed forms and its equations; the solver against both and a figure."""
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -14,6 +14,8 @@ from slippulse.measurement.pulses import leading_pulse
 GAMMA = 2.0 / 3.0
 SPEED = sp.theory.front_speed(0.4, 0.3, "elastic")
 STEADY = [(0.25, 0.55, beta, 1.0686) for beta in (0.0, 1e-3, 0.05)] + [(0.4, 0.65, 3e-3, SPEED)]
+# The paper's pulse is the undamped one at the speed of its front.
+OF_THE_PAPER = [*product([0.1, 0.37, 0.5, 0.9], [1e-3, 0.65], [0.0], [None])]
 # On the right the pre-stress falls from 1 to 1/2 over TAIL_LENGTH, and is 0 from there on.
 TAIL_LEVEL, TAIL_LENGTH, TAIL_RATIO = -0.5, 3.0, 0.1
 X_MINUS, ARREST = -4.5, 9.1247
@@ -34,6 +36,15 @@ def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     assert speed == pytest.approx(1.0 / np.sqrt(1.0 - tau0**2), rel=tol.FRONT_SPEED)
     assert leading_pulse(run, 0.3).slip == pytest.approx(2.0 * tau0 / 0.65, rel=tol.PULSE_SLIP)
     assert run.attrs["run_flags"] == ""
+
+
+def test_damped_front_speed_as_tabulated():
+    level, ratio = np.array([(0.5, 0.05), (0.5, 0.2), (0.2, 0.2), (0.8, 1.0)]).T
+    tables = {"total": [1.195467, 1.315836, 1.075091, 5.0]}
+    tables["elastic"] = [1.170395, 1.208446, 1.050926, 1.892763]
+    for release, speeds in tables.items():
+        exact = sp.theory.front_speed(level, ratio, release)
+        assert exact == pytest.approx(speeds, rel=tol.TABLE_DIGITS)
 
 
 @pytest.mark.parametrize(
@@ -60,22 +71,51 @@ def test_the_published_figure():
     assert edges == pytest.approx([3.19, 4.74, 6.03, 7.27, 8.48, 9.64], rel=tol.PUBLISHED_TRAILING)
 
 
-@pytest.mark.parametrize(
-    ("tau0", "table"), [(0.2, (3.6006, 8.7692)), (0.5, (3.7805, 10.3226)), (0.95, (3.9326, 26.952))]
-)
-def test_transitions_are_as_tabulated(tau0, table):
+# Level, gamma, T_trans and L_trans as tabulated, and first sticks of lattices at dx = 0.05, 0.02
+# and 0.01; None where no lattice is run.
+TRANSITIONS = [
+    (0.5, GAMMA, (3.7805, 10.3226), (3.7945, 3.7863, 3.7835)),
+    (0.2, GAMMA, (3.6006, 8.7692), ()),
+    (0.95, GAMMA, (3.9326, 26.952), None),
+    (0.8, 0.1, (), ()),
+    (0.35, 1.0, (), ()),
+    (0.65, 0.3, (), ()),
+]
+
+
+@pytest.mark.parametrize(("tau0", "gamma", "table", "known"), TRANSITIONS)
+def test_lattices_converge_to_tabulated_transitions(paper_accuracy, tau0, gamma, table, known):
     profile = sp.Prestress(tau0, tau0)
-    exact = sp.theory.exact_transition_displacement(profile, GAMMA)
-    assert (exact.time, exact.length) == pytest.approx(table, rel=tol.TRANSITION_TABLE)
+    exact = sp.theory.exact_transition_displacement(profile, gamma)
     fronts = sp.theory.Fronts(profile, 0.0, "total", 1.1 * exact.time)
-    assert abs(sp.theory.slip_velocity(fronts, GAMMA, 0.0, exact.time)) < tol.ALGEBRA * 1e3
+    assert abs(sp.theory.slip_velocity(fronts, gamma, 0.0, exact.time)) < tol.ALGEBRA * 1e3
+    truth = np.array([exact.time, exact.length])
+    assert truth[: len(table)] == pytest.approx(table, rel=tol.TRANSITION_TABLE)
+    if known is None:
+        return
+    measured = []
+    for dx in (0.05, 0.02, 0.01, 0.005):
+        run = run_of(tau0, gamma=gamma, dx=dx, duration=1.2 * exact.time, **paper_accuracy)
+        time = run.attrs["first_stick_time"]
+        measured.append((time, 2.0 * float(position_at(run, time))))
+    _, coarse, middle, fine = np.array(measured) - truth
+    first_sticks = [time for time, _ in measured[: len(known)]]
+    assert first_sticks == pytest.approx(known, rel=tol.TRANSITION_TABLE)
+    # L_trans can be converged to the error of the step already, and then has no order.
+    low, high = tol.TRANSITION_HALVING
+    for ratio in (coarse / middle, middle / fine):
+        assert low < ratio[0] < high and (not known or low < ratio[1] < high)
+    assert np.all(np.abs(2.0 * fine - middle) < tol.TRANSITION * truth)
+    assert not known or np.all(np.abs(2.0 * middle - coarse) < tol.TRANSITION_EXTRAPOLATED * truth)
 
 
 # Level, width, damping ratio, and tabulated times without damping to 0.9, 0.95 and 0.99 of
 # |x_minus|, over |x_minus|.
 CRACKS = [
     (-0.75, 5.0, 0.1, ()),
+    (-1.0, 4.0, 0.1, ()),
     (-1.0, 4.0, 0.0, (1.3031, 1.5543, 1.9779)),
+    (-0.5, 4.0, 0.1, ()),
     (-0.5, 1.0, 0.1, (1.1745, 1.3415, 1.6052)),
 ]
 
@@ -103,10 +143,17 @@ def test_share_times_and_peak_under_stress_as_tabulated_to_first_order(left, wid
     assert peak == pytest.approx(crack.peak_velocity, rel=tol.STRESS_PEAK)
 
 
-@pytest.mark.parametrize(("tau", "gamma", "beta", "v"), STEADY)
+@pytest.mark.parametrize(("tau", "gamma", "beta", "v"), STEADY + OF_THE_PAPER)
 def test_the_pulse_solves_its_equation(tau, gamma, beta, v):
     """(v^2 - 1) U'' + gamma U + beta v U''' = tau_0, with U and U' from rest at the front."""
-    pulse = sp.theory.steady_pulse(tau, gamma, beta, v)
+    if v is None:
+        pulse, v = sp.theory.paper_pulse(tau, gamma), 1.0 / np.sqrt(1.0 - tau**2)
+        values = pulse.speed, pulse.slip, pulse.peak_velocity, pulse.width
+        width = np.pi * tau * v / np.sqrt(gamma)
+        expected = v, 2.0 * tau / gamma, 1.0 / np.sqrt(gamma), width
+        assert values == pytest.approx(expected, rel=tol.PULSE_THEORY)
+    else:
+        pulse = sp.theory.steady_pulse(tau, gamma, beta, v)
     root = complex(pulse.growth, pulse.wavenumber)
     assert abs(beta * v * root**3 + (v**2 - 1.0) * root**2 + gamma) < tol.QUADRATURE
     # The third root is negative: its solution grows away from the front.
