@@ -37,6 +37,13 @@ def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
     assert replace(keys, duration=first * (1.0 - 1e-8)).rupture().first_stick is None
 
 
+def test_an_edge_as_steep_as_waves_is_slow_and_not_a_jump_in_each_of_its_pieces():
+    """Its slopes say that it outruns the waves, by less than they err."""
+    keys = scene(156)
+    limit, finer = (replace(keys, refinement=n).rupture().limit for n in (1, 3))
+    assert finer.time == pytest.approx(limit.time, rel=NUDGED)
+
+
 @pytest.mark.parametrize("number", STICK)
 def test_what_is_bounded_above_zero_is_so_in_between(number):
     """Where the bound holds, 15 positions in between slide until the first stick."""
