@@ -27,7 +27,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
-        axes.set_title(title, loc="right")
+        axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     # Front speeds on lattices, and exact ones at their distances as lines.
     for colour, (level, rows) in zip(COLOURS, fronts.groupby("level"), strict=True):
@@ -43,7 +43,7 @@ def draw(table: pd.DataFrame) -> Figure:
     speeds.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(speeds.xaxis, (1, 2, 4, 8))
-    speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$", loc="right")
+    speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$")
     # The legend stands below the fast fronts, left of the slow ones.
     low, high = speeds.get_ylim()
     speeds.set_ylim(low - 0.15 * (high - low), high)

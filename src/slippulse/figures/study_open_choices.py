@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
+from ..claims.ledger import BAND
 from . import style
 from .style import BLACK, BLUE, COLUMN, GREEN, GREY, OPEN, ORANGE, PURPLE, Look, entry
 
@@ -11,8 +12,6 @@ NEEDS = {"lists": ["results/claims.json"]}
 NUMERIC = ("exact", "approximate", "scaling")
 # A deviation below this fraction of the tolerance is given as a bound.
 LEAST = 1e-2
-# A verdict in this band changes if the tolerance is larger or smaller by this factor.
-BAND = 1.5
 LOOKS: dict[str, Look] = {
     "fraction": {"color": ORANGE, "label": "fraction that is arrest"},
     "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
