@@ -63,8 +63,11 @@ def answer() -> str:
         from slippulse.claims.reading import read_text
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        shipped = read_text("manuscript/shipped_verdicts.yaml") if called["altered"] else {}
-        text = f"{ledger.summary()}\n{ledger.differences(shipped)}"
+        text = f"{ledger.summary()}\n"
+        if called["altered"]:
+            line = "Differs from the shipped: {key}: {shipped} -> {here}\n".format
+            shipped = read_text("manuscript/shipped_verdicts.yaml")
+            text += "".join(line(**change) for change in ledger.differences(shipped))
     if called["page"]:
         return f"{text}Open results/index.html"
     if called["targets"] == ["all"]:

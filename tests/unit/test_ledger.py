@@ -13,7 +13,7 @@ from slippulse.claims import rules
 from slippulse.claims.choices import LAST, Combination, over_choices
 from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
-from slippulse.claims.kinds import Approximate, Qualitative, Reading, Scaling
+from slippulse.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse.claims.ledger import Ledger, with_texts
 from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries, read_text
@@ -64,8 +64,8 @@ CASES = {
     "every: one against": (every, (39, 1, 0), NO),
     "every: one against, many open": (every, (10, 1, 29), NO),
     "every: no runs": (every, (0, 0, 0), NONE),
-    "premise: all hold": (partial(every, premise=True), (2, 0, 0), YES),
-    "premise: one against": (partial(every, premise=True), (1, 1, 0), UNMET),
+    "premise: all hold": (partial(every, failing=UNMET), (2, 0, 0), YES),
+    "premise: one against": (partial(every, failing=UNMET), (1, 1, 0), UNMET),
     "reading: likely": (reading, (0.5, 7, 0.05), YES),
     "reading: unlikely": (reading, (0.04, 7, 0.05), NO),
     "reading: too few readings": (reading, (0.5, 1, 0.05), OPEN),
@@ -201,7 +201,9 @@ def test_an_estimate_is_judged_by_its_median_not_by_the_worst_run():
 def test_a_scaling_is_judged_by_its_exponent():
     def power(measure):
         known = exponent(evidence(measure).lattices("sweep"), "number", "paper", ["left"])
-        return Scaling(tolerance=0.1, exponent=known, runs=len(LEVELS)).fields()
+        measured, uncertainty = map(np.atleast_1d, known)
+        numbers = {"predicted": np.ones(1), "measured": measured, "uncertainty": uncertainty}
+        return Equation(tolerance=0.1, **numbers, counts={"runs": len(LEVELS)}).fields()
 
     assert power(lambda level, factor: level * (1.05 + 1e-3 * factor))["verdict"] == YES
     claim = power(lambda level, factor: level**1.2 * 1.1)
@@ -234,7 +236,7 @@ def test_what_must_hold_besides_decides_at_every_tolerance():
     numbers = {"deviations": np.array([0.1]), "median": (0.1, 0.001)}
     claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
-    assert replace(claim, beyond=True).verdict() == BEYOND
+    assert replace(claim, failing=BEYOND).verdict() == BEYOND
     lenient = lambda allowed: YES if allowed > 0.3 else OPEN
     claim = Approximate(tolerance=0.2, besides=lenient, **numbers)
     assert claim.verdict() == OPEN
@@ -328,18 +330,17 @@ def test_a_verdict_that_hangs_on_the_tolerance_says_so():
     assert claim({"flips_at": flips}).evidence_text() == text
 
 
-def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_asked_for_by_name():
+def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     others = [{"id": "a", "verdict": "reproduced"}, {"id": "c"}]
     others.append(others[0] | {"id": "b", "counted": False, "follows_from": ["a"]})
     ledger = Ledger([CLAIM | fields for fields in others])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced."
-    changed = "Differs from the shipped: c: inconclusive -> not reproduced\n"
-    assert ledger.differences({"a": "reproduced", "c": "inconclusive"}) == changed
+    changed = [{"key": "c", "shipped": OPEN, "here": NO}]
+    assert ledger.differences({"a": YES, "b": YES, "c": OPEN}) == changed
     numbers = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], numbers)
-    assert ledger.further("one", "else") == 1.0 and ledger.further("one", "no") is None
     assert ledger.listed("one", "apart") == "3 arrested; 2 growing"
     assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None
     with pytest.raises(ValueError, match="finding: 'none'; allowed: ours, no"):

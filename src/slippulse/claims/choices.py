@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..data.numerals import number, percent, setting
 from . import rules
-from .kinds import Claim, Qualitative, Scaling
+from .kinds import Claim, Equation, Qualitative
 
 # Values of open choices, by name.
 Chosen = dict[str, float | str]
@@ -114,7 +114,7 @@ class OverChoices(Claim):
             why = f"{why}{self.at_last_release()}".strip()
         out: dict[str, Any] = {"verdict": verdict, "choices": rows, "why": why}
         out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
-        return self.shown.fields() | out | {"holds_at": len(holding)}
+        return self.shown.written() | out | {"holds_at": len(holding)}
 
     def doubt(self) -> str:
         """Why the first combination with a caveat has it."""
@@ -124,13 +124,10 @@ class OverChoices(Claim):
         why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
         return f"With {' and '.join(settings)}, {why}."
 
-    def written(self) -> dict[str, Any]:
-        return self.shown.written() | self.fields() | {"flips_at": self.flips()}
-
     def size(self, deviation: float, digits: int = 2) -> str:
         """A deviation in the unit of the kind: of an exponent, or relative."""
-        scaling = isinstance(self.shown, Scaling)
-        return number(deviation, 2) if scaling else percent(deviation, digits)
+        exponent = isinstance(self.shown, Equation)
+        return number(deviation, 2) if exponent else percent(deviation, digits)
 
     def at_last_release(self) -> str:
         """How far the last release is off, in a sentence; empty if it is no choice."""
@@ -147,7 +144,7 @@ class OverChoices(Claim):
         sides = []
         for one in (change.before, change.after) if change else ():
             size = self.size(one.result["deviation"], 3)
-            if isinstance(self.shown, Scaling):
+            if isinstance(self.shown, Equation):
                 size = f"exponent off by {size}"
             elif isinstance(self.shown, Qualitative):
                 size += " of the runs against"

@@ -24,13 +24,13 @@ class Claim(ABC):
     """The result about one claim; every kind may have further numbers by name, and two texts.
 
     ``tolerance`` is 0 where no number is compared with one. ``besides`` has the verdict, at a
-    tolerance, on what must hold besides; ``beyond`` is true if the paper does not make the claim.
+    tolerance, on what must hold besides; ``failing`` is the verdict on a claim that fails.
     ``why`` is a sentence or two on the verdict, ``note`` replaces that in manuscript/claims.yaml.
     """
 
     tolerance: float = 0.0
     besides: Callable[[float], str] | None = None
-    beyond: bool = False
+    failing: str = rules.FAILED
     further: Mapping[str, float] = field(default_factory=dict)
     why: str = ""
     note: str = ""
@@ -48,7 +48,7 @@ class Claim(ABC):
         verdict = self.alone(tolerance)
         if self.besides is not None:
             verdict = rules.worst([verdict, self.besides(tolerance)])
-        return rules.BEYOND if self.beyond and verdict == rules.FAILED else verdict
+        return self.failing if verdict == rules.FAILED else verdict
 
     def verdict(self) -> str:
         """The verdict at the tolerance of the claim."""
@@ -75,21 +75,19 @@ class Claim(ABC):
 
     def written(self) -> dict[str, Any]:
         """All fields in claims.json that the result sets."""
-        rest = {"further": dict(self.further), "why": self.why, "flips_at": self.flips()}
-        return self.fields() | rest | ({"note": self.note} if self.note else {})
+        texts = {"why": self.why} | ({"note": self.note} if self.note else {})
+        return texts | {"further": dict(self.further)} | self.fields() | {"flips_at": self.flips()}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
     """An always, never or every, by whether it holds in each run, None where that is undecided.
 
-    ``condition`` is true if it needs a condition that the paper does not state, ``premise`` if the
-    paper does not say that it holds, but takes it for granted.
+    ``condition`` is true if it needs a condition that the paper does not state.
     """
 
     decided: Collection[bool | None]
     condition: bool = False
-    premise: bool = False
 
     def counts(self) -> dict[str, int]:
         """Numbers of runs in which it holds, fails or is open."""
@@ -99,14 +97,14 @@ class Qualitative(Claim):
         return {"held": held, "failed": failed, "undecided": undecided}
 
     def alone(self, tolerance: float) -> str:
-        held, failed, undecided = self.counts().values()
-        if not held + failed + undecided:
+        counts, runs = self.counts(), len(self.decided)
+        if not runs:
             return rules.NOT_TESTABLE
-        if failed:
-            return rules.UNMET if self.premise else rules.FAILED
-        if undecided > MOST_UNDECIDED * (held + undecided):
+        if counts["failed"]:
+            return rules.FAILED
+        if counts["undecided"] > MOST_UNDECIDED * runs:
             return rules.INCONCLUSIVE
-        return rules.CAVEAT if undecided or self.condition else rules.REPRODUCED
+        return rules.CAVEAT if counts["undecided"] or self.condition else rules.REPRODUCED
 
     def fields(self) -> dict[str, Any]:
         runs, counts = len(self.decided), self.counts()
@@ -118,12 +116,14 @@ class Qualitative(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Claim):
-    """An equation, by values of its runs at spacing 0: arrays [run], NaN without a value."""
+    """An equation, by values of its runs at spacing 0, or an exponent: arrays [run], NaN for none.
+
+    ``counts`` has numbers of other runs: of those behind an exponent, or of what holds besides.
+    """
 
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
-    # Numbers of runs of what must hold besides.
     counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
@@ -175,23 +175,6 @@ class Approximate(Claim):
             out["ninety"] = float(np.percentile(usable, 90.0))
             out["largest"] = float(usable.max())
         return out
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scaling(Claim):
-    """A proportionality, by the exponent of measured over predicted, which should be 1."""
-
-    exponent: Uncertain
-    runs: int
-
-    def alone(self, tolerance: float) -> str:
-        return rules.within(abs(self.exponent[0] - 1.0), self.exponent[1], tolerance)
-
-    def fields(self) -> dict[str, Any]:
-        measured, uncertainty = self.exponent
-        out = {"verdict": self.verdict(), "runs": self.runs, "left_out": 0, "predicted": 1.0}
-        out |= {"measured": measured, "uncertainty": uncertainty}
-        return out | {"deviation": abs(measured - 1.0)}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..data.numerals import number, percent
+from . import rules
 from .evidence import Evidence
 from .kinds import Approximate, Qualitative
 
@@ -81,7 +82,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         deviations=deviations.to_numpy(),
         median=(float(deviations.median()), uncertainty),
         ratio=(float(ratio.median()), uncertainty),
-        beyond=True,
+        failing=rules.BEYOND,
         further=further,
         why=why,
     )

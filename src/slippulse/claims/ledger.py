@@ -5,6 +5,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ..data.numerals import MISSING, number, percent, rounded, setting, with_uncertainty
+from ..data.provenance import changes
 from .rules import NOT_TESTABLE, REPRODUCED, VERDICTS
 
 # A tolerance below this is for rounding alone.
@@ -159,18 +160,10 @@ class Ledger:
         numbers = _known("finding", id, self.findings)["numbers"]
         return SimpleNamespace(**numbers) if numbers else None
 
-    def measured(self, id: str) -> str:
-        """Measured value of a claim, in words."""
-        return self(id).measured_text()
-
     def deviation_at(self, id: str, **chosen: float | str) -> float | None:
         """The deviation of a claim at a combination of choices; None without such a combination."""
         rows = (row["deviation"] for row in self(id).choices if chosen.items() <= row.items())
         return next(rows, None)
-
-    def further(self, id: str, words: str) -> float | None:
-        """The first further number of a claim whose name has these words; None without one."""
-        return next((value for name, value in self(id).further.items() if words in name), None)
 
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim that are named "WORDS: NAME", each with its name."""
@@ -200,14 +193,9 @@ class Ledger:
                 listed.append(f"{count} {words}")
         return f"{self.count()} claims: {', '.join(listed)}."
 
-    def differences(self, shipped: Mapping[str, str]) -> str:
-        """A line for each claim whose verdict differs from a shipped one."""
-        lines = []
-        for claim in self:
-            before = shipped.get(claim.id, claim.verdict)
-            if before != claim.verdict:
-                lines.append(f"Differs from the shipped: {claim.id}: {before} -> {claim.verdict}\n")
-        return "".join(lines)
+    def differences(self, shipped: Mapping[str, str]) -> list[dict]:
+        """Verdicts that differ from shipped ones by id, as `changes` lists them."""
+        return changes(shipped, {claim.id: claim.verdict for claim in self})
 
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:

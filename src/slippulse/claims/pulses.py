@@ -10,6 +10,7 @@ import pandas as pd
 
 from ..data.numerals import number, setting
 from ..measurement.regime import REGIMES
+from . import rules
 from .evidence import Evidence, agreeing, value_of
 from .kinds import Approximate, Equation, Qualitative
 
@@ -177,7 +178,7 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     why += rf"At $\gamma$ = {gammas} and $b$ = {ratios} it is met at {thin.sum()} of {len(thin)} "
     why += r"levels; by the formula of the width it is where $\gamma(1-\tau_0^2)/\tau_0^2$ is "
     why += f"at most {number((np.pi * allowed) ** 2)}."
-    return Qualitative(decided=thin, premise=True, further=further, why=why)
+    return Qualitative(decided=thin, failing=rules.UNMET, further=further, why=why)
 
 
 def within(

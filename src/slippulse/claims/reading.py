@@ -9,8 +9,16 @@ import yaml
 
 from ..configuration.problems import nearest
 
-# Reasons for a sentence to have no claim; a repetition names the sentence that it repeats.
-WHY_NONE = ("background", "definition", "other work", "no model", "not asked")
+# Whether a sentence is tested, or why it has no claim, with words for the table that counts.
+REASONS = {
+    "tested": "tested by a claim",
+    "repeats": "repeats another sentence",
+    "background": "background, or says no more than that something is shown",
+    "definition": "definition or assumption",
+    "other work": "is about other work",
+    "no model": "no model here can tell",
+    "not asked": "a model could tell; not asked here",
+}
 
 
 def read_text(path: str | Path):
@@ -47,8 +55,8 @@ def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """Numbers of sentences: all, tested, and not tested for each reason."""
+    """Numbers of sentences for each reason, and of all."""
     reasons = [str(sentence.get("why_none", "tested")) for sentence in sentences]
     # A repetition is "repeats ID".
     counts = Counter(re.sub("^repeats .*", "repeats", reason) for reason in reasons)
-    return {"all": len(sentences), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
+    return {key: counts[key] for key in REASONS} | {"all": len(sentences)}

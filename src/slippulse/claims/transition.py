@@ -13,7 +13,7 @@ from ..measurement.fronts import straight_line
 from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, exponent, ratios, studied
-from .kinds import NAN, Approximate, Claim, Qualitative, Scaling
+from .kinds import NAN, Approximate, Claim, Equation, Qualitative
 from .rules import Uncertain
 from .space_time_figure import arrow_and_stick
 
@@ -220,15 +220,21 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     displacement = boundary == "displacement"
     columns = ("left", "gamma") if displacement else ("left",)
 
-    def judge(tables: list[pd.DataFrame]) -> Scaling:
+    def judge(tables: list[pd.DataFrame]) -> Equation:
         exponents = {
             symbol: exponent(tables, quantity, ESTIMATES[boundary][quantity], columns)
             for quantity, symbol in SYMBOLS.items()
         }
         symbol = max(exponents, key=lambda name: abs(exponents[name][0] - 1.0))
-        note = rf"exponent of ${symbol}_\mathrm{{trans}}$, which is the farther from 1"
-        tolerance, runs = evidence.tolerance(id), len(tables[0])
-        return Scaling(tolerance=tolerance, exponent=exponents[symbol], runs=runs, note=note)
+        measured, uncertainty = map(np.atleast_1d, exponents[symbol])
+        return Equation(
+            tolerance=evidence.tolerance(id),
+            predicted=np.ones(1),
+            measured=measured,
+            uncertainty=uncertainty,
+            counts={"runs": len(tables[0])},
+            note=rf"exponent of ${symbol}_\mathrm{{trans}}$, which is the farther from 1",
+        )
 
     why = r"By both readings of $T_\mathrm{trans}$ in section III B." if displacement else ""
     runs = transitions(evidence) if displacement else arrests(evidence)

@@ -23,37 +23,28 @@ Rows = Sequence[Mapping]
 FEW = 6
 
 
-def claims_page(
-    claims: Rows, altered: Rows = (), findings: Rows = (), tables: Iterable[str] = ()
-) -> str:
+def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[str]) -> str:
     """The page of claims and findings (as in their JSON), with links to tables next to the page."""
-    return page(
-        "claims.html",
-        findings=findings,
-        altered=altered,
-        tables_behind=partial(tables_behind, tables=sorted(tables)),
-        command=command,
-        rules_altered=any(change["key"].startswith("claims.") for change in altered),
-        **shown(Ledger(claims), [finding["text"] for finding in findings]),
-    )
-
-
-def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
-    """Names for templates that show claims; `html` has the HTML of their texts and of `texts`."""
-    texts = [*texts]
+    ledger, texts = Ledger(claims), [finding["text"] for finding in findings]
     groups: dict[str, list[Entry]] = {}
     for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
         texts += [claim.statement, claim.why, claim.evidence_text()]
         groups.setdefault(claim.verdict, []).append(claim)
-    return {
-        "html": markup_of(texts),
-        "summary": ledger.summary(),
-        "following": len(ledger.claims) - ledger.count(),
-        "groups": groups,
-        "signs": SIGNS,
-        "bar": bar,
-        "figure_title": figure_title,
-    }
+    return page(
+        "claims.html",
+        html=markup_of(texts),
+        summary=ledger.summary(),
+        following=len(ledger.claims) - ledger.count(),
+        groups=groups,
+        findings=findings,
+        altered=altered,
+        rules_altered=any(change["key"].startswith("claims.") for change in altered),
+        signs=SIGNS,
+        tables_behind=partial(tables_behind, tables=sorted(tables)),
+        command=command,
+        bar=bar,
+        figure_title=figure_title,
+    )
 
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:

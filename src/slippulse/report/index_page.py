@@ -12,8 +12,8 @@ from PIL import Image
 from ..claims.ledger import Ledger
 from ..claims.reading import read_text
 from ..data.prose import fill
-from .claims_page import shown
-from .html import page
+from .claims_page import SIGNS
+from .html import markup_of, page
 from .texts import answer, judged_lines, parameters, read_captions, read_errata
 
 # Pixels of the page for a pixel of a figure: a figure of one column is narrower than the page.
@@ -62,7 +62,9 @@ def index_page(
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
         facts=facts,
-        **shown(ledger, written),
+        html=markup_of(written),
+        summary=ledger.summary(),
+        signs=SIGNS,
     )
 
 

@@ -122,7 +122,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "found": ledger.found,
         "cite": cite,
         "off": lambda id: cite(id, percent(ledger(id).deviation)),
-        "measured": lambda id: cite(id, ledger.measured(id)),
+        "measured": lambda id: cite(id, ledger(id).measured_text()),
         "runs": partial(parameters, config),
         "entries": read_text(folder / "claims.yaml"),
         "statements": statements,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import pandas as pd
 
 from ..claims.ledger import Ledger
-from ..claims.reading import claims_of, coverage, places_of
+from ..claims.reading import REASONS, claims_of, coverage, places_of
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
@@ -26,17 +26,6 @@ QUANTITIES = (
     ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
     ("scaling_stress", "last_release_time", "last release, stress boundary"),
 )
-# Words for each reason in the table that counts sentences.
-REASONS = {
-    "tested": "tested by a claim",
-    "repeats": "repeats another sentence",
-    "background": "background, or says no more than that something is shown",
-    "definition": "definition or assumption",
-    "other work": "is about other work",
-    "no model": "no model here can tell",
-    "not asked": "a model could tell; not asked here",
-    "all": "all",
-}
 # A long table stands between WIDE and CLOSE, on landscape pages, or between SMALL and CLOSE, in
 # small type over several pages. FLUSH puts all figures so far before it.
 OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n`````'.format
@@ -148,8 +137,8 @@ def found_list(ledger: Ledger) -> str:
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
     """Number of sentences that are tested, and that are not for each reason."""
-    counts = coverage(sentences)
-    rows = [(text, counts[key]) for key, text in REASONS.items()]
+    words = REASONS | {"all": "all"}
+    rows = [(words[reason], count) for reason, count in coverage(sentences).items()]
     return table("sentences l60 | how many r15", rows)
 
 
@@ -227,10 +216,8 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
     keys, judged = [], []
     for change in altered:
         keys.append(pair(change["key"], _literal(change["here"]), _literal(change["shipped"])))
-    for claim in ledger:
-        shipped = verdicts.get(claim.id, "absent")
-        if claim.verdict != shipped:
-            judged.append(pair(claim.id, claim.verdict, shipped))
+    for change in ledger.differences(verdicts):
+        judged.append(pair(change["key"], change["here"], change["shipped"] or "absent"))
     lines = []
     if keys:
         differs = f"This run differs from the shipped configuration in {'; '.join(keys)}."

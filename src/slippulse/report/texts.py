@@ -13,25 +13,23 @@ from ..data.numerals import setting
 ERRATUM = ("where", "printed", "right", "shown", "alters")
 # A text names only the ends of more values than this.
 FEW = 3
-# Verdicts that one sentence of the answer names together.
+# Verdicts that one sentence of the answer names together, each with the words for one thing that
+# has it, and for several.
 SENTENCES = (
-    ("depends on an open choice",),
-    ("not reproduced", "premise not met", "different beyond the paper"),
-    ("inconclusive",),
-    ("not testable",),
+    {
+        "depends on an open choice": (
+            "depends on choices that the paper leaves open",
+            "depend on choices that the paper leaves open",
+        )
+    },
+    {
+        "not reproduced": ("is not reproduced", "are not reproduced"),
+        "premise not met": ("is not met", "are not met"),
+        "different beyond the paper": ("is different", "are different"),
+    },
+    {"inconclusive": ("stays open", "stay open")},
+    {"not testable": ("is not tested in this run", "are not tested in this run")},
 )
-# Words of the answer for one thing with a verdict, and for several.
-EXCEPTIONS = {
-    "depends on an open choice": (
-        "depends on choices that the paper leaves open",
-        "depend on choices that the paper leaves open",
-    ),
-    "not reproduced": ("is not reproduced", "are not reproduced"),
-    "different beyond the paper": ("is different", "are different"),
-    "premise not met": ("is not met", "are not met"),
-    "inconclusive": ("stays open", "stay open"),
-    "not testable": ("is not tested in this run", "are not tested in this run"),
-}
 
 
 class Caption(NamedTuple):
@@ -159,12 +157,12 @@ def answer(lines: Sequence[Line]) -> str:
     sentences = [f"**{start}**: {first.named}."]
     for verdicts in SENTENCES:
         clauses = []
-        for verdict in verdicts:
+        for verdict, (singular, plural) in verdicts.items():
             these = [line for line in rest if line.claim.verdict == verdict]
             clauses += [line.said for line in these if line.said]
             named = [line.named for line in these if not line.said]
             if named:
-                clauses.append(f"{listed(named)} {EXCEPTIONS[verdict][len(named) > 1]}")
+                clauses.append(f"{listed(named)} {plural if len(named) > 1 else singular}")
         if clauses:
             words = ", and ".join(clauses)
             sentences.append(f"{words[0].upper()}{words[1:]}.")
