@@ -7,7 +7,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measurement.promise import covers
+from slippulse.measurement.promise import covered
 from slippulse.predict.comparison import measured_table
 
 SHARE = 0.95
@@ -78,10 +78,10 @@ def test_the_worst_covered_number_keeps_its_promise_and_not_more_than_needed(shi
     sweep = sp.run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (_, exact), number, run in zip(cases, made, numbers, runs, strict=True):
-        covered = [name for name in exact if covers(run, name, SHARE)]
-        assert len(covered) == number, case
+        promised = covered(run, SHARE).intersection(exact)
+        assert len(promised) == number, case
         # The error against theory, as a fraction of the promise.
-        used = {name: abs(run[name] / exact[name] - 1.0) / case[0] for name in covered}
+        used = {name: abs(run[name] / exact[name] - 1.0) / case[0] for name in promised}
         assert max(used.values()) <= 1.0, (case, used)
         worst = max(worst, *used.values())
     assert worst >= tol.PROMISE_USED

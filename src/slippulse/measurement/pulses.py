@@ -7,7 +7,6 @@ import numpy as np
 from ..data.points import AnyRun
 from .fronts import fit_front, path
 
-NAN = float("nan")
 # Blocks slower than this fraction of the leading pulse are remains of the nucleation, not a pulse.
 REMAINS = 0.05
 
@@ -37,7 +36,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         leading[pulse] = velocity[pulse]
     peak, peak_distance = parabola_peak(r, leading)
     stick, stuck = path(run, edge="stick_time")
-    width, final = NAN, NAN
+    width, final = np.nan, np.nan
     followed = stuck < peak_distance
     if np.count_nonzero(followed) >= 4 and pulses:
         # The trailing edge runs as fast as the front, from the blocks that stuck last.
@@ -57,7 +56,7 @@ def front_at_end(
     """Distance of the right front at the end, NaN without a release, and whether it has stopped."""
     release, distance = path(run)
     if not distance.size:
-        return NAN, False
+        return np.nan, False
     # The next block is at rest: the front is at most one block beyond the last release.
     ahead, dx = float(speed * (run.attrs["end_time"] - release[-1])), run.attrs["dx"]
     at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
@@ -76,9 +75,9 @@ def sliding_stretches(velocity: np.ndarray) -> list[slice]:
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Largest value of sampled y and its position, by a parabola through the largest samples."""
-    i = int(np.argmax(y)) if y.size else 0
+    i = int(np.argmax(y))
     if not 0 < i < y.size - 1:
-        return (float(y[i]), float(x[i])) if y.size else (NAN, NAN)
+        return float(y[i]), float(x[i])
     left, middle, right = y[i - 1 : i + 2]
     bend = left - 2.0 * middle + right
     shift = 0.5 * (left - right) / bend if bend != 0.0 else 0.0
@@ -100,7 +99,7 @@ def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
     inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
     shape = np.cos(np.pi * fields["xi"][inside] / pulse.width)
     if shape.size < 4:
-        return NAN
+        return np.nan
     return float(np.sum(fields["slip_acceleration"][inside] * shape) / np.sum(shape**2))
 
 
@@ -110,5 +109,5 @@ def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     end = -pulse.width - 4.0 * run.attrs["dx"]
     third = (fields["xi"] < end) & (fields["xi"] > end - (pulse.front - pulse.width) / 3.0)
     if not third.any() or not np.isfinite(pulse.slip) or pulse.slip == 0.0:
-        return NAN
+        return np.nan
     return float(np.ptp(fields["slip"][third]) / pulse.slip)

@@ -51,7 +51,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
         regime = pulse_regime(ways, change, steady_tolerance)
     return {
         "regime": regime,
-        "centre_velocity_share": centre / largest if largest > 0.0 else float("nan"),
+        "centre_velocity_share": centre / largest if largest > 0.0 else np.nan,
         "largest_velocity_change": change,
         "late_front_speed_left": speeds[0],
         "late_front_speed_right": speeds[1],

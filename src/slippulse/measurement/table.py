@@ -27,7 +27,6 @@ WHOLE_PULSE = ("front", "width", "peak_velocity", "slip")
 FEWEST = 12
 # The Gaussian is 0, to rounding of what is shown, beyond this number of widths.
 FAR = 6.0
-NAN = float("nan")
 
 
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
@@ -88,7 +87,7 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     below = velocity < half
     before, after = np.flatnonzero(below[:top]), np.flatnonzero(below[top:])
     if not before.size or not after.size:
-        return NAN
+        return np.nan
     i, j = int(before[-1]), top + int(after[0])
     left = np.interp(half, velocity[[i, i + 1]], xi[[i, i + 1]])
     right = np.interp(half, velocity[[j, j - 1]], xi[[j, j - 1]])
@@ -100,7 +99,7 @@ def lattice_noise(run: AnyRun) -> float:
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
     moving = velocity[(x >= 0.0) & (velocity > 0.0)]
     if moving.size < FEWEST:
-        return NAN
+        return np.nan
     # The gain is 1 for waves of two blocks, sin^4(pi/n) for waves of n. At the ends are corners.
     short = np.diff(moving, 4)[2:-2] / 16.0
     return float(np.sum(short**2) / np.sum(moving**2))
@@ -133,7 +132,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
     distant = x >= start
     if np.count_nonzero(distant) < 8 or not np.max(velocity[early][distant], initial=0.0) > 0.0:
-        return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
+        return {"profile_change": np.nan, "energy_change": np.nan, "strain_left": np.nan}
     strain = np.gradient(slip[:, distant], x[distant], axis=1)
     densities = [0.5 * (velocity[i][distant] ** 2 + strain[i] ** 2) for i in (early, -1)]
     energies = [np.trapezoid(density, x[distant]) for density in densities]

@@ -7,7 +7,6 @@ from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
 from .fronts import arrival, path, position_at
 
-NAN = float("nan")
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the
 # lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).
 STALL = 0.03
@@ -28,19 +27,20 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
 def between_fronts(run: AnyRun, time: float) -> float:
     """Distance between both fronts at a time; NaN for NaN."""
     if np.isnan(time):
-        return NAN
+        return np.nan
     return float(position_at(run, time, "right") + position_at(run, time, "left"))
 
 
 def slip_time(run: AnyRun, slip: float) -> float:
     """Time at which sampled slip nearest x = 0 reaches a value; NaN if never or not sampled."""
     if "sample_slip" not in run:
-        return NAN
+        return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     history, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
     i = int(np.argmax(history >= slip))
+    # The slip of the first sample is 0.
     if i == 0:
-        return float(times[0]) if history[0] >= slip else NAN
+        return np.nan
     fraction = (slip - history[i - 1]) / (history[i] - history[i - 1])
     return float(times[i - 1] + fraction * (times[i] - times[i - 1]))
 
@@ -54,9 +54,9 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
-    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (NAN, NAN)
+    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (np.nan, np.nan)
     waited = longest_wait / time
-    state, right = "not reached", NAN
+    state, right = "not reached", np.nan
     if not np.isnan(time):
         state = "stalled" if waited > STALL else "resolved"
         right = float(position_at(run, time, "right"))

@@ -83,13 +83,13 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
     tau = run.attrs["right"]
     held = run.attrs["boundary"] == "displacement"
     if not held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
-        return float("nan")
+        return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
     distance = fields["xi"] - (pulse.peak_distance - pulse.front)
     # The lattice rounds the corners of the cosine.
     inside = np.abs(distance) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(inside) < 4:
-        return float("nan")
+        return np.nan
     _, cosine, _ = paper.profile(distance[inside] + paper.peak_position)
     return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 
 from ..measurement.regime import UNDECIDED, pulse_regime
-from ..model.checks import check_number
 from ..model.run import Run
 from ..theory.front_speeds import front_speed
 from .numbers import level, ratio
@@ -20,10 +19,11 @@ def _regime(run: Run, still: float) -> str:
     if profile.bumps:
         return UNDECIDED
     if profile.steps:
-        # A pulse that formed where the pre-stress is 0 meets another level.
+        # A pulse that formed where the pre-stress is 0 meets another level, and grows by half the
+        # integral of tau.
         forms = run.boundary == "stress" and profile.left < 0.0 == profile.right
         ahead = all(position > 0.0 for position, _ in profile.steps)
-        return regime_of_far_pulse(level(run, "right")) if forms and ahead else UNDECIDED
+        return pulse_regime("one-way", level(run, "right"), 0.0) if forms and ahead else UNDECIDED
     physics = run.gamma, ratio(run), run.release
     return final_regime(profile.left, profile.right, *physics, still)
 
@@ -46,8 +46,6 @@ def final_regime(
     the nucleation point, over its largest value, tends to r/(1 + 1/v + 2 r), where r = p/n and v is
     the front speed into p.
     """
-    for name, side in (("left", left), ("right", right)):
-        check_number(name, side, below=1.0)
     low, high = sorted((left, right))
     if high < 0.0:
         return "arrested"
@@ -68,8 +66,3 @@ def final_regime(
 def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:
     """Ratio p/n of `final_regime` below which the nucleation point comes to rest; level is p."""
     return still * (1.0 + 1.0 / front_speed(level, damping_ratio, release)) / (1.0 - 2.0 * still)
-
-
-def regime_of_far_pulse(level: float) -> str:
-    """Regime of a pulse under a stress boundary; it grows by half the integral of tau."""
-    return pulse_regime("one-way", level, 0.0)

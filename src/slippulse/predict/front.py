@@ -5,9 +5,10 @@ from functools import cache
 import numpy as np
 import pandas as pd
 
+from ..model.release import RELEASES
 from ..model.run import Run
-from ..theory.front_speeds import front_speed, front_speed_undamped, lattice_front_speed
-from .numbers import NAN, SIDES, level, or_nan, ratio
+from ..theory.front_speeds import front_speed, lattice_front_speed
+from .numbers import SIDES, level, or_nan, ratio
 
 # Below this gamma dx^2 leaf springs hardly change the speed of a damped front, and that speed takes
 # 14 ms a run.
@@ -16,19 +17,15 @@ COARSE = 1e-3
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns KIND_front_speed_SIDE: paper, exact without leaf springs, lattice with them at dx."""
-    table: dict[str, np.ndarray] = {}
+    undamped = [run._replace(beta=0.0) for run in runs]
+    table: dict[str, np.ndarray | list[float]] = {}
     for side in SIDES:
-        levels = np.array([level(run, side) for run in runs])
-        supersonic = (levels > 0.0) & (levels < 1.0)
-        paper = np.full(levels.shape, NAN)
-        paper[supersonic] = front_speed_undamped(levels[supersonic])
-        table[f"paper_front_speed_{side}"] = paper
+        table[f"paper_front_speed_{side}"] = exact_speeds(undamped, side)
         table[f"exact_front_speed_{side}"] = exact_speeds(runs, side)
-        on_lattices = [
-            _lattice_speed(stress, run.gamma, run.dx, ratio(run), run.release)
-            for run, stress in zip(runs, levels.tolist(), strict=True)
+        table[f"lattice_front_speed_{side}"] = [
+            _lattice_speed(level(run, side), run.gamma, run.dx, ratio(run), run.release)
+            for run in runs
         ]
-        table[f"lattice_front_speed_{side}"] = np.array(on_lattices)
     return pd.DataFrame(table)
 
 
@@ -37,21 +34,19 @@ def exact_speeds(runs: list[Run], side: str) -> np.ndarray:
     levels = np.array([level(run, side) for run in runs])
     ratios = np.array([ratio(run) for run in runs])
     releases = np.array([run.release for run in runs])
-    speeds = np.full(levels.shape, NAN)
-    for release in ("total", "elastic"):
-        chosen = (levels > 0.0) & (levels < 1.0) & (releases == release)
-        if chosen.any():
-            # Equal pairs are computed once.
-            both = [levels[chosen], ratios[chosen]]
-            pairs, indices = np.unique(both, axis=1, return_inverse=True)
-            speeds[chosen] = front_speed(pairs[0], pairs[1], release)[indices.ravel()]
+    speeds = np.full(levels.shape, np.nan)
+    for release in RELEASES:
+        chosen = (levels > 0.0) & (releases == release)
+        # Equal pairs are computed once.
+        both = [levels[chosen], ratios[chosen]]
+        pairs, indices = np.unique(both, axis=1, return_inverse=True)
+        speeds[chosen] = front_speed(pairs[0], pairs[1], release)[indices.ravel()]
     return speeds
 
 
 @cache
 def _lattice_speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
-    fine = ratio > 0.0 and gamma * dx**2 < COARSE
-    if gamma == 0.0 or fine or not 0.0 < level < 1.0:
-        return NAN
+    if gamma == 0.0 or (ratio > 0.0 and gamma * dx**2 < COARSE):
+        return np.nan
     # Under strong springs no front is supersonic.
     return or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))

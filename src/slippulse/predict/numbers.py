@@ -1,12 +1,12 @@
 """Numbers from which every prediction starts, and numbers that theory may lack."""
 
+import math
 from collections.abc import Callable
 from typing import TypeVar
 
 from ..model.run import Run
 
 Result = TypeVar("Result")
-NAN = float("nan")
 SIDES = {"left": -1e300, "right": 1e300}
 
 
@@ -31,4 +31,4 @@ def known(find: Callable[[], Result]) -> Result | None:
 def or_nan(find: Callable[[], float]) -> float:
     """Number of the theory, or NaN outside of its domain."""
     number = known(find)
-    return NAN if number is None else float(number)
+    return math.nan if number is None else float(number)

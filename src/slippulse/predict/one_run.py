@@ -1,5 +1,6 @@
 """The public way from a run to its numbers."""
 
+import math
 from typing import Any
 
 import xarray as xr
@@ -15,7 +16,6 @@ SETTINGS: dict[str, Any] = {
     "trailing_times": [5.0, 6.0, 7.0, 8.0, 9.0, 10.0],
     "still": 0.05,
 }
-NAN = float("nan")
 
 
 def measure(run: xr.Dataset) -> dict[str, Any]:
@@ -65,4 +65,5 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     if "point" in run.dims:
         allowed = "one run; point(sweep, index) takes it out of a sweep"
         raise TypeError(f"run: a sweep of {run.sizes['point']}; allowed: {allowed}")
-    return {"transition_time": NAN, "transition_length": NAN} | measured_row(run, SETTINGS)
+    unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
+    return unknown | measured_row(run, SETTINGS)

@@ -7,36 +7,31 @@ from ..model.run import Run
 from ..theory.closed_pulse import SteadyPulse, paper_pulse
 from ..theory.pulse import steady_pulse
 from .front import exact_speeds
-from .numbers import NAN, known, level
+from .numbers import SIDES, known, level
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns paper_pulse_NUMBER (no damping), exact_pulse_NUMBER and exact_left_pulse_NUMBER."""
-    speeds = [exact_speeds(runs, side) for side in ("left", "right")]
-    return pd.DataFrame([_pulses(*row) for row in zip(runs, *speeds, strict=True)])
+    speeds = (exact_speeds(runs, side).tolist() for side in SIDES)
+    return pd.DataFrame([*map(_pulses, runs, *speeds)])
 
 
 def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
-    ahead = level(run, "right")
-    paper = None
-    if run.boundary == "displacement" and 0.0 < ahead < 1.0:
-        paper = known(lambda: paper_pulse(ahead, run.gamma))
+    behind, ahead = level(run, "left"), level(run, "right")
+    # Without leaf springs, or where a front does not outrun the waves, there is no pulse.
+    pulses = {
+        "paper": known(lambda: paper_pulse(ahead, run.gamma)),
+        "exact": known(lambda: steady_pulse(ahead, run.gamma, run.beta, right_speed)),
+    }
     row: dict[str, float] = {}
-    for kind, pulse in (("paper", paper), ("exact", _exact(run, "right", right_speed))):
+    for kind, pulse in pulses.items():
         for name in ("width", "slip", "peak_velocity"):
-            row[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
-        row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
-    left = _exact(run, "left", left_speed)
+            row[f"{kind}_pulse_{name}"] = getattr(pulse, name, np.nan)
+        row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else np.nan
+    left = known(lambda: steady_pulse(behind, run.gamma, run.beta, left_speed))
     for name in ("slip", "peak_velocity"):
-        row[f"exact_left_pulse_{name}"] = getattr(left, name, NAN)
+        row[f"exact_left_pulse_{name}"] = getattr(left, name, np.nan)
     return row
-
-
-def _exact(run: Run, side: str, speed: float) -> SteadyPulse | None:
-    """Steady pulse on a side, where its front outruns the waves."""
-    if run.boundary != "displacement" or not speed > 1.0:
-        return None
-    return known(lambda: steady_pulse(level(run, side), run.gamma, run.beta, speed))
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

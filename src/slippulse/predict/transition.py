@@ -1,5 +1,6 @@
 """T_trans and L_trans of each run: at the first stick, or at the arrest of the left front."""
 
+import math
 from functools import cache, partial
 
 import pandas as pd
@@ -10,7 +11,7 @@ from ..model.roots import root_between
 from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from .numbers import NAN, known, level, or_nan, ratio
+from .numbers import known, level, or_nan, ratio
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
@@ -19,18 +20,19 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    row = {"exact_transition_time": NAN, "exact_transition_length": NAN}
+    row = {"exact_transition_time": math.nan, "exact_transition_length": math.nan}
     profile = run.prestress
     # Except for the balance, theory needs one Gaussian.
     gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
     if run.boundary == "displacement":
         if gaussian and profile.left == profile.right > 0.0:
-            row |= _first_stick(profile, run.gamma, ratio(run), run.release)
+            physics = run.gamma, ratio(run), run.release
+            row |= known(lambda: _first_stick(profile, *physics)) or {}
         return row
     if level(run, "left") < 0.0 == level(run, "right"):
         row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
     if gaussian and profile.left < 0.0 == profile.right:
-        unit = _arrest(profile.left, ratio(run), run.release, fraction)
+        unit = known(lambda: _arrest(profile.left, ratio(run), run.release, fraction)) or {}
         # All lengths and times are proportional to the width.
         row |= {name: value * profile.width for name, value in unit.items()}
     return row
@@ -38,9 +40,7 @@ def _row(run: Run, fraction: float) -> dict[str, float]:
 
 @cache
 def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -> dict[str, float]:
-    exact = known(lambda: exact_transition_displacement(profile, gamma, ratio, release))
-    if exact is None:
-        return {}
+    exact = exact_transition_displacement(profile, gamma, ratio, release)
     times = dict.fromkeys(("exact_transition_time", "exact_first_stick_time"), exact.time)
     return times | {"exact_transition_length": exact.length}
 
@@ -48,9 +48,7 @@ def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -
 @cache
 def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[str, float]:
     """Numbers of the left front and of the far pulse behind a Gaussian of width 1."""
-    crack = known(lambda: ArrestingCrack(Prestress(left, 0.0), ratio, release))
-    if crack is None:
-        return {}
+    crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
     # Very near x_minus the front is held by forces that the theory leaves out.
     return {
         "exact_largest_velocity": crack.peak_velocity,
