@@ -11,6 +11,7 @@ import io
 import re
 import tokenize
 from functools import partial
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
@@ -188,7 +189,9 @@ def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_
     names = ("a", "b", "c", "fig05_scaling")
     captions = {name: Caption(name.upper(), "alt", "finding", "what") for name in names}
     sources = {"report": "figure('a') figure('fig05_scaling') figure('b')", "more": "figure('c')"}
-    gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], sources, captions, tmp_path, "report")
+    drawn = ["new_one", "c", "fig05_scaling", "a"]
+    inputs = SimpleNamespace(figures=drawn, figures_folder=tmp_path)
+    gallery = Gallery(inputs, sources, captions, "report")
     assert gallery.figure("c").startswith(f"![**Figure S1. C.** finding what]({tmp_path}/c){{")
     title = "![**Figure 2 (paper, figure 5). FIG05_SCALING.**"
     assert gallery.figure("fig05_scaling").startswith(title)

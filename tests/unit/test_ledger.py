@@ -168,7 +168,7 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
         "coarser/sweep": pd.concat(coarser, ignore_index=True),
         "uncertainties/sweep": grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags")),
     }
-    return Evidence(named, ENTRIES, 0.02)
+    return Evidence(named, ENTRIES, 0.02, {})
 
 
 def test_an_equation_is_judged_at_spacing_zero_and_fails_by_one_run_that_is_not_flagged():

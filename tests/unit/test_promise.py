@@ -139,10 +139,10 @@ def test_the_page_of_a_scene_says_what_is_kept(tmp_path):
     plain = {"quantity": [*"abc"], "label": [*"abc"]}
     plain |= {"value": 1.0, "uncertainty": 0.01, "theory": math.nan}
     promise = {"promised": [0.01, 0.001, math.nan], "kept": ["true", "false", ""]}
-    page = scene_page("one", "One", picture, pd.DataFrame(plain | promise), {})
+    page = scene_page("one", "One", picture, pd.DataFrame(plain | promise), {}, "")
     for text in ("promised accuracy", "0.01, kept", "0.001, missed", "not covered"):
         assert text in page
-    assert "promised" not in scene_page("one", "One", picture, pd.DataFrame(plain), {})
+    assert "promised" not in scene_page("one", "One", picture, pd.DataFrame(plain), {}, "")
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.5])

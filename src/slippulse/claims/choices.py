@@ -35,9 +35,8 @@ class Combination:
     @cached_property
     def result(self) -> dict[str, Any]:
         """Deviation and verdict, and whether the claim holds, None if that is open."""
-        fields = self.claim.fields()
-        numbers = {name: fields.get(name) for name in ("deviation", "verdict")}
-        return numbers | {"holds": rules.HOLDS.get(fields["verdict"])}
+        verdict, deviation = self.claim.verdict(), self.claim.fields().get("deviation")
+        return {"deviation": deviation, "verdict": verdict, "holds": rules.HOLDS.get(verdict)}
 
 
 class Change(NamedTuple):
@@ -51,10 +50,8 @@ class Change(NamedTuple):
 
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
-    """All ordered pairs of combinations with a deviation that differ in one choice alone.
-
-    The last release is that of a lattice, so that what it changes with is no choice of the paper.
-    """
+    """All ordered pairs of combinations with a deviation that differ in one choice alone."""
+    # The last release is that of a lattice, so that what it changes with is no choice of the paper.
     choices = [one for one in combinations if one.choice.get("fraction") != LAST]
     out = []
     for before, after in permutations(choices, 2):
@@ -68,10 +65,7 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 
 
 def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
-    """Choices that decide, changed alone, whether a claim holds, each with its smallest change.
-
-    The choice that moves the deviation most comes first; it is alone, with None, if none decides.
-    """
+    """Choices that decide, changed alone, whether a claim holds, each with its smallest change."""
     deciding: dict[str, Change] = {}
     changed = changes(combinations)
     for change in sorted(changed, key=attrgetter("size")):
@@ -82,6 +76,7 @@ def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
     largest = {change.name: weight(change) for change in sorted(changed, key=weight)}
     ranked = sorted(largest, key=largest.__getitem__)[::-1]
     out: dict[str, Change | None] = {name: deciding[name] for name in ranked if name in deciding}
+    # If none decides, the choice that moves the deviation most stands alone.
     return out or dict.fromkeys(ranked[:1])
 
 
@@ -93,7 +88,7 @@ class OverChoices(Claim):
     shown: Claim
 
     def alone(self, tolerance: float) -> str:
-        verdicts = [one.claim.verdict_at(tolerance) for one in self.combinations]
+        verdicts = [one.claim.verdict(tolerance) for one in self.combinations]
         return rules.verdict_over_choices(verdicts)
 
     def fields(self) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from ..measurement.uncertainty import grid_study
 from .kinds import NAN, Approximate, Equation
 from .rules import Uncertain
 
-Tables = Mapping[str, pd.DataFrame]
 Texts = Mapping[str, Mapping]
 # A table for each lattice, the finest first, or one of exact solutions.
 Lattices = Sequence[pd.DataFrame]
@@ -64,15 +63,13 @@ def _slope(logs: np.ndarray) -> float:
 
 
 def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:
-    """The exponent of one expression over another, with its uncertainty.
-
-    That is at least the largest change when all runs with one value of ``columns`` are left out.
-    """
+    """The exponent of one expression over another, with its uncertainty."""
     logs = []
     for table in tables:
         pair = evaluated(table, predicted), evaluated(table, measured)
         logs.append(np.log(np.array(pair, dtype=float)))
     value, uncertainty = studied(tables, [_slope(pair) for pair in logs])
+    # All runs with one value of a column, left out, may not change it by more.
     for name in columns:
         column = tables[0][name].to_numpy()
         for left_out in np.unique(column):
@@ -82,18 +79,14 @@ def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[
 
 
 class Evidence:
-    """All tables, with the texts of the claims and the readings of the published figure.
-
-    There is a table for each simulation, with coarser/NAME and uncertainties/NAME of its grid
-    study, and one for each study. Conditions on runs are expressions over columns. ``steady`` is
-    the change of the largest velocity below which a pulse is steady.
-    """
+    """Tables by name, of simulations (also coarser/NAME and uncertainties/NAME) and of studies."""
 
     def __init__(
-        self, tables: Tables, entries: Texts, steady: float, readings: Texts | None = None
+        self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
         self.tables, self.entries = tables, entries
-        self.steady, self.readings = steady, readings or {}
+        # The largest change of velocity of a steady pulse; what was read off the published figure.
+        self.steady, self.readings = steady, readings
         coarser = [path for path in tables if path.startswith("coarser/")]
         self.swept = [path.removeprefix("coarser/") for path in coarser]
         self._lattices = {name: self._three_lattices(name) for name in self.swept}
@@ -160,11 +153,7 @@ class Evidence:
     def agreed(
         self, simulation: str, where: str, holds: str, decidable: str = "", ends: Sequence[str] = ()
     ) -> list[bool | None]:
-        """Whether something holds, for each run; None where it is undecided.
-
-        The two finest lattices decide where they agree and the run is ``decidable``. Else the
-        exact regime decides, by whether it is one of ``ends``, if any are given.
-        """
+        """Whether the two finest lattices, or else the exact regime, say that something holds."""
         finest, middle, _ = self.lattices(simulation, where=where)
         answers = agreeing(evaluated(finest, holds), evaluated(middle, holds))
         regimes = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)

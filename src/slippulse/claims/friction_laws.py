@@ -47,11 +47,9 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
-    """With rate strengthening and the stress held, the pulse at zero pre-stress decays throughout.
-
-    A law counts by its two lattices, from the time on at which the pulse without it is steady.
-    """
+    """With rate strengthening and the stress held, the pulse at zero pre-stress decays."""
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
+    # From then on the pulse without such a law is steady.
     late = table[table["time"] >= 0.1 * table["time"].max()]
     falls = late.groupby(["rate_strengthening", "dx"])["largest_velocity"].agg(["first", "last"])
     decays = (falls["last"] < (1.0 - evidence.tolerance(id)) * falls["first"]).unstack()

@@ -43,29 +43,26 @@ class Claim(ABC):
     def fields(self) -> dict[str, Any]:
         """The verdict and the numbers of the kind, as claims.json names them."""
 
-    def verdict_at(self, tolerance: float) -> str:
-        """The verdict if the tolerance were this one."""
+    def verdict(self, tolerance: float | None = None) -> str:
+        """The verdict at the tolerance of the claim, or if it were another one."""
+        tolerance = self.tolerance if tolerance is None else tolerance
         verdict = self.alone(tolerance)
         if self.besides is not None:
             verdict = rules.worst([verdict, self.besides(tolerance)])
         return self.failing if verdict == rules.FAILED else verdict
-
-    def verdict(self) -> str:
-        """The verdict at the tolerance of the claim."""
-        return self.verdict_at(self.tolerance)
 
     def flips(self) -> list[dict]:
         """Tolerances, a tenth to ten times, at which the verdict changes, and both verdicts."""
         if not self.tolerance:
             return []
         factors = np.geomspace(0.1, 10.0, SCANNED)
-        verdicts = [self.verdict_at(self.tolerance * factor) for factor in factors]
+        verdicts = [self.verdict(self.tolerance * factor) for factor in factors]
         out = []
         for i in np.flatnonzero(np.array(verdicts[1:]) != verdicts[:-1]):
             low, high = factors[i : i + 2]
             for _ in range(BISECTED):
                 middle = np.sqrt(low * high)
-                if self.verdict_at(self.tolerance * middle) == verdicts[i]:
+                if self.verdict(self.tolerance * middle) == verdicts[i]:
                     low = middle
                 else:
                     high = middle
@@ -81,12 +78,10 @@ class Claim(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
-    """An always, never or every, by whether it holds in each run, None where that is undecided.
-
-    ``condition`` is true if it needs a condition that the paper does not state.
-    """
+    """An always, never or every, by whether it holds in each run, None where that is undecided."""
 
     decided: Collection[bool | None]
+    # Whether it needs a condition that the paper does not state.
     condition: bool = False
 
     def counts(self) -> dict[str, int]:
@@ -108,22 +103,20 @@ class Qualitative(Claim):
 
     def fields(self) -> dict[str, Any]:
         runs, counts = len(self.decided), self.counts()
-        out = {"verdict": self.verdict(), "predicted": runs, "measured": counts["held"]}
-        out["uncertainty"] = counts["undecided"]
-        out["deviation"] = counts["failed"] / runs if runs else None
-        return out | {"runs": runs} | counts
+        out = {"verdict": self.verdict(), "runs": runs, "predicted": runs, **counts}
+        out |= {"measured": counts["held"], "uncertainty": counts["undecided"]}
+        return out | {"deviation": counts["failed"] / runs if runs else None}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Claim):
-    """An equation, by values of its runs at spacing 0, or an exponent: arrays [run], NaN for none.
+    """An equation, by values of its runs at spacing 0, or an exponent."""
 
-    ``counts`` has numbers of other runs: of those behind an exponent, or of what holds besides.
-    """
-
+    # Arrays [run], NaN without a value.
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
+    # Numbers of other runs: of those behind an exponent, or of what must hold besides.
     counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
@@ -154,7 +147,7 @@ class Approximate(Claim):
     # |measured/predicted - 1| of each run on the finest lattice, NaN without a value.
     deviations: np.ndarray
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
-    median: Uncertain = (NAN, NAN)
+    median: Uncertain
     ratio: Uncertain = (NAN, NAN)
     # The median and largest deviation of runs at spacing 0 from the exact theory.
     from_exact: Uncertain | None = None
@@ -179,12 +172,10 @@ class Approximate(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Reading(Claim):
-    """A figure that was read off, by chi-square of its readings at the best fit.
-
-    The degrees of freedom are the readings less the fitted parameters.
-    """
+    """A figure that was read off, by chi-square of its readings at the best fit."""
 
     chi_square: float
+    # The readings less the fitted parameters.
     degrees_of_freedom: int
 
     def p_value(self) -> float:

@@ -103,7 +103,7 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     counted = not out["follows_from"] and not out["beyond"]
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
     if "earlier_tolerance" in entry:
-        out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
+        out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
     out = finite(out)
     return out | {"why": with_texts(out).why_text()}
 

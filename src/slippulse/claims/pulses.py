@@ -141,11 +141,7 @@ def always(evidence: Evidence, id: str) -> Qualitative:
 
 
 def meet(table: pd.DataFrame) -> dict[str, pd.Series]:
-    """Columns for pulses that meet another level: changed and widened, each -1, 0 or 1.
-
-    A pulse grows (1) or decays (-1) if it changes more than the pulse that began alike and meets
-    level 0; a pulse that is gone has decayed.
-    """
+    """Whether pulses change more than one that began alike and meets level 0: by -1, 0 or 1."""
     began = table[table["beyond"] == 0.0].set_index("left")
     change, still = table[CHANGE], table["left"].map(began[CHANGE])
     wider = table[HALF_WIDTH] - table["left"].map(began[HALF_WIDTH])
@@ -153,6 +149,7 @@ def meet(table: pd.DataFrame) -> dict[str, pd.Series]:
         "changed": np.sign(change).where(change.abs() > still.abs(), 0.0),
         "widened": np.sign(wider),
     }
+    # A pulse that is gone has decayed.
     gone = table["regime"] == "arrested"
     return {name: sign.mask(gone, -1.0).fillna(0.0) for name, sign in signs.items()}
 

@@ -44,10 +44,7 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 def equation(
     deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, and the run that decides: of those with it, the one farthest off.
-
-    Runs without numbers do not count; the run is None if none has numbers.
-    """
+    """Verdict on an equation, and the run farthest off that has it; None if none has numbers."""
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     verdict = worst_tested(verdicts)
     deciding = [run for run, one in enumerate(verdicts) if one == verdict != NOT_TESTABLE]

@@ -7,7 +7,8 @@ from ..measurement.inference import inference
 from .evidence import Evidence
 from .kinds import Reading
 
-# The fitted parameters of the left panel.
+# The arrows and the fitted parameters of the left panel.
+ARROWS = ("arrow_time", "arrow_length")
 SYMBOLS = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
 
 
@@ -28,15 +29,13 @@ def arrows(evidence: Evidence, id: str) -> Reading:
     fits = {"with": inference(study, part="arrows")["best"], "without": inference(study)["best"]}
     further = {}
     for words, fit in fits.items():
-        longer = {
-            entry["statement"]: -fit["pulls"][name] * entry["reading_error"]
-            for name, entry in evidence.readings.items()
-            if name in fits["with"]["pulls"] and entry.get("arrow")
-        }
-        for arrow, excess in longer.items():
-            further[f"{arrow}, longer than at the fit {words} arrows by"] = excess
+        longer = []
+        for name in ARROWS:
+            entry = evidence.readings[name]
+            longer.append(-fit["pulls"][name] * entry["reading_error"])
+            further[f"{entry['statement']}, longer than at the fit {words} arrows by"] = longer[-1]
     # The last fit is the one without arrows.
-    lengths = " and ".join(number(excess, 2) for excess in longer.values())
+    lengths = " and ".join(number(excess, 2) for excess in longer)
     why = f"They are longer by {lengths} than in the run that meets all other readings of the "
     why += f"panel best. {arrow_and_stick(evidence)} The arrow of the length ends at that instant: "
     drawn = {name: entry["value"] for name, entry in evidence.readings.items()}

@@ -25,27 +25,18 @@ GAP = 1.0
 SHOWN = 0.95
 # Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
-# The paper's estimates, as expressions; under held stress of the part of the way that is covered.
-ESTIMATES = {
-    "displacement": {"time": "paper_transition_time", "length": "paper_transition_length"},
-    "stress": {"time": "covered", "length": "2 * covered"},
-}
-# The two readings of T_trans under a displacement boundary, and the columns that have them. At the
-# nucleation point the printed slip 2 tau/gamma is taken with the level tau_0.
+# The two readings of T_trans under a displacement boundary, and the columns that have them, with
+# the paper's estimates. At the nucleation point the printed slip 2 tau/gamma is taken with the
+# level tau_0.
 STICK, SLIP = "first stick", r"slip $2\tau_0/\gamma$"
+PAPER = {"paper_transition_time": "estimated_time", "paper_transition_length": "estimated_length"}
 CRITERIA = {
-    STICK: {"transition_time": "time", "transition_length": "length"},
-    SLIP: {"slip_time_background": "time", "slip_length_background": "length"},
+    STICK: {"transition_time": "time", "transition_length": "length"} | PAPER,
+    SLIP: {"slip_time_background": "time", "slip_length_background": "length"} | PAPER,
 }
 # Columns under held stress: a solution is at a fraction of the way, a lattice at the last release.
 LAST_RELEASE = {"last_release_distance": "covered", "last_release_time": "time"}
 LAST_RELEASE |= {"last_release_length": "length"}
-# The arrows that the paper draws.
-ARROWS = {
-    ("displacement", "time"): "arrow_time",
-    ("displacement", "length"): "arrow_length",
-    ("stress", "time"): "arrow_time_stress",
-}
 
 
 class Runs(NamedTuple):
@@ -65,26 +56,27 @@ def on_lattices(tables: list[pd.DataFrame]) -> Runs:
     return Runs(shared(tables[0]) | {"solution": "lattice"}, tables)
 
 
-def simulated(evidence: Evidence, boundary: str, where: str = "") -> list[Runs]:
+def simulated(evidence: Evidence, boundary: str) -> list[Runs]:
     """Runs of figure 5, and the undamped ones of the figures with more damping."""
-    undamped = f"{where} and damping_ratio == 0" if where else "damping_ratio == 0"
-    sweeps = {f"scaling_{boundary}": where, f"damping_{boundary}": undamped}
+    sweeps = {
+        f"scaling_{boundary}": INSIDE,
+        f"damping_{boundary}": f"{INSIDE} and damping_ratio == 0",
+    }
     lattices = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
     return [on_lattices(tables) for tables in lattices if len(tables[0])]
 
 
 def solved(evidence: Evidence, boundary: str) -> list[Runs]:
     """The exact solution at each combination of choices; first ours, as in figure 5."""
-    names = ["release", "damping_ratio"]
+    names, ours = ["release", "damping_ratio"], shared(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
         names += ["nucleation", "fraction"]
+        ours["fraction"] = SHOWN
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
     combinations = []
     for values, rows in table.groupby(names):
         choice: Chosen = dict(zip(names, values, strict=True))
         combinations.append(Runs(choice | {"solution": "exact"}, [rows]))
-    ours = shared(evidence.tables[f"scaling_{boundary}"]) | {"fraction": SHOWN}
-    ours = {name: value for name, value in ours.items() if name in names}
     return sorted(combinations, key=lambda runs: not ours.items() <= runs.choice.items())
 
 
@@ -103,26 +95,23 @@ def transitions(evidence: Evidence) -> list[Runs]:
 
 @cache
 def arrests(evidence: Evidence) -> list[Runs]:
-    """Runs of the left front under held stress, with the same columns for theory and lattices.
-
-    Times and lengths are for the part of |x_minus| that is covered. The width of the nucleation is
-    the only length, so that one run for each level is independent of the others.
-    """
+    """Runs of the left front under held stress, for the part of |x_minus| that is covered."""
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
+    exact = solved(evidence, "stress")
     out = [Runs(choice, [widest(rows, CRITERIA[STICK])]) for choice, (rows,) in exact]
-    for choice, tables in lattices:
+    for choice, tables in simulated(evidence, "stress"):
         out.append(Runs(choice | last, [widest(table, LAST_RELEASE) for table in tables]))
     return out
 
 
 def widest(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
-    """The run of each level with the widest nucleation."""
+    """The run of each level with the widest nucleation, with estimates by what is covered."""
+    # The width is the only length, so that runs of one level do not depend on it.
     table = table.sort_values("width").drop_duplicates("left", keep="last").rename(columns=names)
-    if "covered" in table:
-        return table
-    # The paper's estimate of the time is the whole way, at speed 1.
-    return table.assign(covered=table["fraction"] * table["paper_transition_time"])
+    if "covered" not in table:
+        # The paper's estimate of the time is the whole way, at speed 1.
+        table = table.assign(covered=table["fraction"] * table["estimated_time"])
+    return table.assign(estimated_time=table["covered"], estimated_length=2.0 * table["covered"])
 
 
 def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
@@ -152,11 +141,12 @@ def estimated(
 ) -> tuple[list[Combination], Uncertain | None, dict[str, float]]:
     """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
-    estimate = ESTIMATES[boundary][quantity]
-    combinations = judged(runs, lambda tables: evidence.approximate(id, tables, quantity, estimate))
+    columns = quantity, f"estimated_{quantity}"
+    combinations = judged(runs, lambda tables: evidence.approximate(id, tables, *columns))
     exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
     drawn = {}
-    read = evidence.readings.get(ARROWS.get((boundary, quantity), ""))
+    suffix = "_stress" if boundary == "stress" else ""
+    read = evidence.readings.get(f"arrow_{quantity}{suffix}")
     if read:
         scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
         predicted = float(scene[f"paper_transition_{quantity}"])
@@ -169,7 +159,7 @@ def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices
     """An estimate under a displacement boundary, by the first stick and by the slip."""
     combinations, exact, drawn = estimated(evidence, id, "displacement", quantity)
     slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP])
-    ratio = ratios(slips, quantity, ESTIMATES["displacement"][quantity])
+    ratio = ratios(slips, quantity, f"estimated_{quantity}")
     near = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {f"runs that reach the {SLIP}": float(ratio.count()), "in all": float(len(ratio))}
     further |= {"of these within the tolerance": float(near.sum())} | drawn
@@ -222,7 +212,7 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
         exponents = {
-            symbol: exponent(tables, quantity, ESTIMATES[boundary][quantity], columns)
+            symbol: exponent(tables, quantity, f"estimated_{quantity}", columns)
             for quantity, symbol in SYMBOLS.items()
         }
         symbol = max(exponents, key=lambda name: abs(exponents[name][0] - 1.0))
@@ -257,16 +247,16 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """The left front takes longer than at speed 1 for the part that it has covered, in each run."""
 
-    def longer(tables: list[pd.DataFrame], most: float) -> Qualitative:
-        over = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
-        holds = [(excess > 0.0) & (excess <= most) for excess in over]
-        # An exact solution is one table, which agrees with itself.
-        return Qualitative(decided=agreeing(holds[0], holds[-1]))
-
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
+        over = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
+
+        def longer(most: float) -> Qualitative:
+            holds = [(excess > 0.0) & (excess <= most) for excess in over]
+            # An exact solution is one table, which agrees with itself.
+            return Qualitative(decided=agreeing(holds[0], holds[-1]))
+
         # The tolerance is 0; the earlier one was for how much longer it may take.
-        claim = longer(tables, np.inf)
-        return replace(claim, besides=lambda most: longer(tables, most or np.inf).verdict())
+        return replace(longer(np.inf), besides=lambda most: longer(most or np.inf).verdict())
 
     runs = arrests(evidence)
     exact = [tables[0] for choice, tables in runs if choice["solution"] == "exact"]
@@ -276,10 +266,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
-    """The last release on the left over |x_minus|, for every profile and damping.
-
-    Besides, the exponent must be near 1, and the distance between the two small in units of H.
-    """
+    """The last release on the left over |x_minus|, with an exponent near 1 and a small distance."""
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     covered, predicted = "last_release_distance", "balance_distance"
     allowed = float(evidence.entries[id]["tolerance_exponent"])
@@ -324,15 +311,14 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
 
 
 def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
-    """Whether T and L fall with gamma, and at its three smallest values as powers below zero.
-
-    Below zero is by three standard errors; None with fewer than three runs. The exponents follow.
-    """
+    """Whether T and L fall with gamma, at its three smallest values as powers; the exponents."""
     quantities = ["transition_time", "transition_length"]
     smallest = np.log(rows[["gamma", *quantities]].head(3))
     lines = [straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
+    # Powers are below zero by three standard errors.
     falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
     diverges = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
+    # Fewer than three runs leave it open.
     return diverges if len(rows) >= 3 else None, [slope for slope, *_ in lines]
 
 

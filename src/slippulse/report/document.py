@@ -30,8 +30,8 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
-        options = ["--to=html5", "--mathml", "--default-image-extension=png", "--toc"]
-        html = _pandoc(text, manuscript, template, [*options, "--toc-depth=2"])
+        options = ["--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
+        html = _pandoc(text, manuscript, template, "html5", options)
     head, opening, body = html.partition('<main id="content">')
     # Headings stand below the title.
     body = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", body)
@@ -57,10 +57,10 @@ def _enlarging(figure: re.Match) -> str:
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     """Write the report as PDF with vector figures; ValueError has the message of Typst."""
-    options = ["--to=typst", "--default-image-extension=pdf"]
     # A link to another HTML document leads to its PDF.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
-    source = _pandoc(text, manuscript, TEMPLATES / "report.typ", options)
+    options = ["--default-image-extension=pdf"]
+    source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
     alternatives = dict(ALTERNATIVE.findall(text))
 
     def with_alternative(image: re.Match) -> str:
@@ -79,12 +79,12 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     write_whole(output, lambda part: part.write_bytes(pdf or b""))
 
 
-def _pandoc(text: str, manuscript: Path, template: Path, options: Sequence[str]) -> str:
-    common = ["--from=markdown", "--standalone", "--number-sections", "--citeproc"]
+def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Sequence[str]) -> str:
+    common = ["--standalone", "--number-sections", "--citeproc"]
     common += [
         f"--template={template}",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
         f"--variable=configuration:{configuration()}",
     ]
-    return pandoc(text, [*common, *options])
+    return pandoc(text, "markdown", to, [*common, *options])

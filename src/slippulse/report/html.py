@@ -1,6 +1,5 @@
 """Templates and Markdown to HTML; every value is escaped unless it is HTML already."""
 
-import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -24,15 +23,13 @@ def page(template: str, **data: object) -> str:
     return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"
 
 
-def pandoc(text: str, options: Sequence[str]) -> str:
+def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
     """The text as pandoc converts it; ValueError has its message if it refuses or warns."""
-    command = [pypandoc.get_pandoc_path(), "--fail-if-warnings", *options]
-    done = subprocess.run(
-        command, input=text, capture_output=True, text=True, encoding="utf-8", check=False
-    )
-    if done.returncode != 0:
-        raise ValueError(f"pandoc: {done.stderr.strip()}")
-    return done.stdout
+    options = ["--fail-if-warnings", *options]
+    try:
+        return pypandoc.convert_text(text, to, source, options, verify_format=False)
+    except RuntimeError as error:
+        raise ValueError(error) from None
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
@@ -42,8 +39,8 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
         return {"": Markup()}
     # One call of pandoc converts all texts.
     joined = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
-    options = ["--from=markdown-raw_html-smart-fancy_lists", "--to=html5", "--mathml"]
-    html = pandoc(joined, [*options, "--wrap=none"])
+    markdown = "markdown-raw_html-smart-fancy_lists"
+    html = pandoc(joined, markdown, "html5", ["--mathml", "--wrap=none"])
     parts = [part.strip() for part in html.split("<hr />")]
     paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
     if not len(texts) == len(parts) == len(paragraphs):

@@ -47,29 +47,23 @@ class Inputs:
 
 
 class Gallery:
-    """Numbered figures of a report of several documents, of which ``here`` is written.
+    """Figures by number, in the order of the texts: the supplement's from S1 on, unnamed ones last.
 
-    Each document numbers its figures in the order of its text, the first document from 1 on and
-    the others from S1 on. A figure that no text names comes last.
+    ``here`` is the document that is written.
     """
 
-    def __init__(
-        self, included: Sequence[str], texts: Mapping, captions: Mapping, folder: Path, here: str
-    ) -> None:
-        self.captions = captions
-        self.folder, self.here = folder, here
+    def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, here: str) -> None:
+        self.captions, self.folder, self.here = captions, inputs.figures_folder, here
         named = {document: NAMED.findall(text) for document, text in texts.items()}
         everywhere = {*chain.from_iterable(named.values())}
-        self.unnamed = [name for name in included if name not in everywhere]
+        self.unnamed = [name for name in inputs.figures if name not in everywhere]
         named[[*texts][-1]] += self.unnamed
         # Document and number of each figure.
         self.numbers: dict[str, tuple[str, str]] = {}
-        letter = ""
-        for document, names in named.items():
-            drawn = [name for name in names if name in included]
+        for letter, (document, names) in zip(("", "S"), named.items(), strict=True):
+            drawn = [name for name in names if name in inputs.figures]
             for i, name in enumerate(drawn, start=1):
                 self.numbers[name] = document, f"{letter}{i}"
-            letter = "S"
 
     def figure(self, name: str) -> str:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
@@ -134,7 +128,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
-    gallery = Gallery(inputs.figures, texts, captions, inputs.figures_folder, document)
+    gallery = Gallery(inputs, texts, captions, document)
     summary = read_text(folder / "summary.yaml")
     lines = judged_lines(summary, ledger, filled)
     shipped = read_text(folder / "shipped_verdicts.yaml") or {}

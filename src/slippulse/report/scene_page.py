@@ -19,12 +19,7 @@ NONE = "\N{EN DASH}"
 
 
 def scene_page(
-    name: str,
-    title: str,
-    png: str | Path,
-    numbers: pd.DataFrame,
-    attributes: Mapping,
-    note: str = "",
+    name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping, note: str
 ) -> str:
     """A page with its figure inside; ``note`` says what an altered configuration changed."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
