@@ -114,7 +114,6 @@ reference: $(READY)
 
 replicate: $(READY)
 	@$(CHECK_OPTIONS)
-	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.read "$$OVERLAY"
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)

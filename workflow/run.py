@@ -26,7 +26,15 @@ def arguments(command: str) -> list[str]:
     targets = [full_target(target) for target in given.get("TARGET", "").split()]
     names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
-    options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
+    if "OVERLAY" in given:
+        from slippulse.configuration.read import ConfigError, read_overlay
+
+        try:
+            # Snakemake would obey a template.
+            read_overlay(given["OVERLAY"])
+        except ConfigError as error:
+            sys.exit(f"The configuration is refused:\n{error}")
+        options += ["--configfile", given["OVERLAY"]]
     if command == "replicate":
         return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
     if not options:
@@ -42,15 +50,13 @@ def arguments(command: str) -> list[str]:
 def full_target(target: str) -> str:
     """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
     name, _, ending = target.removeprefix("results/figures/").partition(".")
-    paths = sorted(Path("src/slippulse/figures").glob("*_*.py"))
-    figures = {path.stem for path in paths if path.stem.startswith(("fig", "study_"))}
+    modules = Path("src/slippulse/figures")
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
-        start = f"fig{int(numbered[1]):02d}_"
-        name = next((figure for figure in figures if figure.startswith(start)), "")
-        if not name:
-            sys.exit(f"TARGET: {target}; allowed: {', '.join(sorted(figures))}, sweep_NAME")
-    known = name in figures or name.startswith("sweep_")
+        paths = modules.glob(f"fig{int(numbered[1]):02d}_*.py")
+        name = next((path.stem for path in paths), name)
+    drawn = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
+    known = drawn or name.startswith("sweep_")
     return f"results/figures/{name}.{ending or 'png'}" if known else target
 
 

@@ -11,7 +11,7 @@ import pytest
 from slippulse.configuration.expand import expand
 from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import LARGEST_FILE, main, read_config, read_overlay
+from slippulse.configuration.read import LARGEST_FILE, read_config, read_overlay
 from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.model.cost import HOW_TO_GO_ON
 
@@ -180,13 +180,13 @@ def test_nothing_that_is_shipped_takes_too_much(project, preset):
 
 
 @pytest.mark.parametrize("case", FILES)
-def test_a_file_that_is_no_overlay_is_refused(tmp_path, case, capsys):
+def test_a_file_that_is_no_overlay_is_refused(tmp_path, case):
     content, *parts = FILES[case]
     (tmp_path / "mine.yaml").write_bytes(content)
-    assert main([str(tmp_path / "mine.yaml")]) == 1
-    heading, message = capsys.readouterr().err.split("\n", 1)
-    assert heading == "The configuration is refused:" and message.count("\n") == 1
-    assert_one_clear_message(message, [f"{tmp_path}/mine.yaml: ", *parts])
+    with pytest.raises(ConfigError) as refusal:
+        read_overlay(tmp_path / "mine.yaml")
+    assert "\n" not in str(refusal.value)
+    assert_one_clear_message(str(refusal.value), [f"{tmp_path}/mine.yaml: ", *parts])
 
 
 def test_scalars_are_what_yaml_and_json_say(tmp_path):

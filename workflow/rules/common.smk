@@ -143,7 +143,7 @@ def settings_of(job):
     simulation = SIMULATIONS[name]
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
-    kind, scheme = "scenes" if name in SCENES else "simulations", sweep["scheme"]
+    scheme = sweep["scheme"]
     # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
@@ -159,9 +159,7 @@ def settings_of(job):
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         "bound": bound,
-        "cost": lambda: [
-            f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost
-        ],
+        "exceeded": lambda: bound().exceeded(simulation.chunks),
         "runs": run_count(whole),
     }
 

@@ -51,9 +51,10 @@ def begin():
         sys.exit(PLAN.verify(wanted))
     data = [Path(name).parts[1] for name in wanted if name.startswith("data/")]
     simulated = sorted({name.removesuffix(".nc") for name in data})
-    costs = [line for name in simulated for line in settings_of(name)["cost"]()]
-    if costs and not CONFIG.allow_large:
-        raise ConfigError(format_problems(costs))
+    costs = {CONFIG.key_of(name): settings_of(name)["exceeded"]() for name in simulated}
+    lines = [f"{key}.{cost}" for key, cost in costs.items() if cost]
+    if lines and not CONFIG.allow_large:
+        raise ConfigError(format_problems(lines))
     # Without an executor Snakemake only looks, as for a graph.
     makes = workflow.executor_plugin and not (workflow.dryrun or workflow.touch)
     held = PLAN.begin(wanted, makes)

@@ -25,8 +25,7 @@ def simulation_problems(config: Configuration) -> list[str]:
     accuracy, problems = accuracy_of(config), []
     coarsest = max(accuracy["coarser"])
     for name, simulation in all_simulations(config).items():
-        key = f"scenes.{name}" if name in config.scenes else f"simulations.{name}"
-        lattice = ""
+        key, lattice = config.key_of(name), ""
         try:
             sweep = resolve(simulation, config.model, accuracy)
             count = run_count(sweep)
@@ -92,7 +91,7 @@ def _pulse_blocks(scene: Scene) -> float:
         return math.inf
 
 
-def bound_of_sweep(simulation: Mapping, chunks: int = 1) -> Bound:
+def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     """Upper bound on one of the jobs that share a simulation: its runs times its largest run."""
     scenes, samples = expand(promised(corners(simulation)))
     bounds = [*map(bound_of, scenes, samples)]

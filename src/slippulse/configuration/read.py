@@ -1,13 +1,10 @@
 """The configuration read: the shipped file, overlays and the command line, merged and checked.
 
-    python -m slippulse.configuration.read mine.yaml     says what is wrong with an overlay
-
 Files are YAML 1.2 without tags, anchors, templates (Snakemake obeys them) or keys given twice.
 """
 
 import json
 import re
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -37,10 +34,7 @@ def read_config(
     said: Mapping | None = None,
     every_run: bool = True,
 ) -> Configuration:
-    """Merge and check the configuration; ConfigError has one line a problem.
-
-    said : values given by --config, in which Snakemake leaves nested numbers text
-    """
+    """Merge shipped values, overlays and those said by --config, and check them; or ConfigError."""
     merged = dict(shipped)
     for overlay in (*overlays, _typed(said or {})):
         merged = _merge(merged, overlay)
@@ -79,7 +73,7 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
 
 
 def _typed(value: Any, path: str = "") -> Any:
-    """Values of the command line; text is read as a scalar of a file would be."""
+    """Values of the command line, where Snakemake leaves nested numbers text."""
     if isinstance(value, Mapping):
         return {key: _typed(entry, f"{path}.{key}".lstrip(".")) for key, entry in value.items()}
     if isinstance(value, list):
@@ -159,21 +153,3 @@ def _load(text: str) -> Any:
     yaml = YAML(typ="safe", pure=True)
     yaml.Composer = _PlainComposer
     return yaml.load(text)
-
-
-def main(paths: Sequence[str]) -> int:
-    """Check overlay files; returns the exit code."""
-    if not paths:
-        sys.stderr.write("usage: python -m slippulse.configuration.read FILE...\n")
-        return 2
-    try:
-        for path in paths:
-            read_overlay(path)
-    except ConfigError as error:
-        sys.stderr.write(f"The configuration is refused:\n{error}\n")
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

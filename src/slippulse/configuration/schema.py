@@ -326,6 +326,10 @@ class Configuration(Block):
     published: dict[str, Reading] = key("numbers read off a published figure, by name")
     studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
 
+    def key_of(self, name: str) -> str:
+        """The key of a simulation or of a scene."""
+        return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
+
     @model_validator(mode="after")
     def _names(self) -> Self:
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))

@@ -31,19 +31,15 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
 def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     """Join tables of one row a run, or of a block of them for each value of the column factor."""
     chunks = _texts(paths)
-    keys = ["factor"] if "factor" in chunks[0] else []
-    # Without keys all rows are in one block.
-    blocks = [chunk.groupby(keys or (lambda row: 0), sort=False).ngroup() for chunk in chunks]
-    runs = _run_numbers(paths, [int((block == 0).sum()) for block in blocks])
-    count = blocks[0].max() + 1
-    for chunk, block, numbers in zip(chunks, blocks, runs, strict=True):
-        if block.max() + 1 != count or len(chunk) != len(numbers) * count:
-            raise UnreadableFile(paths[0], DIFFERENT)
-        chunk.index = pd.MultiIndex.from_arrays([block, np.tile(numbers, count)])
+    last = ["factor"] if "factor" in chunks[0] else []
+    blocks = len(chunks[0][last].drop_duplicates()) if last else 1
+    runs = _run_numbers(paths, [len(chunk) // blocks for chunk in chunks])
+    for chunk, numbers in zip(chunks, runs, strict=True):
+        chunk.index = pd.MultiIndex.from_product([range(blocks), numbers])
     # The chunk with the first run says the order of the columns.
     ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])
     table = pd.concat([chunk for _, chunk in ordered]).sort_index().fillna("")
-    save_table(table[[*table.columns.drop(keys), *keys]], joined)
+    save_table(table[[*table.columns.drop(last), *last]], joined)
 
 
 def join_grid_studies(

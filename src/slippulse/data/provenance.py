@@ -3,7 +3,6 @@
 import os
 import platform
 import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -14,8 +13,9 @@ from pathlib import Path
 import yaml
 
 from .records import FOLDER, digest_of, file_digest, read_record
-from .sweeps import PACKAGES
 
+PACKAGES = ["slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf"]
+PACKAGES += ["snakemake", "matplotlib", "pandas"]
 PAPER = {
     "title": "A minimal model for the onset of slip pulses in frictional rupture",
     "authors": ["Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard"],
@@ -82,7 +82,7 @@ def job_times(results: str | Path) -> dict[str, float]:
 def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
     """Collect all that the results in ``base`` depend on; shipped is without overlays."""
     versions = {"python": platform.python_version()}
-    versions |= {name: version(name) for name in (*PACKAGES, "snakemake", "matplotlib", "pandas")}
+    versions |= {name: version(name) for name in PACKAGES}
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     return {
         "paper": PAPER,
@@ -92,7 +92,6 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | 
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
         "versions": versions,
-        "implementation": sys.implementation.name,
         "machine": machine_class(),
         "times": {"written": written, "seconds_of_jobs": job_times(base)},
     }

@@ -48,7 +48,7 @@ def jobs_of(name: str, rule: Any, values: Mapping) -> Iterator[Job]:
 def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
     """Find the origin of each result; its configuration is also that of all it is made from."""
     makers = {below(output): job for job in jobs for output in job.outputs}
-    digest = cache(file_digest)
+    digest = cache(lambda path: file_digest(ROOT / path))
 
     @cache
     def origin(name: str) -> Origin:
@@ -59,7 +59,7 @@ def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
         earlier = sorted({origin(name).configuration for name in names})
         by = job.step, digest_of([job.settings, *earlier])
         read = [*sources(*modules_of(job.step, job.settings)), *texts, LOCK]
-        files = {path: digest(ROOT / path) for path in read}
+        files = {path: digest(path) for path in read}
         outputs = tuple(map(below, job.outputs))
         return Origin(outputs, *by, digest_of(files), inputs, files, options)
 

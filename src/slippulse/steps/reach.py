@@ -25,7 +25,7 @@ def sources(*modules: str) -> list[str]:
     for path in [*reached]:
         for pattern in _constant(path, "FILES") or ():
             reached.update(PACKAGE.glob(pattern))
-    return sorted(path.relative_to(ROOT).as_posix() for path in reached)
+    return sorted(str(path).removeprefix(f"{ROOT}/") for path in reached)
 
 
 def declared(module: str, name: str):
