@@ -4,7 +4,7 @@ import matplotlib.image
 import pytest
 
 from slippulse.configuration.altered import Alterations
-from slippulse.configuration.read import ConfigError, read_config, read_overlay
+from slippulse.configuration.read import read_config, read_overlay
 from slippulse.figures.style import new_panels, save_figure
 
 SHIPPED = read_overlay("config/config.yaml")
@@ -58,8 +58,3 @@ def test_a_note_makes_a_figure_higher_and_covers_nothing(tmp_path):
             (text,) = figure.texts
             assert not text.get_window_extent(canvas).overlaps(axes.get_tightbbox(canvas))
     assert heights[0] < heights[1] < heights[2]
-
-
-def test_an_unknown_key_says_where_it_is_set():
-    with pytest.raises(ConfigError, match=r"model\.gamma.*simulations\.NAME\.gamma"):
-        read_config(SHIPPED, [{"model": {"gamma": 0.3}}], every_run=False)

@@ -72,55 +72,32 @@ swap() { mv "$1" away; mv "$2" "$1"; mv away "$2"; }
 # A source or a text, as `rsync -a` and `cp -p` leave it.
 edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }
 """
-# Changes of a file. Edits keep the size.
-GONE = {
-    "removed": "rm {0}",
-    "a dead link": "ln -sf nowhere {0}",
-    "a link to a device": "ln -sf /dev/null {0}",
-}
-HARMS = GONE | {
-    "edited": "sed -i 's/.$/!/' {0}",
-    "old": "sed -i 's/.$/!/' {0}; touch -d @0 {0}",
-    "in the future": "sed -i 's/.$/!/' {0}; touch -d '3 hours' {0}",
-    "with other line ends": "sed -i 's/$/\\r/' {0}",
-    "emptied": "truncate -s 0 {0}",
-    "grown": "cat {0} {0} > twice; mv twice {0}",
-    "cut": "truncate -s 20 {0}",
-    "with zeros": "truncate -s +1 {0}",
-}
 # Reasons that verify gives.
 MISSING, CHANGED = "missing", "not what its job wrote"
-NO_RECORD, UNREADABLE = "no record", "its record cannot be read"
-RULE, SOURCES = "made by another rule", "made by other sources"
+NO_RECORD, SOURCES = "no record", "made by other sources"
 CONFIGURATION, UNKNOWN = "made by another configuration", "not known; no rule makes it"
-# Files of each kind, by how they are changed.
-CHANGED_FILES = f"""
-removed: data/mine/1-of-2.nc uncertainties/one.csv {FIGURE}.csv findings.json explorer.html
-removed: manuscript/replication.pdf codecheck.yml index.html
-a dead link: figures/fig02_phase_diagram.pdf
-a link to a device: scenes/barrier.pdf
-edited: data/barrier.nc uncertainties/coarser/one.csv {FIGURE}.png claims.json checksums.txt
-old: kernels/localised.txt measurements/mine/2-of-2.csv figures/sweep_mine.csv claims.html
-in the future: measurements/arrest.csv scenes/one.html
-with other line ends: predictions/arrest.csv
-emptied: data/mine.nc manuscript/verdicts.yaml
-grown: studies/extremes.csv
-cut: manuscript/replication.html
-with zeros: provenance.json
-"""
+# Changes of a file that keep its size, and files of each kind that are changed so.
+HARMS = {
+    "rm {0}": f"data/mine/1-of-2.nc uncertainties/one.csv {FIGURE}.csv findings.json explorer.html"
+    " manuscript/replication.pdf codecheck.yml index.html",
+    "ln -sf nowhere {0}": "figures/fig02_phase_diagram.pdf",
+    "ln -sf /dev/null {0}": "scenes/barrier.pdf",
+    "sed -i 's/.$/!/' {0}": f"data/barrier.nc uncertainties/coarser/one.csv {FIGURE}.png"
+    " claims.json checksums.txt predictions/arrest.csv data/mine.nc manuscript/verdicts.yaml"
+    " studies/extremes.csv manuscript/replication.html provenance.json",
+    "sed -i 's/.$/!/' {0}; touch -d @0 {0}": "kernels/localised.txt measurements/mine/2-of-2.csv"
+    " figures/sweep_mine.csv claims.html",
+    "sed -i 's/.$/!/' {0}; touch -d '3 hours' {0}": "measurements/arrest.csv scenes/one.html",
+}
 # Commands, and what verify then says of some results. All commands of a table change one folder,
 # where each change is named and repaired by itself.
 CONTENT = {}
-for line in CHANGED_FILES.strip().splitlines():
-    how, _, names = line.partition(": ")
+for harm, names in HARMS.items():
     for name in names.split():
-        reason = {name: MISSING if how in GONE else CHANGED}
-        CONTENT[HARMS[how].format(f"results/{name}")] = reason
+        CONTENT[harm.format(f"results/{name}")] = {name: CHANGED if "sed" in harm else MISSING}
 TWO = dict.fromkeys(("data/pulse_damping.nc", "data/one.nc"), CHANGED)
-SCALING = "figures/fig05_scaling.png"
 MOVES = {
     "cd results/data; swap pulse_damping.nc one.nc": TWO,
-    "cd results/figures; cp fig04_space_time.png fig05_scaling.png": {SCALING: CHANGED},
     "cd results/measurements; mv damping_stress.csv Damping_stress.csv": {
         "measurements/damping_stress.csv": MISSING,
         "measurements/Damping_stress.csv": UNKNOWN,
@@ -128,13 +105,6 @@ MOVES = {
     "echo mine > results/data/unknown.nc": {"data/unknown.nc": UNKNOWN},
     "echo {} > results/records/gone.csv.json": {"records/gone.csv.json": UNKNOWN},
 }
-# Records, of which the unit tests change more.
-RECORDS = {f"truncate -s 20 results/records/{SCALING}.json": {SCALING: UNREADABLE}}
-SWAPPED = ("scaling_stress.csv", "damping_stress.csv")
-RECORDS[
-    """cd results/measurements; swap scaling_stress.csv damping_stress.csv
-    cd ../records/measurements; swap scaling_stress.csv.json damping_stress.csv.json"""
-] = {f"measurements/{name}": RULE for name in SWAPPED}
 OLD_SOURCES = {
     f"edit src/slippulse/{FIGURE}.py": {f"{FIGURE}.png": SOURCES},
     "edit src/slippulse/studies/extremes.py": {"studies/extremes.csv": SOURCES},
@@ -155,7 +125,7 @@ LOCK = {f"{FIGURE}.png": SOURCES, "data/one.nc": SOURCES}
 OLD_OVERLAY = "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml"
 
 
-CHANGES = {"content": CONTENT | MOVES, "records": RECORDS, "sources": OLD_SOURCES}
+CHANGES = {"content": CONTENT | MOVES, "sources": OLD_SOURCES}
 CHANGES |= {"folders": FOLDERS, "the lock": {"edit requirements.lock": LOCK}}
 CHANGES["a source, results in the future"] = {f"{FUTURE}; {SOLVER_EDIT}": SOLVER}
 CHANGES["a source, notes removed"] = {f"rm -r .snakemake; {SOLVER_EDIT}": SOLVER}
