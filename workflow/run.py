@@ -26,15 +26,7 @@ def arguments(command: str) -> list[str]:
     targets = [full_target(target) for target in given.get("TARGET", "").split()]
     names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
-    if "OVERLAY" in given:
-        from slippulse.configuration.read import ConfigError, read_overlay
-
-        try:
-            # Snakemake would obey a template.
-            read_overlay(given["OVERLAY"])
-        except ConfigError as error:
-            sys.exit(f"The configuration is refused:\n{error}")
-        options += ["--configfile", given["OVERLAY"]]
+    options += ["--configfile", checked(given["OVERLAY"])] if "OVERLAY" in given else []
     if command == "replicate":
         return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
     if not options:
@@ -45,6 +37,17 @@ def arguments(command: str) -> list[str]:
             options = [str(option) for option in called["options"]]
     look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
     return [*look, "--cores", "1", *options, "--", "verify", *targets]
+
+
+def checked(overlay: str) -> str:
+    """Refuse an overlay that is no plain data, since Snakemake obeys templates."""
+    from slippulse.configuration.read import ConfigError, read_overlay
+
+    try:
+        read_overlay(overlay)
+    except ConfigError as error:
+        sys.exit(f"The configuration is refused:\n{error}")
+    return overlay
 
 
 def full_target(target: str) -> str:

@@ -81,9 +81,15 @@ def test_no_line_of_the_sources_has_more_than_100_columns(project):
             assert [line for line in lines if len(line) > 100] == [], path
 
 
-def test_jobs_do_not_load_what_only_the_check_needs():
-    program = (
-        "import sys, slippulse.configuration.expand, slippulse.steps.simulate;"
-        "print(sorted({'pydantic', 'ruamel.yaml', 'jsonschema'} & set(sys.modules)))"
-    )
+# Modules of a job of simulation and of Snakemake's plan, and libraries that they need not load.
+UNLOADED = {
+    "configuration.expand, slippulse.steps.simulate": {"pydantic", "ruamel.yaml", "jsonschema"},
+    "configuration.altered, slippulse.steps.targets": {"pandas", "xarray", "numba", "matplotlib"},
+}
+
+
+@pytest.mark.parametrize("modules", UNLOADED)
+def test_nothing_is_loaded_that_is_not_needed(modules):
+    loaded = f"sorted({UNLOADED[modules]} & set(sys.modules))"
+    program = f"import sys, slippulse.{modules}; print({loaded})"
     assert subprocess.check_output([sys.executable, "-c", program], text=True).strip() == "[]"

@@ -110,13 +110,6 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     assert [path.read_bytes() for path in joined] == before
 
 
-@pytest.mark.parametrize("chunk", ["two/1-of-3", "two/3-of-2", "one/1-of-1"])
-def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
-    said = refused(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
-    assert f"target: 'results/data/in_{chunk}.nc'" in said
-    assert "allowed: a rule of a single job" in said
-
-
 def test_a_job_elsewhere_does_not_check_every_run_again(folder):
     wrong = "simulations: {space_time_stress: {left: [1.0]}}"
     (folder / "wrong.yaml").write_text(wrong, encoding="utf-8")
