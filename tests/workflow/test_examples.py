@@ -55,6 +55,13 @@ def stress_barrier(table, path):
     assert "A pulse dies in a wide barrier" in path.read_text(encoding="utf-8")
 
 
+def other_friction(table, path):
+    """No theory of another friction stands beside its numbers."""
+    assert table["front_speed_right"][0] == pytest.approx(1.0, rel=tol.DRAFT_SPEED)
+    numbers = pd.read_csv(path.with_name("other_friction_numbers.csv"))
+    assert np.isfinite(numbers["value"]).all() and numbers["theory"].isna().all()
+
+
 def exact_scene(table, path):
     """It is drawn like a run."""
     assert table["scheme"][0] == "continuum"
@@ -123,6 +130,7 @@ TARGETS = {
     asymmetric_levels: "measurements/asymmetric_levels.csv",
     stress_barrier: "scenes/stress_barrier.html",
     two_nucleation_sites: "measurements/two_sites.csv",
+    other_friction: "scenes/other_friction.html",
     exact_scene: "scenes/exact_scene.html",
     elastic_release: "measurements/space_time_displacement.csv",
     fixed_beta: "measurements/continuum_fixed_ratio.csv",

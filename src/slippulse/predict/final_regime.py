@@ -8,6 +8,9 @@ from ..model.run import Run
 from ..theory.front_speeds import front_speed
 from .numbers import level, ratio
 
+# Laws of friction that these numbers hold for.
+LAWS = ("coulomb",)
+
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Column exact_regime."""

@@ -10,6 +10,8 @@ from ..model.run import Run
 from ..theory.front_speeds import front_speed, lattice_front_speed
 from .numbers import SIDES, level, or_nan, ratio
 
+# Laws of friction that these numbers hold for: a term linear in slip rate leaves a front as it is.
+LAWS = ("coulomb", "linear_rate")
 # Below this gamma dx^2 leaf springs hardly change the speed of a damped front, and that speed takes
 # 14 ms a run.
 COARSE = 1e-3

@@ -9,6 +9,9 @@ from ..theory.pulse import steady_pulse
 from .front import exact_speeds
 from .numbers import SIDES, known, level
 
+# Laws of friction that these numbers hold for.
+LAWS = ("coulomb", "linear_rate")
+
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns paper_pulse_NUMBER (no damping), exact_pulse_NUMBER and exact_left_pulse_NUMBER."""
@@ -21,17 +24,23 @@ def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]
     # Without leaf springs, or where a front does not outrun the waves, there is no pulse.
     pulses = {
         "paper": known(lambda: paper_pulse(ahead, run.gamma)),
-        "exact": known(lambda: steady_pulse(ahead, run.gamma, run.beta, right_speed)),
+        "exact": _exact(run, ahead, right_speed),
     }
     row: dict[str, float] = {}
     for kind, pulse in pulses.items():
         for name in ("width", "slip", "peak_velocity"):
             row[f"{kind}_pulse_{name}"] = getattr(pulse, name, np.nan)
         row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else np.nan
-    left = known(lambda: steady_pulse(behind, run.gamma, run.beta, left_speed))
+    left = _exact(run, behind, left_speed)
     for name in ("slip", "peak_velocity"):
         row[f"exact_left_pulse_{name}"] = getattr(left, name, np.nan)
     return row
+
+
+def _exact(run: Run, level: float, speed: float) -> SteadyPulse | None:
+    alpha = run.friction.get("alpha", 0.0)
+    physics = level, run.gamma, run.beta, speed
+    return known(lambda: steady_pulse(*physics, rate_strengthening=alpha))
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

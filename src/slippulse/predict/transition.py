@@ -13,6 +13,9 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from .numbers import known, level, or_nan, ratio
 
+# Laws of friction that these numbers hold for.
+LAWS = ("coulomb",)
+
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Columns exact_NUMBER of a transition and its first stick, or its balance and far pulse."""

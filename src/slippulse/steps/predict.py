@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 
-import numpy as np
 import pandas as pd
 
 from ..configuration.runs import runs
@@ -13,8 +12,6 @@ from ..model.run import Run
 TOPICS = ("final_regime", "front", "pulse", "transition")
 # Formulas are compared to more digits than measured numbers have.
 DIGITS = 15
-# Theory knows these laws of friction, which are those that the exact continuum has.
-KNOWN_LAWS = ("coulomb", "linear_rate")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
@@ -25,7 +22,11 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 def predictions(topics: Iterable[str], swept: Sequence[Run], settings: Mapping) -> pd.DataFrame:
     """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
-    modules = [import_module(f"slippulse.predict.{topic}") for topic in topics]
-    table = pd.concat([module.predictions(swept, settings) for module in modules], axis=1)
-    unknown = [one.friction["law"] not in KNOWN_LAWS for one in swept]
-    return table.mask(np.array(unknown)) if any(unknown) else table
+    tables = []
+    for topic in topics:
+        module = import_module(f"slippulse.predict.{topic}")
+        table = module.predictions(swept, settings)
+        # A number that ignores the friction of a run is worse than none.
+        known = [one.friction["law"] in module.LAWS for one in swept]
+        tables.append(table[known].reindex(table.index))
+    return pd.concat(tables, axis=1)

@@ -1,0 +1,41 @@
+"""Predictions of theory for runs under every law of friction."""
+
+import pytest
+from pytest import approx
+
+from slippulse import Prestress, friction, theory
+from slippulse.model.run import Run
+from slippulse.predict.one_run import SETTINGS
+from slippulse.steps.predict import TOPICS, predictions
+
+OTHERS = {
+    "bounded_rate": {"limit": 0.2, "v_0": 0.1},
+    "rate_weakening": {"slope": 0.2, "limit": 0.1},
+    "slip_weakening": {"d_c": 0.1, "nucleation": 2.0},
+    "exponential_weakening": {"d_c": 0.1, "nucleation": 2.0},
+}
+
+
+def predicted(*laws):
+    """Predictions for two equal levels under each law, one row a law."""
+    layer = Prestress(0.6, 0.6)
+    laws = [law.mapping() for law in laws]
+    runs = [Run("displacement", layer, 0.65, 0.02, 0.002, "total", law) for law in laws]
+    return predictions(TOPICS, runs, SETTINGS)
+
+
+@pytest.mark.parametrize("law", OTHERS)
+def test_no_theory_is_named_that_ignores_the_friction_of_a_run(law):
+    table = predicted(friction("coulomb"), friction(law, **OTHERS[law]))
+    assert table.loc[0].equals(predicted(friction("coulomb")).loc[0])
+    assert table.loc[1].isna().all()
+    assert predicted(friction(law, **OTHERS[law])).isna().all(axis=None)
+
+
+def test_a_rate_term_changes_pulses_leaves_fronts_and_has_no_predicted_transition():
+    row = predicted(friction("linear_rate", alpha=0.3)).loc[0]
+    speed = theory.front_speed(0.6, 0.1)
+    pulse = theory.steady_pulse(0.6, 0.65, 0.002, speed, rate_strengthening=0.3)
+    assert row["exact_front_speed_right"] == approx(speed)
+    assert row["exact_pulse_slip"] == row["exact_left_pulse_slip"] == approx(pulse.slip)
+    assert row[["exact_regime", "exact_transition_time", "exact_first_stick_time"]].isna().all()
