@@ -101,35 +101,26 @@ def test_the_keyboard_reads_the_map(page):
     assert page.locator("#place").get_attribute("aria-valuetext") in reading(page)
 
 
-def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(explorer, opened):
-    with opened(explorer) as page:
-        settled(page)
-        page.locator("#time").fill("200")
-        said = re.search(r"velocity ([0-9.]+), slip ([0-9.]+)\.", reading(page)).groups()
-        exact = page.evaluate(
-            """() => {
-                const time = 0.2 * settings.end;
-                return [shown.rupture.velocity(0, time), shown.rupture.slip(0, time)];
-            }"""
-        )
+def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(page):
+    page.locator("#time").fill("200")
+    said = re.search(r"velocity ([0-9.]+), slip ([0-9.]+)\.", reading(page)).groups()
+    exact, found = page.evaluate(
+        """() => {
+            const { map, scene, rupture } = shown;
+            const instant = 0.2 * settings.end, time = 0.5 * scene.end;
+            const blocks = [0, 2.5, -6, 30].map((x) => {
+                const { slip, velocity, state } = blockAt(map, x, time);
+                const stick = x === 30 ? Infinity : rupture.stick(x, scene.end);
+                const exact = x === 30 ? 0 : rupture.slip(x, Math.min(time, stick));
+                return { slip, velocity, state, exact };
+            });
+            return [[rupture.velocity(0, instant), rupture.slip(0, instant)], blocks];
+        }"""
+    )
     assert [float(number) for number in said] == pytest.approx(exact, rel=5e-3)
-    with opened(explorer) as page:
-        settled(page)
-        found = page.evaluate(
-            """() => {
-                const { map, scene, rupture } = shown;
-                const time = 0.5 * scene.end;
-                return [0, 2.5, -6, 30].map((x) => {
-                    const { slip, velocity, state } = blockAt(map, x, time);
-                    const stick = x === 30 ? Infinity : rupture.stick(x, scene.end);
-                    const exact = x === 30 ? 0 : rupture.slip(x, Math.min(time, stick));
-                    return { slip, velocity, state, exact };
-                });
-            }"""
-        )
-        heights = page.locator("#blocks rect.block").evaluate_all(
-            "blocks => blocks.map((block) => Number(block.getAttribute('y')))"
-        )
+    heights = page.locator("#blocks rect.block").evaluate_all(
+        "blocks => blocks.map((block) => Number(block.getAttribute('y')))"
+    )
     assert [block["state"] for block in found] == ["stuck", "stuck", "slides", "waits"]
     for block in found:
         assert block["slip"] == pytest.approx(block["exact"], rel=2e-2, abs=1e-9)

@@ -10,7 +10,8 @@ import pytest
 import yaml
 from pypdf import PdfReader
 
-from slippulse.claims.rules import within
+from slippulse.claims.kinds import Approximate, Equation, Qualitative
+from slippulse.claims.paper import written
 from slippulse.data.files import CONFIGURATION
 from slippulse.figures.style import new_panels
 from slippulse.report.manuscript import DOCUMENTS, Inputs
@@ -18,14 +19,11 @@ from slippulse.steps import write_report
 
 DIGEST = "0123456789abcdef"
 # A claim that is simply reproduced.
-CLAIM = {"id": "speed", "figure_or_section": "III A", "kind": "exact", "verdict": "reproduced"}
-CLAIM |= {"statement": r"fronts <outrun> the waves & keep $\gamma<1$", "figure": "fig01_one"}
-CLAIM |= {"predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "deviation": 8e-5}
-CLAIM |= {"tolerance": 1e-3, "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0}
-CLAIM |= {"counted": True, "why": "", "beyond": False, "asked": "", "at_earlier": ""}
-CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": []}
-UNKNOWN = ("held", "failed", "undecided", "ninety", "largest", "exact_median", "exact_largest")
-CLAIM |= dict.fromkeys(UNKNOWN)
+FRONT = {"kind": "exact", "tolerance": 1e-3, "source": "runs", "note": "at $x_-$", "sentences": []}
+FRONT |= {"statement": r"fronts <outrun> the waves & keep $\gamma<1$", "figure": "fig01_one"}
+SPEEDS = {"predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4}
+SPEEDS = {name: np.array([value]) for name, value in SPEEDS.items()}
+CLAIM = written("speed", Equation(tolerance=1e-3, counts={"runs": 4}, **SPEEDS), FRONT, "III A")
 read = lambda path: yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
@@ -33,28 +31,22 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
-    claims = [invented_claim(i, *entry, scale) for i, entry in enumerate(entries.items(), start=1)]
-    return [claim | {"further": further} for claim in claims]
-
-
-def invented_claim(i: int, id: str, entry: dict, scale: float) -> dict:
-    """The claim of one entry; `i` makes its numbers differ from those of others."""
-    deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
-    formula = r"$T_\mathrm{trans}$ is $\pi/\sqrt\gamma$"
-    claim = CLAIM | {key: entry[key] for key in ("kind", "tolerance", "reason")}
-    claim |= {"id": id, "statement": f"statement of {id.replace('_', ' ')}: {formula}"}
-    claim |= {"predicted": 1.0, "measured": 1.0 + deviation, "deviation": deviation}
-    claim |= {"uncertainty": 0.00021, "verdict": within(deviation, 0.00021, entry["tolerance"])}
-    claim |= {"why": "since $x$ is so", "note": r"measured at $\Delta x=0$"}
-    claim |= {"figure": "fig05_scaling", "counted": "follows_from" not in entry}
-    claim |= {"follows_from": entry.get("follows_from", [])}
-    claim |= {"ninety": 1e-3 * i, "largest": 2e-3 * i}
-    claim |= {"exact_median": 1e-5 * i, "exact_largest": 2e-5 * i}
-    if "earlier_tolerance" in entry:
-        claim |= {"earlier_tolerance": entry["earlier_tolerance"], "at_earlier": "inconclusive"}
-    if entry["kind"] == "qualitative":
-        claim |= {"held": i - 1, "failed": 0, "undecided": 3}
-    return claim
+    texts = {"note": r"measured at $\Delta x=0$", "why": "since $x$ is so", "further": further}
+    claims = []
+    for i, (id, entry) in enumerate(entries.items(), start=1):
+        # The numbers of no two claims are equal.
+        deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
+        numbers = {"median": (deviation, 0.00021), "ratio": (1.0 + deviation, 0.00021)}
+        numbers |= {"deviations": 1e-3 * i * np.arange(3.0), "from_exact": (1e-5 * i, 2e-5 * i)}
+        claim = Approximate(tolerance=entry["tolerance"], **(numbers | texts))
+        if entry["kind"] == "qualitative":
+            claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, **texts)
+        statement = (
+            rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$"
+        )
+        shown = entry | {"statement": statement, "figure": "fig05_scaling"}
+        claims.append(written(id, claim, shown, "III A"))
+    return claims
 
 
 def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:

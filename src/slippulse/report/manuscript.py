@@ -53,7 +53,8 @@ class Gallery:
     """
 
     def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, here: str) -> None:
-        self.captions, self.folder, self.here = captions, inputs.figures_folder, here
+        self.captions, self.here = captions, here
+        self.folder = inputs.figures_folder
         named = {document: NAMED.findall(text) for document, text in texts.items()}
         everywhere = {*chain.from_iterable(named.values())}
         self.unnamed = [name for name in inputs.figures if name not in everywhere]

@@ -83,21 +83,16 @@ def parameters(config: Mapping, name: str) -> str:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
     left, right = _profile_values(simulation, "left"), _profile_values(simulation, "right")
-    values: dict[str, Sequence | None] = {}
-    if simulation["boundary"] == "displacement":
-        boundary = r"$\Gamma=1$"
-        values[r"$\gamma$"] = simulation["gamma"]
-    else:
-        boundary = r"$\Gamma=0$"
+    boundary = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}[simulation["boundary"]]
+    values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
     if right == ["same"]:
         values[r"$\tau_0$"] = left
     else:
         values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
     values[r"then $\tau$"] = simulation.get("beyond", {}).get("levels")
     values["$W$"] = _profile_values(simulation, "width")
-    if "beta" in simulation:
-        values[r"$\beta$"] = simulation["beta"]
-    else:
+    values[r"$\beta$"] = simulation.get("beta")
+    if not values[r"$\beta$"]:
         values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
     parts = [f"{symbol} = {_values(numbers)}" for symbol, numbers in values.items() if numbers]
     return ", ".join([boundary, *parts])
