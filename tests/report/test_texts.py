@@ -105,6 +105,21 @@ def test_page_one_answers_in_a_minute(manuscript):
     assert page.count("claim.summary()") == 1 and "claim.count" not in page
 
 
+@pytest.mark.parametrize(
+    ("verdict", "expected"),
+    {
+        "reproduced with caveat": "**Yes**: pulses form.",
+        "not reproduced": "**No**: that pulses form, is not reproduced.",
+        "not testable": "**Not decided in this run**: that pulses form, is not tested in this run.",
+        "inconclusive": "**Not decided in this run**: that pulses form, stays open.",
+    }.items(),
+)
+def test_the_answer_is_yes_no_or_open_by_the_verdict_of_its_first_line(verdict, expected):
+    line = {"topic": "Pulses", "named": "pulses form", "claims": {"first": "pulses"}, "text": ""}
+    ledger = Ledger([{"id": "first", "kind": "exact", "verdict": verdict}])
+    assert texts.answer(texts.judged_lines({"verdict": [line]}, ledger, str)) == expected
+
+
 def test_every_tested_sentence_has_a_claim_and_every_claim_a_sentence(manuscript, entries):
     statements = read(manuscript / "statements.yaml")["statements"]
     ids = [sentence["id"] for sentence in statements]

@@ -148,8 +148,13 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
 def answer(lines: Sequence[Line]) -> str:
     """Sentences of Markdown: whether the first line is reproduced, and which others are not."""
     first, *rest = lines
-    start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
-    sentences = [f"**{start}**: {first.named}."]
+    verdict = first.claim.verdict
+    if verdict.startswith("reproduced"):
+        sentences = [f"**Yes**: {first.named}."]
+    else:
+        start = "No" if verdict == "not reproduced" else "Not decided in this run"
+        clause = next(said[verdict][0] for said in SENTENCES if verdict in said)
+        sentences = [f"**{start}**: that {first.named}, {clause}."]
     for verdicts in SENTENCES:
         clauses = []
         for verdict, (singular, plural) in verdicts.items():
