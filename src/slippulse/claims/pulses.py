@@ -19,9 +19,10 @@ CHANGE, HALF_WIDTH = "largest_velocity_change", "pulse_half_width"
 # A lattice tells the change of a pulse if it is above its uncertainty.
 CHANGED = f"abs({CHANGE}) > uncertainty_{CHANGE}"
 UNDAMPED = "damping_ratio == 0"
-ALONE = {"steady_displacement": UNDAMPED}
+STEADY = "pulse_state == 'steady'"
+ALONE = {"steady_displacement": f"{UNDAMPED} and {STEADY}"}
 # The state of a block at either end of a pulse is judged where blocks are narrow.
-NARROW = {"undamped_pulses": ""}
+NARROW = {"undamped_pulses": STEADY}
 # Without leaf springs, and at the smallest gamma with them.
 GAMMA_TO_ZERO = {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"}
 # Pulses that meet another pre-stress, and come back from it or not; and those that began in each.

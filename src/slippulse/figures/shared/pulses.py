@@ -55,7 +55,10 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         runs = tables[name]
         boundary = str(runs["boundary"].iloc[0])
         runs = runs[runs["left"].isin(spread_values(runs["left"], LEVELS[boundary]))]
-        rows = [runs[PARAMETERS].assign(role="run", run=runs.index)]
+        # Pulses that are not steady are flagged here; those under held stress have no state.
+        steady = runs["pulse_state"].isin(["steady", "none"])
+        flags = runs["run_flags"].where(steady, runs["pulse_state"])
+        rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
         for index, numbers in runs.iterrows():
             exact = profiles.get_group((name, index)).assign(role="exact")
             if boundary == "displacement":
