@@ -39,3 +39,10 @@ def test_laws_that_depend_on_slip_are_refused():
     law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
     with pytest.raises(ValueError, match="law: 'slip_weakening'; allowed: laws that depend"):
         theory.rate_pulse(0.5, GAMMA, 0.1, law)
+
+
+@pytest.mark.parametrize("alpha", [-1.2, -50.0])
+def test_slip_velocity_that_grows_without_bound_is_no_pulse(alpha):
+    law = sp.friction("linear_rate", alpha=alpha)
+    with pytest.raises(ValueError, match=f"'alpha': {alpha}}}; allowed: laws whose slip velocity"):
+        theory.rate_pulse(0.5, GAMMA, 0.1, law)

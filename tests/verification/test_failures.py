@@ -56,6 +56,7 @@ arrest = lambda left, **values: displacement(left, 60.0, beta=0.01, **values)
 steep = lambda dx: stress(-100.0, 0.0, 4.0, dx, beta=0.1 * dx, friction_ratio=60.0)
 # The front runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps.
 textbook = lambda step: displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=step)
+BOUNDED = sp.friction("bounded_rate", limit=0.2, v_0=0.1)
 # The level -1.5 is below the threshold of reverse sliding for ratios below 0.25.
 below = lambda ratio: stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=ratio)
 FLAGS = {
@@ -72,9 +73,17 @@ FLAGS = {
     "an arrest without pre-stress": (arrest(0.0, dx=0.02), ""),
     "a front locked to its step": (textbook(0.99), "locked_front"),
     "a front locked to a third of its step": (textbook(0.3), "locked_front"),
+    "a front locked to a cycle of four blocks": (
+        displacement(0.6, 15.0, 0.02, scheme="fixed_step", beta=0.002, friction=BOUNDED),
+        "locked_front",
+    ),
     "a front that is not locked": (textbook(0.037), ""),
     "reverse sliding without kinetic friction": (below(0.0), "reverse_sliding"),
     "reverse sliding with little friction": (below(0.2), "reverse_sliding"),
+    "reverse sliding of the exact solution": (
+        displacement(-20.0, 10.0, 0.05, right=0.6, scheme="continuum"),
+        "reverse_sliding",
+    ),
     "enough friction against reverse sliding": (below(0.3), ""),
     "much friction against reverse sliding": (below(5.0), ""),
 }

@@ -19,6 +19,9 @@ ENERGY_RESIDUAL = 1e-2
 # 7 per cent of it, and of chains with rough pre-stress none moved by 2 per cent below ten times it.
 LONG_STEP = 2e-2
 
+# Positions within the reach of waves at which pre-stress is looked at.
+REACHED = 10_001
+
 
 def flags_of(scene: Scene, solution: Solution) -> dict:
     """The blocks across the narrowest pulse, and the names of the flags, separated by commas."""
@@ -26,6 +29,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
     if numbers["releases"] == 0:
         return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
     flags = {
+        "reverse_sliding": lowest_stress(scene, solution) <= scene.reverse_threshold,
         "nothing_sticks": nothing_sticks(scene, solution),
         "first_stick_undone": first_stick_undone(scene, solution),
     }
@@ -36,7 +40,6 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         fastest = max(1.0, float(np.max(solution.slip_velocity)))
         lowest_velocity = -NEGATIVE_VELOCITY[scene.scheme] * fastest
         flags |= {
-            "reverse_sliding": numbers["min_stuck_stress"] <= scene.reverse_threshold,
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
             "negative_velocity": numbers["min_velocity"] < lowest_velocity,
@@ -45,6 +48,14 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         }
     names = [*filter(flags.get, flags), *solution.flags]
     return {"pulse_blocks": blocks, "run_flags": ",".join(names)}
+
+
+def lowest_stress(scene: Scene, solution: Solution) -> float:
+    """Lowest stress at rest; of the exact solution, the lowest pre-stress that its waves reach."""
+    if scene.scheme != "continuum":
+        return solution.numbers["min_stuck_stress"]
+    first, last = solution.x[0] - scene.duration, solution.x[-1] + scene.duration
+    return float(np.min(scene.prestress(np.linspace(first, last, REACHED))))
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:

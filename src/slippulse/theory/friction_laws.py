@@ -190,7 +190,7 @@ def rate_pulse(
     """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
 
     Source: derived in the supplement, section on friction that depends on slip rate.
-    Raises ValueError: outside the domain.
+    Raises ValueError: outside the domain, or where slip velocity grows without bound.
 
     Parameters
     ----------
@@ -233,7 +233,11 @@ def rate_pulse(
     strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS}
     span = (0.0, HALF_PERIODS * half_period)
-    path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+    with np.errstate(over="ignore", invalid="ignore"):
+        path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+    if not len(path.y_events[1]):
+        allowed = f"laws whose slip velocity has a peak within {HALF_PERIODS:g} half-periods"
+        raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(state[1]) for state in path.y_events[1])
     if path.status != 1:
         return SteadyRupture(v, math.inf, tau0 / gamma, peak)

@@ -45,6 +45,8 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     # The theory of steady pulses applies to a steady pulse alone.
     if run.get("pulse_state") != "steady":
         numbers.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
+    if run.get("pulse_state") == "stopped":
+        numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
     # The balance of the pre-stress is computed for the Gaussian and its levels alone.
     if prestress_from(run).bumps and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
