@@ -10,8 +10,9 @@ from .pulses import TWO_WAY
 
 # A pulse a block wide has this many that slide at once.
 ABOUT_ONE = 1.0
-# The strongest rate dependences that still have pulses, over the critical one.
-STRONGEST = (-0.9, 0.9)
+# The strongest rate dependences with pulses in which no block would slide back, over the critical
+# one.
+STRONGEST = (-0.5, 0.9)
 SIZES = ("width", "slip")
 
 
