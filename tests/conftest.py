@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from selection import small_sweep
+from selection import SMALL_STUDIES, small_sweep
 
 from slippulse.data.lock import take
 from slippulse.data.tables import load_table, save_table
@@ -77,7 +77,7 @@ def shared(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def study(project, shipped, shared):
-    """A function that runs a study with the shipped settings and returns its written table."""
+    """A function that runs a small study with the shipped settings and returns its table."""
 
     def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = shared / f"studies/{name}.csv"
@@ -90,7 +90,10 @@ def study(project, shipped, shared):
                 settings |= {"sweeps": sweeps} if sweeps else {}
                 module = import_module(f"slippulse.studies.{name}")
                 lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
-                save_table(module.table(data or {}, (tables or {}) | lists, settings), path)
+                with pytest.MonkeyPatch.context() as patch:
+                    for constant, value in SMALL_STUDIES.get(name, {}).items():
+                        patch.setattr(module, constant, value)
+                    save_table(module.table(data or {}, (tables or {}) | lists, settings), path)
         return load_table(path)
 
     return run

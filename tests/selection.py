@@ -1,4 +1,4 @@
-"""Small sweeps for tests."""
+"""Small sweeps and studies for tests."""
 
 import copy
 
@@ -6,6 +6,20 @@ from slippulse.configuration.resolve import resolve
 
 # A few points of each list are enough to draw.
 THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
+
+# Constants of studies in tests: the ends of lists, and runs that are long enough.
+SMALL_STUDIES = {
+    "barriers": {"LENGTHS": (0.95, 1.05)},
+    "friction_laws": {"LEVELS": (0.2, 0.5, 0.8), "DURATION": 28.0},
+    "front_law": {"SPACINGS": 5},
+    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "LEVELS": (0.5, 0.95), "WEAKENINGS": (0.05, 0.8)},
+    "published_figure": {
+        "DAMPING_RATIOS": {
+            "total": (0.055, 0.075, 0.1, 0.135),
+            "elastic": (0.075, 0.12, 0.18, 0.26, 0.39),
+        }
+    },
+}
 
 
 def small_sweep(config: dict, name: str) -> dict:

@@ -1,7 +1,5 @@
 """The studies show what they claim, in the data that they draw."""
 
-from itertools import product
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -86,6 +84,12 @@ def test_exact_theory_collapses_what_the_paper_scatters_and_is_the_limit(draw):
             assert exact < 0.25 * deviation(rows, number, f"paper_{number}").median()
         largest = deviation(refined, number, f"exact_{number}").groupby(refined["dx"]).max()
         assert rises(largest) and largest.iloc[-1] < 0.03
+    # The peak brings the transition forward.
+    gaussian = select(table, role="gaussian")
+    peaks = gaussian.dropna(subset="gamma")
+    uniform = gaussian[gaussian["gamma"].isna()].set_index("left")["over_paper"]
+    assert (np.diff(uniform) < 0.0).all()
+    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all()
 
 
 def test_the_time_of_a_fraction_converges_and_the_last_release_is_beyond_it(draw):
@@ -172,29 +176,6 @@ def test_every_quantity_converges_at_first_order_to_the_exact_curves(draw):
     assert (exact - lattice).abs().to_numpy().mean() < 0.02 * exact.to_numpy().max()
 
 
-def test_uniform_prestress_leaves_the_papers_estimate_from_above(study):
-    rows = study("gaussian_transition")
-    uniform = rows[rows["gamma"].isna()].set_index("left")["over_paper"]
-    assert uniform[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
-    assert (np.diff(uniform) < 0.0).all()
-    peaks = rows.dropna(subset="gamma")
-    # The peak brings the transition forward.
-    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all()
-
-
-def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
-    numbers = np.empty((3, 3, 3))
-    barriers, levels = (-1.0, -0.3, -0.1), (0.1, 0.5, 0.9)
-    for (row, left), (column, right) in product(enumerate(barriers), enumerate(levels)):
-        rupture = sp.theory.Rupture(sp.Prestress(left, right), 0.65, 0.1, duration=9.0)
-        end = rupture.front_ends[0][0]
-        assert end.reason == "stops" and not rupture.limit
-        numbers[row, column] = -end.x, *rupture.transition
-    assert np.isfinite(numbers).all()
-    assert (np.diff(numbers, axis=0) > 0.0).all()
-    assert (np.diff(numbers[:, :, 1:], axis=1) > 0.0).all()
-
-
 def test_the_lattice_of_the_space_time_figure_lies_on_the_exact_edges(draw):
     rows = select(draw("fig04_space_time").table, panel="displacement")
     assert not (rows["role"] == "limit").any()
@@ -258,7 +239,7 @@ def test_one_dimension_stays_away_from_the_plane_as_pulses_become_wide(draw):
     drawn = draw("study_layer")
     ratios = select(drawn.table, part="ratio")
     widths = select(ratios, source="paper", quantity="pulse_width")
-    assert len(widths) == 16 and (widths["ratio"] > 1.4).all()
+    assert len(widths) == 4 and (widths["ratio"] > 1.4).all()
     assert select(ratios, source="strip")["ratio"].between(1.0, 1.02).all()
     field = select(drawn.table, part="field")
     # The bottom slides, the top is held, and ahead of the compressional wave all is at rest.
