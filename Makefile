@@ -144,8 +144,7 @@ slurm-test: $(VENV)/.slurm
 	@"$(BIN)/python" tests/slurm_cluster.py
 
 benchmark: $(READY)
-	@mkdir -p results/benchmarks
-	@"$(BIN)/python" -m tests.benchmark config/config.yaml results/benchmarks
+	@"$(BIN)/python" -m tests.benchmark
 
 check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check

@@ -72,22 +72,21 @@ def held_stress(chance):
 
 
 def drawn(number):
-    """Family, layer and duration of a random scene."""
+    """Family, layer, damping ratio and duration of a random scene."""
     chance = np.random.default_rng([37, number])
     ratio = float(chance.choice(RATIOS))
-    release = "total" if chance.random() < 0.8 else "elastic"
-    held = number >= BARRIERS or chance.random() < 0.6
-    family, gamma = "stress boundary", 0.0
-    if held:
-        gamma = between(chance, 0.05, 1.0 if number >= BARRIERS else 1.5)
-        unit = 1.0 / math.sqrt(gamma)
-        shape = (barriers if number >= BARRIERS else held_displacement)(chance, unit)
-        family = "barriers" if number >= BARRIERS else "displacement boundary"
+    layer = {"release": "total" if chance.random() < 0.8 else "elastic", "boundary": "displacement"}
+    if number >= BARRIERS:
+        family, layer["gamma"] = "barriers", between(chance, 0.05, 1.0)
+        layer["prestress"], duration = barriers(chance, 1.0 / math.sqrt(layer["gamma"]))
+    elif chance.random() < 0.6:
+        family, layer["gamma"] = "displacement boundary", between(chance, 0.05, 1.5)
+        layer["prestress"], duration = held_displacement(chance, 1.0 / math.sqrt(layer["gamma"]))
     else:
-        shape = held_stress(chance)
-    boundary = "displacement" if held else "stress"
-    layer = {"boundary": boundary, "prestress": shape[0], "gamma": gamma, "release": release}
-    return family, layer, ratio, shape[1]
+        family = "stress boundary"
+        layer |= {"boundary": "stress", "gamma": 0.0}
+        layer["prestress"], duration = held_stress(chance)
+    return family, layer, ratio, duration
 
 
 def numbers(layer, duration, dx, ratio, **scheme):
@@ -113,24 +112,18 @@ def judge(number, accuracy, most_steps):
     study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)
     study = judged(study, tables[0], accuracy, SETTINGS["share"])
     truth = numbers(layer, duration, min(0.01, duration / 2000.0), ratio, scheme="continuum")
-    result |= dict.fromkeys(KINDS, 0)
-    keeping = np.ones(len(rows), dtype=bool)
-    for name, kept in study.loc[study["kept"] != "", ["quantity", "kept"]].itertuples(index=False):
-        exact = truth.get(name, math.nan)
-        errors = np.array([abs(row[name] / exact - 1.0) for row in rows])
-        right = errors[0] <= accuracy
-        if not math.isfinite(exact):
-            kind = "unknown"
-        elif kept == "true":
-            kind = "kept" if right else "wrong"
-            keeping &= errors <= accuracy
-        else:
-            kind = "missed" if right else "missed_rightly"
-        result[kind] += 1
-        if not right:
-            result["not_kept"] = f"{result.get('not_kept', '')} {name} {errors[0]:.1e}"
+    promised = study[study["kept"] != ""].set_index("quantity")
+    exact = pd.Series({name: truth.get(name, math.nan) for name in promised.index}, dtype=float)
+    errors = (pd.DataFrame(rows)[promised.index] / exact - 1.0).abs()
+    right, kept = errors.iloc[0] <= accuracy, promised["kept"] == "true"
+    cases = [exact.isna(), kept & right, kept, right]
+    kinds = np.select(cases, ["unknown", "kept", "wrong", "missed"], "missed_rightly").tolist()
+    result |= {kind: kinds.count(kind) for kind in KINDS}
+    wrong = errors.iloc[0][~right].items()
+    result["not_kept"] = "".join(f" {name} {error:.1e}" for name, error in wrong) or None
     if result["kept"] and not result["missed"] + result["missed_rightly"]:
         updates = [row["block_updates"] for row in rows]
+        keeping = (errors.loc[:, kept & exact.notna()] <= accuracy).all(axis=1)
         cheapest = int(np.argmin(np.append(keeping, False))) - 1
         result["cost"] = updates[0] / updates[cheapest]
     return result

@@ -1,4 +1,4 @@
-"""References for the speed of kernels: a branch-free stencil, and the textbook scheme in numpy."""
+"""What kernels are compared with: a branch-free stencil, and the textbook scheme in numpy."""
 
 import numpy as np
 

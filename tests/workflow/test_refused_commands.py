@@ -124,9 +124,6 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
 
 # Commands with too few or wrong arguments: module, arguments, exit code, words of the message.
 USES = {
-    "benchmarks": ("tests.benchmark", "", 2, "usage: "),
-    "benchmarks without a configuration": ("tests.benchmark", "Makefile {folder}", 1, "Makefile: "),
-    "benchmarks into a file": ("tests.benchmark", "config/config.yaml {folder}/file", 1, "file: "),
     "reference": ("docs.reference", "", 2, "usage: "),
     "reference into a file": ("docs.reference", "{folder}/file", 1, "file: "),
 }
