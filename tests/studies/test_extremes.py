@@ -12,10 +12,6 @@ from slippulse.studies.extreme_cases import Case
 from slippulse.studies.extremes import Outcome
 
 WRONG = "WRONG WITHOUT A FLAG"
-# The number of cases of each family.
-FAMILIES = {"level near 1": 3, "level near 0": 6, "gamma": 8, "damping": 7, "spacing": 7}
-FAMILIES |= {"nucleation": 4, "negative level": 8, "duration": 3, "float32": 3, "peak": 4}
-FAMILIES |= {"two nucleations": 2, "barrier": 2, "damping sign": 1, "step": 2}
 
 
 @pytest.mark.parametrize(
@@ -45,7 +41,7 @@ def test_every_case_ends_as_it_should(study):
     table = study("extremes")
     others = table[table["verdict"] != table["should"]]
     assert others.empty, others.to_string()
-    assert table["family"].value_counts().to_dict() == FAMILIES
+    assert len(table) == 60 and table["family"].nunique() == 14
     assert len(edges(table).splitlines()) == len(table) + 2
     # Refusals say the bound, flags their reason.
     messages = table.set_index("verdict")["message"]
