@@ -8,7 +8,6 @@ import pandas as pd
 
 from ..model.prestress import prestress_from
 
-BOTH = ("left", "right")
 SPEEDS = {"front_speed_left": ("left",), "front_speed_right": ("right",)}
 TRANSITION = ("transition_time", "transition_length")
 PULSE = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
@@ -17,7 +16,7 @@ PULSE = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop"
 COVERED: dict[str, dict[str, tuple[str, ...]]] = {
     "displacement": {
         **SPEEDS,
-        **dict.fromkeys((*TRANSITION, "first_stick_time"), BOTH),
+        **dict.fromkeys((*TRANSITION, "first_stick_time"), ("left", "right")),
         **dict.fromkeys(PULSE, ("right",)),
     },
     "stress": SPEEDS | dict.fromkeys((*TRANSITION, "largest_velocity"), ()),
@@ -35,28 +34,31 @@ def covered(run: Mapping, fraction: float) -> set[str]:
     """Names of the numbers of a measured row that a promise covers; fraction: see `transition`."""
     if run["run_flags"]:
         return set()
-    fast = {side for side in BOTH if lowest_crossed(run, side) >= LOWEST_PRESTRESS}
+    fast = fast_fronts(run)
     names = {name for name, sides in COVERED[run["boundary"]].items() if fast.issuperset(sides)}
-    if run["boundary"] == "displacement":
-        if run.get("pulse_state") != "steady":
-            names.difference_update(PULSE)
-    else:
+    if run.get("pulse_state") != "steady":
+        names.difference_update(PULSE)
+    # Theory has the far-field pulse; between two fronts that run on, velocity grows.
+    if not run["left"] < 0.0 == run["right"] == run["beyond"]:
+        names.discard("largest_velocity")
+    if run["boundary"] == "stress":
         resolved = run.get("transition_state") == "resolved" and fraction <= LARGEST_FRACTION
         if not resolved or run["damping_ratio"] < LEAST_DAMPING:
             names.difference_update(TRANSITION)
-        # Theory has the far-field pulse; between two fronts that run on, velocity grows.
-        if not run["left"] < 0.0 == run["right"] == run["beyond"]:
-            names.discard("largest_velocity")
     return {name for name in names if math.isfinite(run.get(name, math.nan))}
 
 
-def lowest_crossed(run: Mapping, side: str) -> float:
-    """Lowest pre-stress at the blocks that a front has crossed; NaN where its path is unknown."""
-    reach = run[f"front_intercept_{side}"] + run[f"front_speed_{side}"] * run["end_time"]
-    if not math.isfinite(reach):
-        return math.nan
-    x = np.linspace(0.0, -reach if side == "left" else reach, int(abs(reach) / run["dx"]) + 2)
-    return float(np.min(prestress_from(run)(x)))
+def fast_fronts(run: Mapping) -> set[str]:
+    """Sides whose front has crossed no less than LOWEST_PRESTRESS; not if its path is unknown."""
+    sides = set()
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        speed, start = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
+        reach = sign * (start + speed * run["end_time"])
+        if math.isfinite(reach):
+            x = np.linspace(0.0, reach, int(abs(reach) / run["dx"]) + 2)
+            if np.min(prestress_from(run)(x)) >= LOWEST_PRESTRESS:
+                sides.add(side)
+    return sides
 
 
 def judged(
@@ -69,9 +71,9 @@ def judged(
     """
     flags = measured["run_flags"].astype(object).fillna("")
     rows = measured.assign(run_flags=flags).to_dict("records")
-    names = [covered(row, fraction) if math.isfinite(promise) else set() for row in rows]
+    names = [covered(row, fraction) for row in rows]
     pairs = zip(study["point"], study["quantity"], strict=True)
-    promised = np.array([name in names[point] for point, name in pairs], dtype=bool)
+    promised = [math.isfinite(promise) and name in names[point] for point, name in pairs]
     # An uncertainty is NaN where a coarser lattice does not have the number: that is a miss.
     within = study["uncertainty"] <= promise * study["value"].abs()
     kept = np.where(promised, np.where(within, "true", "false"), "")

@@ -20,15 +20,14 @@ def ratio(run: Run) -> float:
     return float(f"{run.damping_ratio:.12g}")
 
 
-def known(find: Callable[[], Result]) -> Result | None:
-    """Result of the theory, or None outside of its domain or where its numbers overflow."""
+def known(find: Callable[[], Result], missing: Result) -> Result:
+    """Result of the theory, or another outside of its domain or where its numbers overflow."""
     try:
         return find()
     except (ValueError, ArithmeticError):
-        return None
+        return missing
 
 
 def or_nan(find: Callable[[], float]) -> float:
     """Number of the theory, or NaN outside of its domain."""
-    number = known(find)
-    return math.nan if number is None else float(number)
+    return float(known(find, math.nan))

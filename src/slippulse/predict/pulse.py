@@ -23,7 +23,7 @@ def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]
     behind, ahead = level(run, "left"), level(run, "right")
     # Without leaf springs, or where a front does not outrun the waves, there is no pulse.
     pulses = {
-        "paper": known(lambda: paper_pulse(ahead, run.gamma)),
+        "paper": known(lambda: paper_pulse(ahead, run.gamma), None),
         "exact": _exact(run, ahead, right_speed),
     }
     row: dict[str, float] = {}
@@ -40,7 +40,7 @@ def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]
 def _exact(run: Run, level: float, speed: float) -> SteadyPulse | None:
     alpha = run.friction.get("alpha", 0.0)
     physics = level, run.gamma, run.beta, speed
-    return known(lambda: steady_pulse(*physics, rate_strengthening=alpha))
+    return known(lambda: steady_pulse(*physics, rate_strengthening=alpha), None)
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

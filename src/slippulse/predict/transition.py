@@ -15,6 +15,7 @@ from .numbers import known, level, or_nan, ratio
 
 # Laws of friction that these numbers hold for.
 LAWS = ("coulomb",)
+UNKNOWN = dict.fromkeys(("exact_transition_time", "exact_transition_length"), math.nan)
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
@@ -23,19 +24,19 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    row = {"exact_transition_time": math.nan, "exact_transition_length": math.nan}
+    row = {**UNKNOWN}
     profile = run.prestress
     # Except for the balance, theory needs one Gaussian.
     gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
     if run.boundary == "displacement":
         if gaussian and profile.left == profile.right > 0.0:
             physics = run.gamma, ratio(run), run.release
-            row |= known(lambda: _first_stick(profile, *physics)) or {}
+            row |= known(lambda: _first_stick(profile, *physics), UNKNOWN)
         return row
     if level(run, "left") < 0.0 == level(run, "right"):
         row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
     if gaussian and profile.left < 0.0 == profile.right:
-        unit = known(lambda: _arrest(profile.left, ratio(run), run.release, fraction)) or {}
+        unit = known(lambda: _arrest(profile.left, ratio(run), run.release, fraction), UNKNOWN)
         # All lengths and times are proportional to the width.
         row |= {name: value * profile.width for name, value in unit.items()}
     return row

@@ -8,7 +8,6 @@ from ..theory.closed_pulse import paper_pulse
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
 
-# The curves have the parameters of these simulations.
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
 QUANTITIES = ("peak_velocity", "width", "slip")

@@ -9,8 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ..measurement.fronts import path
-from ..measurement.table import measure_run
-from ..predict.comparison import pulse_state
+from ..predict.comparison import measured_row
 from ..simulation.sweep import simulate_on_lattice
 from ..solver.lattice import UnstableRun
 from ..solver.solution import solve_on_lattice
@@ -91,10 +90,10 @@ def measured(case: Case, window: float) -> Outcome:
         # A run without a release is flagged, and right here.
         return Outcome(float(run.attrs["releases"]), block_updates=run.attrs["block_updates"])
     settings = {"front_window": window, "share": FRACTION, "trailing_times": ()}
-    numbers, pulse = measure_run(run, settings)
+    numbers = measured_row(run, settings)
     flags = [numbers["run_flags"], numbers.get("transition_state", "")]
-    if pulse is not None and case.quantity in OF_PULSES:
-        flags.append(pulse_state(run, pulse))
+    if case.quantity in OF_PULSES:
+        flags.append(numbers["pulse_state"])
     known = MEASURED.get(case.quantity)
     value = numbers[known] if known else measured_here(run, case.quantity)
     message = ",".join(flag for flag in flags if flag not in FINE)

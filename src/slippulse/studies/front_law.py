@@ -7,7 +7,6 @@ from ..configuration.runs import parameters
 from ..predict.numbers import or_nan
 from ..theory.front_speeds import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
-# The curves have the parameters of these simulations.
 NEEDS = {
     "sweeps": [
         "front_speed",

@@ -6,7 +6,6 @@ largest velocity needs that most: it is the largest value over all blocks, still
 figure ends, and falls with the spacing.
 """
 
-from collections.abc import Callable, Iterable
 from functools import partial
 from itertools import product
 
@@ -14,12 +13,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measurement.fronts import fit_front, position_at
-from ..measurement.transition import between_fronts
+from ..measurement.table import measure_run
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
 from ..model.samples import Samples
 from ..model.scene import Scene
+from ..predict.one_run import SETTINGS
 from ..simulation.sweep import simulate_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
@@ -41,18 +40,15 @@ NOTEBOOK = 0.2, "total", 0.05005
 RIGHT_PANEL, RIGHT_DURATION = Prestress(-0.75, 0.0, 5.0), 30.0
 # Damping ratios of the right panel are about the best fit.
 RIGHT_RATIOS = (0.05, 0.1, 0.2)
-lattice_of = partial(Scene, max_step=1.0, order=8)
 # Times at which the largest velocity is sought, and reach of the samples over the duration.
 TIMES, REACH = 109, 1.5
+lattice_of = partial(Scene, max_step=1.0, order=8)
 # A lattice's front is a straight line over this last fraction of its path; the exact one is beyond
 # the Gaussian there.
 WINDOW = 0.3
 # Positions of the exact trailing edge.
 EDGE = 241
 TRAILING = "trailing_edge_"
-# The quantities that a trial has beside it.
-KNOWN = ["front_speed_right", "front_intercept_right", "first_stick_time"]
-KNOWN += ["transition_length", "largest_velocity"]
 # Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
 DIFFERENCE, FIRST = 0.01, 2
 
@@ -111,6 +107,9 @@ class LeftPanel:
     def __init__(self, readings: pd.DataFrame) -> None:
         self.readings = readings
         self.drawn, self.error = readings["drawn"].to_numpy(), readings["reading_error"].to_numpy()
+        self.quantities = readings["quantity"].tolist()
+        self.edges = [name for name in self.quantities if name.startswith(TRAILING)]
+        self.times = [float(name.removeprefix(TRAILING)) for name in self.edges]
 
     def exact(self, trial: np.ndarray, ratio: float, release: str) -> np.ndarray:
         """Numbers of the exact rupture, which ends where the figure does."""
@@ -121,33 +120,30 @@ class LeftPanel:
         speed = (end.x - before) / (end.time - float(rupture.release_time(before)))
         x = np.linspace(0.0, end.x, EDGE)
         stick = rupture.stick_time(x)
-        edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
-        intercept, largest = end.x - speed * end.time, rupture.largest_velocity
-        known = (speed, intercept, rupture.transition.time, rupture.transition.length, largest)
-        return self._chosen(known, lambda time: np.interp(time, *edge))
+        stuck = np.isfinite(stick)
+        numbers = {
+            "front_speed_right": speed,
+            "front_intercept_right": end.x - speed * end.time,
+            "first_stick_time": rupture.transition.time,
+            "transition_length": rupture.transition.length,
+            "largest_velocity": rupture.largest_velocity,
+        }
+        allowed = f"{', '.join(numbers)}, {TRAILING}TIME"
+        numbers |= zip(self.edges, np.interp(self.times, stick[stuck], x[stuck]), strict=True)
+        for name in self.quantities:
+            if name not in numbers:
+                raise ValueError(f"quantity: {name!r}; allowed: {allowed}")
+        return np.array([numbers[name] for name in self.quantities])
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
         """Numbers of a lattice run."""
         tau0, gamma = map(float, trial)
         profile = Prestress(tau0, tau0)
-        run = sampled(lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release), 0.0)
-        speed, intercept, _ = fit_front(run, WINDOW)
-        first, largest = run.attrs["first_stick_time"], float(run["sample_velocity"].max())
-        known = (speed, intercept, first, between_fronts(run, first), largest)
-        return self._chosen(known, lambda time: position_at(run, time, edge="stick_time"))
-
-    def _chosen(self, values: Iterable[float], trailing_edge: Callable) -> np.ndarray:
-        """The readings, from the values of `KNOWN` and the trailing edge over time."""
-        known, numbers = dict(zip(KNOWN, values, strict=True)), []
-        for name in self.readings["quantity"]:
-            if name.startswith(TRAILING):
-                numbers.append(trailing_edge(float(name.removeprefix(TRAILING))))
-            elif name in known:
-                numbers.append(known[name])
-            else:
-                allowed = f"{', '.join(known)}, {TRAILING}TIME"
-                raise ValueError(f"quantity: {name!r}; allowed: {allowed}")
-        return np.array(numbers, dtype=float)
+        scene = lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release)
+        run, settings = sampled(scene, 0.0), {"front_window": WINDOW, "trailing_times": self.times}
+        numbers, _ = measure_run(run, SETTINGS | settings)
+        numbers["largest_velocity"] = float(run["sample_velocity"].max())
+        return np.array([numbers[name] for name in self.quantities])
 
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int

@@ -9,7 +9,6 @@ from ..configuration.expand import expand
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.pulse import steady_pulse
 
-# The curves have the parameters of this simulation.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
 # Distances at which the slip is tabulated: before the step, and beyond it in units of the memory.
