@@ -145,16 +145,20 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     return lines
 
 
+def _opening(line: Line) -> str:
+    """The first sentence of the answer: yes, no or not decided."""
+    verdict = line.claim.verdict
+    if verdict.startswith("reproduced"):
+        return f"**Yes**: {line.named}."
+    start = "No" if verdict == "not reproduced" else "Not decided in this run"
+    clause = next(said[verdict][0] for said in SENTENCES if verdict in said)
+    return f"**{start}**: that {line.named}, {clause}."
+
+
 def answer(lines: Sequence[Line]) -> str:
     """Sentences of Markdown: whether the first line is reproduced, and which others are not."""
     first, *rest = lines
-    verdict = first.claim.verdict
-    if verdict.startswith("reproduced"):
-        sentences = [f"**Yes**: {first.named}."]
-    else:
-        start = "No" if verdict == "not reproduced" else "Not decided in this run"
-        clause = next(said[verdict][0] for said in SENTENCES if verdict in said)
-        sentences = [f"**{start}**: that {first.named}, {clause}."]
+    sentences = [_opening(first)]
     for verdicts in SENTENCES:
         clauses = []
         for verdict, (singular, plural) in verdicts.items():
