@@ -73,7 +73,8 @@ def kernel() -> dict:
     step = {"max_step": 0.5, "order": 4}
     profile = Prestress(LEVEL, LEVEL, 8.0)
     crack = Scene("displacement", profile, CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **step)
-    pulse = _scene(PULSE[0], steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO).width / 200.0, step)
+    width = steady_pulse(LEVEL, GAMMA, 0.0, exact_speed(LEVEL, RATIO)).width
+    pulse = _scene(PULSE[0], width / 200.0, step)
     cases = (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1]))
     results = {}
     for name, scene, until in cases:

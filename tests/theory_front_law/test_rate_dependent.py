@@ -13,7 +13,7 @@ GAMMA = 2.0 / 3.0
 @pytest.mark.parametrize("alpha", [-0.3, 0.0, 0.5])
 def test_a_law_linear_in_slip_rate_gives_the_pulse_in_closed_form(alpha):
     pulse = theory.rate_pulse(0.5, GAMMA, 0.0, sp.friction("linear_rate", alpha=alpha))
-    exact = theory.steady_pulse(0.5, GAMMA, damping_ratio=0.0, rate_strengthening=alpha)
+    exact = theory.steady_pulse(0.5, GAMMA, 0.0, theory.front_speed(0.5, 0.0), alpha)
     for name in ("speed", "width", "slip", "peak_velocity"):
         assert getattr(pulse, name) == pytest.approx(getattr(exact, name), rel=1e-7), name
     assert pulse.sticks

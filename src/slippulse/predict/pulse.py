@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.run import Run
-from ..theory.closed_pulse import SteadyPulse, paper_pulse
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
 from .front import exact_speeds
 from .numbers import SIDES, known, level
 

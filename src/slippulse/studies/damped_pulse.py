@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.runs import runs
-from ..theory.closed_pulse import paper_pulse
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import paper_pulse, steady_pulse
 
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
@@ -19,7 +18,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Roles curve (over the paper's formulas), and limit (dx -> 0 at fixed beta/dx: beta -> 0)."""
     swept, (refined, *_) = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
     left, ratio = refined.prestress.left, refined.damping_ratio
-    pulse = steady_pulse(left, refined.gamma, damping_ratio=ratio, release=refined.release)
+    speed = front_speed(left, ratio, refined.release)
+    pulse = steady_pulse(left, refined.gamma, 0.0, speed)
     limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in QUANTITIES]
     limits.append(("limit", left, ratio, "front_speed", pulse.speed))
     first, rows = swept[0], []

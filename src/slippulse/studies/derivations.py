@@ -47,7 +47,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
     # It is undamped, at the speed with damping.
-    pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
+    pulse = cache(lambda: steady_pulse(level, gamma, 0.0, front_speed(level, ratio, release)))
     fronts = [steady_front(*keys) for keys in product(*FOLLOWED, RELEASES)]
     # Each number is computed alone: it is NaN where theory refuses an altered configuration.
     numbers: dict[str, Callable[[], float]] = {

@@ -1,12 +1,11 @@
 """A pulse sent from one pre-stress into another, exactly: its final slip and its memory."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
 from ..simulation.exact_rupture import exact_rupture
+from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
@@ -23,8 +22,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         position, level = scene.prestress.steps[-1]
         before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
-        damping: dict[str, Any] = {"damping_ratio": scene.damping_ratio, "release": scene.release}
-        old, new = (steady_pulse(tau, scene.gamma, **damping) for tau in (before, level))
+        rule = scene.damping_ratio, scene.release
+        old, new = (
+            steady_pulse(tau, scene.gamma, 0.0, front_speed(tau, *rule)) for tau in (before, level)
+        )
         memory = new.width / (new.speed - 1.0)
         x = np.concatenate([BEHIND, memory * BEYOND])
         slip = exact_rupture(scene).final_slip(position + x)

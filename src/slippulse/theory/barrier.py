@@ -63,7 +63,7 @@ def barrier_depth(
     place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
     check_number(f"front speed {place}", speed, at_most=FASTEST)
     # The depth is found at gamma = 1, behind a front as far back as its pulse remembers.
-    memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
+    memory = MEMORY * steady_pulse(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)
