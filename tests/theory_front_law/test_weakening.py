@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from slippulse.theory import undamped_weakening_slip, weakening_pulse
+from slippulse.theory import weakening_pulse
+from slippulse.theory.friction_laws import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
 # tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.
@@ -59,5 +60,3 @@ def test_slip_does_not_depend_on_damping_and_releases_the_fracture_energy():
     np.testing.assert_allclose(slips, slips[0], rtol=1e-9)
     slip = undamped_weakening_slip(0.5, GAMMA, 0.2)
     assert 0.5 * slip - 0.5 * GAMMA * slip**2 == pytest.approx(0.1)
-    with pytest.raises(ValueError, match="weakening"):
-        undamped_weakening_slip(0.5, GAMMA, 0.4)

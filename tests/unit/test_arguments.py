@@ -20,7 +20,6 @@ TINY, EXACT = sp.Scene(**GOOD), sp.Scene(**GOOD, scheme="continuum")
 # By the exact solution, which takes no compiled kernels while tests are collected.
 SWEEP = sp.run_sweep([EXACT, EXACT])
 RUPTURE = theory.Rupture(PLAIN, 0.65, duration=4.0)
-FRONTS = theory.Fronts(PLAIN, 0.1, "total", 3.0)
 CRACK = theory.ArrestingCrack(sp.Prestress(-0.5, 0.0))
 FAR = sp.Prestress(0.5, 0.5, bumps=((1e9, 0.5, 1.0),))
 # Values that are no number to a function that takes one.
@@ -48,7 +47,6 @@ TAKE_A_NUMBER = [
     ("gamma", lambda x: theory.Rupture(PLAIN, x, duration=4.0)),
     ("damping_ratio", lambda x: theory.Rupture(PLAIN, 0.65, x)),
     ("damping_ratio", lambda x: theory.ArrestingCrack(sp.Prestress(-0.5, 0.0), x)),
-    ("reach", lambda x: theory.Fronts(PLAIN, 0.1, "total", x)),
     ("x", lambda x: RUPTURE.stick_time(x)),
     ("time", lambda x: RUPTURE.pulse_width(x, "left")),
     ("upper", lambda x: PLAIN.integral(0.0, x)),
@@ -197,13 +195,7 @@ CALLS = [
     ("gamma: 0.0; allowed", theory.lattice_front_speed, 0.5, 0.0, 1.0),
     ("tau0: 0.3; allowed: values whose front outruns", theory.continuum_front_speed, 0.3, 2.0, 0.3),
     ("beta: 0.0; allowed", theory.continuum_front_speed, 0.3, 2.0, 0.0),
-    ("speed: 0.9; allowed: a finite number and > 1", theory.steady_front, 0.9, 0.1),
-    ("damping_ratio: 1000.0; allowed", theory.steady_front, 1.5, 1000.0),
-    ("time: nan; allowed", theory.slip_velocity, FRONTS, 0.65, 0.0, math.nan),
-    ("gamma: -1; allowed", theory.slip_velocity, FRONTS, -1, 0.0, 1.0),
-    ("time: nan; allowed", FRONTS.reached, math.nan, 1),
     ("position: -100; allowed", CRACK.time_at, -100),
-    ("count: 10000000; allowed: a whole number", CRACK.far_pulse, 10**7),
     ("times: nan; allowed: a finite number", RUPTURE.map, [math.nan], [0.0]),
     ("time: 5.0; allowed: <= duration = 4", RUPTURE.slip, 0.0, 5.0),
     ("tau0: 1.0; allowed", theory.barrier_depth, 1.0, -0.1, 0.65),

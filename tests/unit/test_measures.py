@@ -202,7 +202,7 @@ def test_what_changes_is_measured(run, expected):
 )
 def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state, paper_accuracy):
     profile = Prestress(level, 0.0)
-    exact = ArrestingCrack(profile, ratio).time_at_fraction(0.95)
+    exact = ArrestingCrack(profile, ratio).transition(0.95).time
     run = simulate(Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, **paper_accuracy))
     numbers = transition_stress(run, 0.95)
     assert numbers["transition_state"] == state

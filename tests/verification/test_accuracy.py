@@ -55,10 +55,11 @@ def pulse(accuracy, level, gamma, ratio, width, release):
 def crack(accuracy, level, ratio, width):
     profile = sp.Prestress(level, 0.0, width)
     exact = theory.ArrestingCrack(profile, ratio)
-    duration = 1.15 * exact.time_at_fraction(SHARE)
+    time, length = exact.transition(SHARE)
+    duration = 1.15 * time
     return scene_of(accuracy, ratio, duration, boundary="stress", prestress=profile), {
-        "transition_time": exact.time_at_fraction(SHARE),
-        "transition_length": exact.length_at_fraction(SHARE),
+        "transition_time": time,
+        "transition_length": length,
         "largest_velocity": exact.peak_velocity,
     }
 

@@ -120,7 +120,7 @@ def errors(setting: Setting, window: float) -> dict[str, float]:
     # The crack is damped: otherwise the ringing decides where its left front stands.
     ratio = max(DAMPING_RATIOS)
     crack = cached_crack(UNEVEN, ratio)
-    time, distance = crack.time_at_fraction(FRACTION), abs(crack.balance_position)
+    time, distance = crack.transition(FRACTION).time, abs(crack.balance_position)
     coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
     run = coarser.run(UNEVEN, CRACK_DURATION * time, 0.0, ratio)
     late = abs(arrival(run, FRACTION * distance, "left")[0] / time - 1.0)

@@ -19,7 +19,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     swept = {run.damping_ratio: run for run in runs(settings["sweeps"]["arrest"])}
     for ratio, run in swept.items():
         crack = ArrestingCrack(run.prestress, ratio, run.release)
-        times = np.array([crack.time_at_fraction(1.0 - to_go) for to_go in TO_GO])
+        times = np.array([crack.transition(1.0 - to_go).time for to_go in TO_GO])
         times /= -crack.balance_position
         parts.append(pd.DataFrame({"damping_ratio": ratio, "time": times, "to_go": TO_GO}))
     return pd.concat(parts)

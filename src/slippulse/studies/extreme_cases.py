@@ -14,7 +14,7 @@ from ..solver.solution import solve_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import front_speed, lattice_front_speed
-from ..theory.fronts import Fronts
+from ..theory.fronts import fast_fronts
 from ..theory.pulse import steady_pulse
 
 # A common rupture, of which one number at a time is extreme.
@@ -59,11 +59,12 @@ class Case:
         """Exact time of the transition, or at which two fronts meet, or 1."""
         even = Prestress(self.level, self.level, self.width)
         if self.family == "two nucleations":
-            return float(Fronts(even, self.ratio, "total", APART).arrival(0.5 * APART))
+            return float(fast_fronts(even, self.ratio, "total", APART).arrival(0.5 * APART))
         if self.quantity != "T_trans":
             return 1.0
         if self.gamma == 0.0:
-            return ArrestingCrack(Prestress(self.level, 0.0), self.ratio).time_at_fraction(FRACTION)
+            crack = ArrestingCrack(Prestress(self.level, 0.0), self.ratio)
+            return crack.transition(FRACTION).time
         return exact_transition_displacement(even, self.gamma, self.ratio).time
 
     def expected(self) -> float:

@@ -7,7 +7,7 @@ from ..configuration.runs import parameters
 from ..model.prestress import Prestress
 from ..theory.arrest import ArrestingCrack
 from ..theory.front_speeds import front_speed
-from ..theory.fronts import Fronts, slip_velocity
+from ..theory.fronts import fast_fronts, slip_velocity
 from ..theory.pulse import paper_transition_displacement
 from ..theory.vector_roots import roots_between
 
@@ -49,7 +49,7 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
         first, last = STICK[:, None] * np.pi / np.sqrt(gammas)
         # The past of (0, t) begins at x + T(x) = t, so x < t.
         reach = max(float(last.max()), 2.0 * FAR * width)
-        fronts = Fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
+        fronts = fast_fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
 
         def velocity(time, which=slice(None), fronts=fronts, gammas=gammas) -> np.ndarray:
             return slip_velocity(fronts, gammas[which], 0.0, time)
@@ -60,7 +60,7 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
         time_beyond = times - fronts.arrival(uniform_from)
         positions = uniform_from + float(front_speed(left, ratio, release)) * time_beyond
         for i in np.flatnonzero(positions <= uniform_from):
-            positions[i] = fronts.reached(times[i], 1.0)
+            positions[i] = fronts.front_at(times[i], 0.0, 1.0)
         rows = rows[["boundary"]].assign(nucleation="Gaussian", left=left, width=width)
         rows = rows.assign(gamma=gammas, transition_time=times, transition_length=2.0 * positions)
         rows[PAPER] = [paper_transition_displacement(left, gamma) for gamma in gammas]
@@ -82,8 +82,7 @@ def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float
         way = -crack.balance_position
         arrests = []
         for part in fractions:
-            exact = crack.time_at_fraction(part), crack.length_at_fraction(part)
-            arrests.append(("Gaussian", part, *exact, way, 2.0 * way))
+            arrests.append(("Gaussian", part, *crack.transition(part), way, 2.0 * way))
         # The stress of the tent is 1/2 on the right and (1 + left)/2 on the left of x = 0.
         way = 1.0 + (1.0 + 0.5 * left) / -left
         # Beyond x = 1 the right front runs at the wave speed.

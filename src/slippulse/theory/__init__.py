@@ -7,12 +7,10 @@ from importlib import import_module
 
 _HOMES = {
     "ArrestingCrack": ".arrest",
-    "ExactTransition": ".exact_transition",
+    "ExactTransition": ".fronts",
     "FrontEnd": ".rupture",
-    "Fronts": ".fronts",
     "Limit": ".rupture",
     "Rupture": ".rupture",
-    "SteadyFront": ".front_motion",
     "SteadyPulse": ".pulse",
     "SteadyRupture": ".friction_laws",
     "barrier_depth": ".barrier",
@@ -30,10 +28,7 @@ _HOMES = {
     "prestress_balance_position": "..model.balance",
     "prestress_for_speed": ".front_speeds",
     "rate_pulse": ".friction_laws",
-    "slip_velocity": ".fronts",
-    "steady_front": ".front_motion",
     "steady_pulse": ".pulse",
-    "undamped_weakening_slip": ".friction_laws",
     "uniform_transition_time": ".exact_transition",
     "weakening_pulse": ".friction_laws",
 }

@@ -8,7 +8,10 @@ from ..model.balance import prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from .fronts import Fronts
+from .fronts import ExactTransition, fast_fronts
+
+# Characteristics in each third of the pulse far away.
+SAMPLES = 400
 
 
 class ArrestingCrack:
@@ -33,7 +36,7 @@ class ArrestingCrack:
     Examples
     --------
     >>> crack = ArrestingCrack(Prestress(-0.75, 0.0, width=5.0))
-    >>> crack.time_at_fraction(0.9) > abs(crack.balance_position)
+    >>> crack.transition(0.9).time > abs(crack.balance_position)
     True
     """
 
@@ -43,10 +46,9 @@ class ArrestingCrack:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
         # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
-        self.reach = 12.0 * prestress.width
-        self.end = 4.0 * self.reach
-        self.fronts = Fronts(prestress, damping_ratio, release, self.end)
-        self.zero = -float(self.fronts.ends[-1.0])
+        self.end = 48.0 * prestress.width
+        self.fronts = fast_fronts(prestress, damping_ratio, release, self.end)
+        self.zero = float(self.fronts.edges[0])
 
     def _entry(self, position: float) -> float:
         """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
@@ -73,8 +75,8 @@ class ArrestingCrack:
         entry = self._entry(position)
         return entry + float(self.fronts.arrival(entry)) - position
 
-    def time_at_fraction(self, fraction: float) -> float:
-        """Time when the left front has covered a fraction, in (0, 1), of |x_minus|.
+    def transition(self, fraction: float) -> ExactTransition:
+        """Time when the left front has covered a fraction of |x_minus|, and length then.
 
         Parameters
         ----------
@@ -82,49 +84,34 @@ class ArrestingCrack:
 
         Returns
         -------
-        float
+        ExactTransition
         """
         check_number("fraction", fraction, above=0.0, below=1.0)
-        return self.time_at(fraction * self.balance_position)
-
-    def length_at_fraction(self, fraction: float) -> float:
-        """Distance between the fronts at `time_at_fraction`.
-
-        Parameters
-        ----------
-        fraction : float, in (0, 1)
-
-        Returns
-        -------
-        float
-        """
-        time, curve = self.time_at_fraction(fraction), self.fronts.curve
-        last, last_time = float(curve.edges[-1]), float(curve.edge_times[-1])
-        right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
-        return right - fraction * self.balance_position
+        position, fronts = fraction * self.balance_position, self.fronts
+        time = self.time_at(position)
+        right, last = fronts.front_at(time, 0.0, 1.0), float(fronts.edge_times[-1])
+        if time > last:
+            right = right + time - last
+        return ExactTransition(time, right - position)
 
     @property
     def peak_velocity(self) -> float:
         """Largest slip velocity far away: half the integral of tau to the right of its zero x*."""
         return 0.5 * self.prestress.integral(self.zero, self.end)
 
-    def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
+    def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
         """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right.
-
-        Parameters
-        ----------
-        count : int, points of each third, 2 to 10000
 
         Returns
         -------
         tuple of arrays : x - t of the characteristics, and du/dt on them
         """
-        check_number("count", count, integer=True, at_least=2, at_most=10_000)
-        right, left = np.linspace(2.0 * self.reach, 0.0, count), np.linspace(0.0, self.zero, count)
+        right = np.linspace(0.5 * self.end, 0.0, SAMPLES)
+        left = np.linspace(0.0, self.zero, SAMPLES)
         entries = np.concatenate([right, left[1:]])
         delay = entries - self.fronts.arrival(entries)
         # Denser towards x_minus, which is never reached.
-        fraction = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
+        fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES)[1:]
         slow = self.zero + (self.balance_position - self.zero) * fraction
         entered = np.array([self._entry(x) for x in slow])
         slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)

@@ -16,7 +16,6 @@ DOMAINS: dict[str, dict[str, Any]] = {
     "speed": {"above": 1.0, "at_most": 1e100},
     "damping_ratio": {"at_least": 0.0, "at_most": 1e100},
     "duration": {"at_least": 1e-9},
-    "reach": {"at_least": 1e-9},
 }
 
 

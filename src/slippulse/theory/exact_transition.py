@@ -1,7 +1,5 @@
 """The crack-pulse transition under leaf springs, in scenes that first stick at x = 0."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ..model.checks import check_kind
@@ -10,18 +8,11 @@ from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .fronts import Fronts
+from .fronts import ExactTransition, fast_fronts
 from .part import Part
 
 # Largest distance, in wave lengths, that is kept of a uniform front that hardly outruns the waves.
 FARTHEST = 10_000
-
-
-class ExactTransition(NamedTuple):
-    """T_trans, when the first position sticks, and L_trans, the distance of the fronts then."""
-
-    time: float
-    length: float
 
 
 def exact_transition_displacement(
@@ -58,12 +49,12 @@ def exact_transition_displacement(
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
-    fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
-    stick = float(Part(fronts.curve, gamma, 2.0 * period).search(np.zeros(1))[0])
-    if not stick < fronts.curve.edge_times[-1]:
+    fronts = fast_fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
+    stick = float(Part(fronts, gamma, 2.0 * period).search(np.zeros(1))[0])
+    if not stick < fronts.edge_times[-1]:
         reach = float(front_speed(level, damping_ratio, release)) * stick + 20.0 * prestress.width
-        fronts = Fronts(prestress, damping_ratio, release, reach, gamma)
-    return ExactTransition(stick, 2.0 * fronts.reached(stick, 1.0))
+        fronts = fast_fronts(prestress, damping_ratio, release, reach, gamma)
+    return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
 
 
 def uniform_transition_time(

@@ -17,8 +17,8 @@ from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .curve import SAME
 from .domains import broadcast_numbers, check_domains
-from .exact_transition import ExactTransition
 from .fast_front import FastFront
+from .fronts import ExactTransition
 from .solved_part import SolvedPart
 from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
