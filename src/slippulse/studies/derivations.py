@@ -71,10 +71,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "transition_peak_highest": lambda: over_paper(levels[-1], 1.0),
         "transition_peak_level": lambda: over_paper(level, 1.0),
         "transition_peak_level_soft": lambda: over_paper(level, SOFT),
-        # The curvature of slip at the nucleation point, halfway to the transition; tau is 1 there.
-        "strain_term": lambda: abs(
-            float(rupture().strain(STEP, 0.5 * rupture().transition.time)) / STEP
-        ),
+        # tau is 1 there.
+        "strain_term": lambda: abs(curvature(rupture())),
         "fronts_block_by_block": lambda: len(fronts),
         "fronts_admissible": lambda: sum(front.admissible for front in fronts),
     }
@@ -86,3 +84,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             values = np.full_like(POSITIONS, math.nan)
         rows += zip([name] * POSITIONS.size, POSITIONS, values, strict=True)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])
+
+
+def curvature(rupture: Rupture) -> float:
+    """Curvature of slip at the nucleation point, halfway to the transition."""
+    halfway = 0.5 * rupture.transition.time
+    return rupture.map([halfway], [STEP], ("strain",))["strain"].item() / STEP

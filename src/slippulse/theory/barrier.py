@@ -17,8 +17,6 @@ from .slow_front import SlowFront
 # cover, in units of the memory of the pulse.
 LONGEST = 2.0
 MEMORY = 1.5
-# The estimate may be beyond floating point below these values.
-SMALLEST = 1e-100
 # The smallest pre-stress before a barrier, and the fastest front, whose pulse takes 12000 panels.
 LOWEST = 1e-4
 FASTEST = 5e3
@@ -100,7 +98,6 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     >>> round(barrier_depth_estimate(0.5, -0.5, 0.65), 3)
     2.133
     """
-    check_domains(tau0=tau0)
-    check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
-    check_number("gamma", gamma, at_least=SMALLEST)
+    check_domains(tau0=tau0, gamma=gamma)
+    check_number("tau_barrier", tau_barrier, below=0.0)
     return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)

@@ -1,12 +1,14 @@
 """The stress drop of a fault with a compliant damage zone, in SI units."""
 
-from typing import Any
-
 from .domains import broadcast_numbers
 
-# No product of numbers up to this overflows.
-LARGEST = 1e100
-POSITIVE: dict[str, Any] = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
+POSITIVE = {"above": 0.0}
+DOMAINS = {
+    "shear_modulus": POSITIVE,
+    "rock_shear_modulus": POSITIVE,
+    "thickness": POSITIVE,
+    "rock_thickness": {"at_least": 0.0},
+}
 
 
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
@@ -17,11 +19,11 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     Parameters
     ----------
-    slip : float or array, delta (m), -1e100 to 1e100
+    slip : float or array, delta (m)
     shear_modulus, rock_shear_modulus : floats or arrays, G of the zone and G_r of the rock (Pa),
-        1e-100 to 1e100
-    thickness, rock_thickness : floats or arrays, H of the zone and H_r of the rock, to the imposed
-        displacement (m), 1e-100 to 1e100, H_r 0 too
+        > 0
+    thickness, rock_thickness : floats or arrays, H of the zone, > 0, and H_r of the rock, to the
+        imposed displacement, >= 0 (m)
 
     Returns
     -------
@@ -34,8 +36,5 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     """
     moduli = {"shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
     given = {"slip": slip, **moduli, "thickness": thickness, "rock_thickness": rock_thickness}
-    domains = dict.fromkeys(given, POSITIVE)
-    domains["slip"] = {"at_least": -LARGEST, "at_most": LARGEST}
-    domains["rock_thickness"] = {"at_least": 0.0, "at_most": LARGEST}
-    slip, zone, rock, thickness, rock_thickness = broadcast_numbers(domains, **given)
+    slip, zone, rock, thickness, rock_thickness = broadcast_numbers(DOMAINS, **given)
     return zone * slip / (thickness + zone / rock * rock_thickness)
