@@ -8,15 +8,15 @@ from slippulse.theory import Rupture
 
 LEVEL = 0.5
 STEP = sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),))
-# Profile, gamma, damping ratio, duration, positions; rate strengthening, where there is any.
+# Profile, gamma, damping ratio, duration, rate strengthening, positions.
 SCENES = {
-    "undamped": (sp.Prestress(0.5, 0.5), 2.0 / 3.0, 0.0, 7.0, [0.0, 1.0, 2.4, 4.0]),
-    "damped": (sp.Prestress(0.25, 0.25), 0.55, 0.1, 7.0, [0.0, 1.0, 2.0, 3.2]),
-    "more damped": (sp.Prestress(0.4, 0.4), 0.65, 0.3, 7.0, [0.0, 1.0, 2.4, 4.0]),
-    "asymmetric": (sp.Prestress(0.2, 0.6), 0.65, 0.1, 6.0, [-2.0, -1.0, 0.0, 1.0, 2.4, 4.0]),
-    "strengthening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], 0.4),
-    "weakening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], -0.3),
-    "across a step": (STEP, 0.65, 0.1, 7.0, [0.0, 2.4, 3.6, 4.4, 5.0]),
+    "undamped": (sp.Prestress(0.5, 0.5), 2.0 / 3.0, 0.0, 7.0, 0.0, [0.0, 1.0, 2.4, 4.0]),
+    "damped": (sp.Prestress(0.25, 0.25), 0.55, 0.1, 7.0, 0.0, [0.0, 1.0, 2.0, 3.2]),
+    "more damped": (sp.Prestress(0.4, 0.4), 0.65, 0.3, 7.0, 0.0, [0.0, 1.0, 2.4, 4.0]),
+    "asymmetric": (sp.Prestress(0.2, 0.6), 0.65, 0.1, 6.0, 0.0, [-2.0, -1.0, 0.0, 1.0, 2.4, 4.0]),
+    "strengthening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, 0.4, [0.0, 1.0, 2.4, 4.0]),
+    "weakening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, -0.3, [0.0, 1.0, 2.4, 4.0]),
+    "across a step": (STEP, 0.65, 0.1, 7.0, 0.0, [0.0, 2.4, 3.6, 4.4, 5.0]),
 }
 ORDER = (0.9, 1.1)
 RICHARDSON = 1e-4
@@ -38,7 +38,7 @@ def nearest(run, x, *quantities):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
-    *scene, duration, x, alpha = (*SCENES[name], 0.0)[:6]
+    *scene, duration, alpha, x = SCENES[name]
     exact = Rupture(*scene, "total", duration, rate_strengthening=alpha)
     truth = np.array([exact.release_time(x), exact.stick_time(x), exact.final_slip(x)])
     assert np.all(np.isfinite(truth))
