@@ -24,7 +24,8 @@ def rupture(left: float, right: float, gamma: float, duration: float) -> Rupture
     return exact
 
 
-ARRESTED, TWO_WAY, ONE_WAY = "arrested", "pulses, two-way", "pulse, one-way, steady"
+ARRESTED, TWO_WAY = "arrested", "pulses, two-way"
+ONE_WAY = "pulse, one-way, steady"
 # How the fronts end: they stop, or go on to the end of the duration.
 ENDS = {
     ARRESTED: ["stops", "stops"],
