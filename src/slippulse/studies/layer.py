@@ -26,10 +26,9 @@ GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
 LEVELS = (0.5, 0.65, 0.8, 0.95)
 # Fracture energy d_c/2 over tau_0^2/(2 gamma), the most that a length of the layer releases.
 TOUGHNESS = 5.0 / 12.0
-# Half of the length without friction, the duration, and half of the length in which a speed is
-# fitted, at GAMMA; they are longer at smaller gamma, as the paper's pulses are.
+# Half of the length without friction, in half of which speeds are fitted, and the duration, at
+# GAMMA; they are longer at smaller gamma, as the paper's pulses are.
 NUCLEATION, DURATION = 2.0, 30.0
-HALF = 1.0
 # Three grids show what converges; one case has a finer one.
 CELLS, FINE = (10, 20, 40), (20, 40, 80)
 # Fractions of the path of the front at which a pulse is measured: the last two say if it settles.
@@ -95,7 +94,7 @@ def on_grids(
         sticks = run.stick_time[np.abs(run.x) <= scene.nucleation]
         known["first_stick"] = float(sticks[np.isfinite(sticks)].min(initial=math.inf))
         known["energy_residual"] = run.energy_residual
-        half = scene.nucleation * HALF / NUCLEATION
+        half = 0.5 * scene.nucleation
         for side in sides:
             end = float((side * run.x[np.isfinite(run.release_time)]).max())
             for station in STATIONS:

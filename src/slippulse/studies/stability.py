@@ -40,16 +40,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             bound = largest_step(scheme, order, ratio, 0.0)
             row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": bound}
             for name, profile in PROFILES.items():
-                fraction = largest_stable(
-                    partial(nothing_sticks, profile, bound, scheme, order, ratio), *BETWEEN
-                )
+                stable = partial(nothing_sticks, profile, bound, scheme, order, ratio)
+                fraction = largest_stable(stable)
                 row |= {name: bound * fraction, f"{name}_ratio": fraction}
             rows.append(row)
     return pd.DataFrame(rows)
 
 
-def largest_stable(stable: Callable[[float], bool], lower: float, upper: float) -> float:
-    """Largest stable value by bisection between two; an end where it lies beyond."""
+def largest_stable(stable: Callable[[float], bool]) -> float:
+    """Largest stable fraction by bisection; an end of BETWEEN where it lies beyond."""
+    lower, upper = BETWEEN
     if not stable(lower):
         return lower
     if stable(upper):
