@@ -9,7 +9,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse.configuration.accuracy import promised
-from slippulse.configuration.expand import expand, promise_of
+from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import accuracy_of, resolve
 from slippulse.configuration.schema import Configuration
 from slippulse.model.cost import bound_of
@@ -130,7 +130,6 @@ def test_without_an_accuracy_every_block_is_what_it_was(config):
     for simulation in config["simulations"].values():
         block = resolve(simulation, config["model"], accuracy)
         assert block["accuracy"] == {key: preset[key] for key in ("dx", "max_step", "order")}
-        assert promise_of(block) is None
 
 
 def test_with_an_accuracy_each_scene_has_its_own_spacing_but_not_by_the_textbook_scheme(config):
@@ -162,5 +161,5 @@ def test_a_spacing_that_is_the_question_stays(config, name):
     block = resolve(simulation, config["model"], accuracy_for(config, accuracy=1e-3))
     after, _ = expand(promised(block))
     assert [scene.dx for scene in after] == [scene.dx for scene in before]
-    assert math.isnan(promise_of(block))
+    assert math.isnan(block["accuracy"]["promise"])
     assert all(a.max_step <= b.max_step for a, b in zip(after, before, strict=True))

@@ -152,21 +152,6 @@ def test_a_table_has_nine_digits_and_no_index(tmp_path):
     assert load_table(tmp_path / "t.csv")["value"].tolist() == [3.14159265]
 
 
-@pytest.mark.parametrize("existing", [b"the old file", None])
-def test_a_writer_that_fails_leaves_the_folder_as_it_was(tmp_path, existing):
-    path = tmp_path / "data.nc"
-    if existing:
-        path.write_bytes(existing)
-
-    def fail(part):
-        part.write_bytes(b"half of the n")
-        raise RuntimeError("disk full")
-
-    with pytest.raises(RuntimeError, match="disk full"):
-        write_whole(path, fail)
-    assert [entry.read_bytes() for entry in tmp_path.iterdir()] == ([existing] if existing else [])
-
-
 def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_as_any(tmp_path):
     path = tmp_path / "deep/er/data.txt"
     write_whole(path, lambda part: part.write_text("old"))

@@ -20,7 +20,6 @@ from ..model.scene import Scene
 from ..model.stability import chosen_step
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
-from .expand import promise_of
 from .problems import ConfigError
 from .runs import entries
 
@@ -143,7 +142,7 @@ def settings_for(
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
     """Add the spacing of each run where an accuracy is promised, or raise ConfigError."""
-    promise, scheme = promise_of(simulation), simulation["scheme"]
+    promise, scheme = simulation["accuracy"].get("promise"), simulation["scheme"]
     if promise is None:
         return simulation
     if scheme != "localised":

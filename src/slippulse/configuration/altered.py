@@ -12,8 +12,6 @@ from .schema import Configuration
 SYMBOLS = {"damping_ratio": "b", "left": "tau_l", "right": "tau_r", "width": "W"}
 # A note names this number of differences.
 MOST = 4
-# The accuracy of a run is that of its preset, and the extent of its samples follows from the rest.
-DERIVED = ("accuracy", "coarser", "samples.extent")
 
 
 class Alterations:
@@ -27,8 +25,9 @@ class Alterations:
             # An added one is compared under the shipped model.
             old = resolve(before.get(name, simulation), shipped.model, {})
             new = resolve(simulation, here.model, {})
-            without = (*DERIVED, "damping_ratio") if "beta" in new else DERIVED
-            altered = [one for one in changes(old, new) if one["key"] not in without]
+            # The extent of samples follows from the rest, and beta replaces the ratio.
+            derived = ("samples.extent", "damping_ratio" if "beta" in new else "")
+            altered = [change for change in changes(old, new) if change["key"] not in derived]
             self.simulations[name] = altered
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:

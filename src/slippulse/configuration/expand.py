@@ -15,15 +15,6 @@ from ..model.stability import MARGIN, chosen_step
 from .runs import runs
 
 
-def promise_of(simulation: Mapping) -> float | None:
-    """Relative error that is promised; None if none is, NaN if a simulation sets its spacing."""
-    promise = simulation["accuracy"].get("promise")
-    chosen = "dx" in simulation or "fixed" in simulation["spacing"]
-    if promise is not None and (chosen or any(simulation.get("beta", []))):
-        return math.nan
-    return promise
-
-
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     """Scenes of a resolved simulation, or of a chunk, and what each samples; or ValueError."""
     scenes = [_scene(simulation, run) for run in runs(simulation)]

@@ -1,5 +1,6 @@
 """Resolved simulations: what a rule passes to its job, with everything that the data depend on."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -35,6 +36,10 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
         laws = [LinearRate(alpha) if alpha else COULOMB for alpha in alphas]
         given["friction"] = [law.mapping() for law in laws]
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
+    chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
+    if "promise" in kept and chosen:
+        # A spacing that the simulation sets itself promises nothing.
+        kept["promise"] = math.nan
     return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
 
 

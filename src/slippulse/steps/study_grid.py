@@ -5,7 +5,7 @@ from pkgutil import resolve_name
 
 import pandas as pd
 
-from ..configuration.expand import expand, promise_of
+from ..configuration.expand import expand
 from ..data.tables import load_table, save_table
 from ..measurement.promise import judged, summary
 from ..measurement.table import PARAMETERS
@@ -30,7 +30,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         fractions = measured.select_dtypes("integer").columns.difference(PARAMETERS)
         measured = load_table(files["finest"], dict.fromkeys(fractions, float))
     uncertainties = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
-    promise = promise_of(next(iter(sweeps.values())))
+    promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
         uncertainties = judged(uncertainties, measured, promise, settings["measure"]["share"])
         sys.stderr.write(f"  {name}: {summary(uncertainties, promise)}\n")
