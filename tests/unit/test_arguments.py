@@ -72,9 +72,9 @@ SCENES = {
     "order: 4.0; allowed: a whole number": {"order": 4.0},
     "max_step: 0.0; allowed: a finite number and > 0": {"max_step": 0.0},
     "friction_ratio: -0.1; allowed: a finite number and >= 0": {"friction_ratio": -0.1},
-    "resolved_blocks: 0; allowed: a finite number and >= 1": {"resolved_blocks": 0},
-    "resolved_blocks: 1.5; allowed: a whole number >= 1": {"resolved_blocks": 1.5},
-    "half_lattice: 'no'; allowed: true or false": {"half_lattice": "no"},
+    "resolved_blocks: 0; allowed: a whole number and >= 1": {"resolved_blocks": 0},
+    "resolved_blocks: 1.5; allowed: a whole number and >= 1": {"resolved_blocks": 1.5},
+    "half_lattice: 'no'; allowed: a bool": {"half_lattice": "no"},
     "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
     "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip runs": linear(-1.62),
     "friction.alpha: -0.01; allowed: >= 0 without leaf springs, or slip runs": WITHOUT_SPRINGS
@@ -112,7 +112,7 @@ PRESTRESSES = {
     "prestress.bumps: 'abc'; allowed: a list of [centre, amplitude, width]": {"bumps": "abc"},
 }
 ATTRIBUTES = {
-    "order: 4.7; allowed: a whole number": {"order": 4.7},
+    "order: 4.7; allowed: 3, 4, 5, 6, 7, 8": {"order": 4.7},
     "half_lattice: 'no'; allowed": {"half_lattice": "no"},
     "dx: '0.1'; allowed: a finite number": {"dx": "0.1"},
     "steps_and_bumps: '{'; allowed": {"steps_and_bumps": "{"},

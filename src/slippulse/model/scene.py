@@ -28,17 +28,17 @@ ATTRIBUTES = """
     boundary gamma beta damping_ratio left right width peak steps_and_bumps duration dx release
     scheme max_step order half_lattice friction_ratio resolved_blocks friction
 """
-# Parameters that are not floats. A data file has number types of its own for them.
-KINDS = {"half_lattice": bool, "order": int, "resolved_blocks": int}
 CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "order": ORDERS}
-# Bounds of the floats, for `check_number`. The square of the least spacing is still a number.
-FLOATS: dict[str, dict[str, Any]] = {
+# Bounds of the numbers, for `check_number`. The square of the least spacing is still a number.
+NUMBERS: dict[str, dict[str, Any]] = {
     "duration": {"above": 0.0},
     "dx": {"above": 0.0, "at_least": 1e-100},
     "beta": {"at_least": 0.0},
     "friction_ratio": {"at_least": 0.0},
     "gamma": {},
     "max_step": {},
+    "order": {"integer": True},
+    "resolved_blocks": {"integer": True, "at_least": 1},
 }
 
 
@@ -120,18 +120,15 @@ class Scene:
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
             check_choice(name, getattr(self, name), choices)
-        for name, kind in KINDS.items():
-            if type(getattr(self, name)) is not kind:
-                allowed = "true or false" if kind is bool else "a whole number >= 1"
-                raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
-        check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        check_kind("half_lattice", self.half_lattice, bool)
         check_kind("prestress", self.prestress, Prestress)
         check_kind("friction", self.friction, Friction)
         self._check_physics()
-        for name, bounds in FLOATS.items():
+        for name, bounds in NUMBERS.items():
             check_number(name, getattr(self, name), **bounds)
-            # Single-precision or integer numbers would be computed with as such, and compiled for.
-            object.__setattr__(self, name, float(getattr(self, name)))
+            # Numbers of other types would be computed with as such, and compiled for.
+            kind = int if "integer" in bounds else float
+            object.__setattr__(self, name, kind(getattr(self, name)))
         if self.prestress.width < self.dx:
             allowed = f">= dx = {self.dx:g}, which must see the peak"
             raise ValueError(f"prestress.width: {self.prestress.width!r}; allowed: {allowed}")
@@ -164,11 +161,9 @@ class Scene:
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
         if self.max_step > bound:
-            if self.friction != COULOMB:
-                ratios += f", friction {json.dumps(self.friction.mapping())}"
-            allowed = f"<= {bound:.4g} (in units of dx), the stability bound of scheme"
-            refused = f"max_step: {self.max_step!r}; allowed: {allowed} {self.scheme!r}"
-            raise ValueError(f"{refused} at {ratios}")
+            ratios += f", friction {json.dumps(self.friction.mapping())}"
+            allowed = f"<= {bound:.4g} (in units of dx), the bound of {self.scheme!r} at {ratios}"
+            raise ValueError(f"max_step: {self.max_step!r}; allowed: {allowed}")
 
     @property
     def damping_ratio(self) -> float:
@@ -235,12 +230,10 @@ class Scene:
             allowed = "a mapping of names to values"
             raise ValueError(f"attributes: {short_repr(attributes)}; allowed: {allowed}")
         try:
-            for name, kind in KINDS.items():
-                limits = {"at_most": 1} if kind is bool else {}
-                check_number(name, attributes[name], integer=True, at_least=0, **limits)
             values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
             values["prestress"] = prestress_from(attributes)
-            values |= {name: kind(values[name]) for name, kind in KINDS.items()}
+            check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
+            values["half_lattice"] = bool(values["half_lattice"])
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
             allowed = "every attribute of a run"

@@ -71,24 +71,22 @@ def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]
 def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float) -> dict:
     stick, limit = rupture and rupture.first_stick, rupture and rupture.limit
     sliding = np.any(fields["slip_velocity"] > 0.0)
-    return {
-        "end_time": end,
-        "stopped_because": "duration reached" if sliding else "everything is stuck",
-        "steps": 0,
-        "block_updates": 0,
-        "event_updates": 0,
-        "releases": int(np.isfinite(fields["release_time"]).sum()),
-        "sticks": int(np.isfinite(fields["stick_time"]).sum()),
-        "re_releases": 0,
-        "min_velocity": 0.0,
-        # The stress of a stuck point between the waves and the threshold is not computed.
-        "min_stuck_stress": math.nan,
-        "friction_ratio_needed": math.nan,
-        "first_stick_time": stick[0] if stick else math.nan,
-        "first_stick_position": stick[1] if stick else math.nan,
-        "half_lattice_used": 0,
-        "energy_residual": math.nan,
-        "limit_position": limit.x if limit else math.nan,
-        "limit_time": limit.time if limit else math.nan,
-        "limit_reason": limit.reason if limit else "",
-    }
+    # The stress of a stuck point between the waves and the threshold is not computed.
+    unknown = "min_stuck_stress", "friction_ratio_needed", "energy_residual"
+    without_lattice = "steps", "block_updates", "event_updates", "re_releases", "half_lattice_used"
+    return (
+        dict.fromkeys(unknown, math.nan)
+        | dict.fromkeys(without_lattice, 0)
+        | {
+            "end_time": end,
+            "stopped_because": "duration reached" if sliding else "everything is stuck",
+            "releases": int(np.isfinite(fields["release_time"]).sum()),
+            "sticks": int(np.isfinite(fields["stick_time"]).sum()),
+            "min_velocity": 0.0,
+            "first_stick_time": stick[0] if stick else math.nan,
+            "first_stick_position": stick[1] if stick else math.nan,
+            "limit_position": limit.x if limit else math.nan,
+            "limit_time": limit.time if limit else math.nan,
+            "limit_reason": limit.reason if limit else "",
+        }
+    )

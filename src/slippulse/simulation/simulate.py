@@ -7,15 +7,17 @@ import numpy as np
 import xarray as xr
 
 from ..data.variables import described
-from ..model.checks import check_number, short_repr
+from ..model.checks import check_kind, check_number, short_repr
 from ..model.cost import bound_of
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from ..solver.fixed_step import solve_by_scheme
 from ..solver.solution import Solution
 from .continuum import solve_exactly
-from .flags import ENERGY_RESIDUAL
 from .sweep import recorded, solve_sweep
+
+# Numbers that flags of a lattice go by.
+REASONS = "pulse_blocks resolved_blocks min_stuck_stress min_velocity energy_residual"
 
 
 class UnresolvedRun(RuntimeError):
@@ -48,7 +50,7 @@ def simulate(
 
     Raises
     ------
-    TypeError, ValueError
+    ValueError
         If an argument is of another type, a sample is after the end, or the run may cost more than
         days or a small machine has; `run_sweep` takes any.
     UnstableRun
@@ -60,12 +62,10 @@ def simulate(
     --------
     >>> slip = sp.simulate(sp.Scene("stress", sp.Prestress(0.6, 0.6), 5.0, dx=0.05)).slip
     """
-    _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
-    _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
+    check_kind("scene", scene, Scene)
     known = isinstance(progress, bool | None) or callable(progress)
-    allowed = "a function of the fraction done, True, or None"
-    _require(known, "progress", progress, allowed, TypeError)
-    _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
+    _require(known, "progress", progress, "a function of the fraction done, True, or None")
+    check_kind("strict", strict, bool)
     _check_within(samples, scene.duration)
     exceeded = bound_of(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
     # The exact solution refuses what it cannot solve, by the key that is too large.
@@ -76,14 +76,8 @@ def simulate(
     data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
-        raise UnresolvedRun(
-            f"the run is flagged: {numbers['run_flags']} (lowest stress of a stuck block"
-            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at"
-            f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
-            f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
-            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
-            f" allowed {ENERGY_RESIDUAL:g})"
-        )
+        reasons = ", ".join(f"{name} {numbers[name]:.4g}" for name in REASONS.split())
+        raise UnresolvedRun(f"the run is flagged: {numbers['run_flags']} ({reasons})")
     return data
 
 
@@ -143,15 +137,17 @@ def run_sweep(
 
 def _check_samples(samples: Sequence[Samples | None], scenes: Sequence[Scene]) -> None:
     listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
-    known = listed and all(isinstance(item, Samples | None) for item in samples)
     allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
-    _require(known, "samples", samples, allowed)
+    _require(listed, "samples", samples, allowed)
     for scene, samples_of_scene in zip(scenes, samples, strict=True):
         _check_within(samples_of_scene, scene.duration)
 
 
 def _check_within(samples: Samples | None, duration: float) -> None:
-    if samples is not None and np.any(samples.times > duration):
+    if samples is None:
+        return
+    check_kind("samples", samples, Samples)
+    if np.any(samples.times > duration):
         allowed = f"up to the duration of the scene, {duration:g}"
         raise ValueError(f"samples.times: {samples.times[-1]:g}; allowed: {allowed}")
 
@@ -193,6 +189,6 @@ def _solve(
     return solve(scene, samples, progress)
 
 
-def _require(holds: bool, name: str, value: object, allowed: str, error: type = ValueError) -> None:
+def _require(holds: bool, name: str, value: object, allowed: str) -> None:
     if not holds:
-        raise error(f"{name}: {short_repr(value)}; allowed: {allowed}")
+        raise ValueError(f"{name}: {short_repr(value)}; allowed: {allowed}")

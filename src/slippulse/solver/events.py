@@ -111,21 +111,12 @@ def spread(difference, medium, motion, event, left, right, top):
 def evaluate(out, rows, lowest, top, s):
     """Derivative ``lowest`` of the difference at time s, in all columns but the last."""
     columns = np.uint64(COLUMNS - 1)
-    j = top - 1
-    if (top - lowest) % 2 == 1:
-        weight = s * RECIPROCAL[top - lowest]
+    for p in range(columns):
+        out[p] = rows[top, p]
+    for k in range(top - 1, lowest - 1, -1):
+        weight = s * RECIPROCAL[k + 1 - lowest]
         for p in range(columns):
-            out[p] = rows[j, p] + weight * rows[top, p]
-        j -= 1
-    else:
-        for p in range(columns):
-            out[p] = rows[top, p]
-    # Two levels of the polynomial at once halve the traffic with memory.
-    while j > lowest:
-        weight, lower_weight = s * RECIPROCAL[j + 1 - lowest], s * RECIPROCAL[j - lowest]
-        for p in range(columns):
-            out[p] = rows[j - 1, p] + lower_weight * (rows[j, p] + weight * out[p])
-        j -= 2
+            out[p] = rows[k, p] + weight * out[p]
 
 
 @inner(inline=True)

@@ -23,11 +23,6 @@ class UnstableRun(RuntimeError):
     """A simulation that blew up, met a value that is not finite, or no longer advanced."""
 
 
-def _row_length(size: int) -> int:
-    """The least length from ``size`` on with rows at different positions in their pages."""
-    return size + (BEYOND_PAGES - size) % PAGE
-
-
 class Lattice:
     """The state of a scene by the localised scheme, in arrays with a ghost block at each end."""
 
@@ -44,23 +39,9 @@ class Lattice:
         self.medium = arrays.Medium(
             dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, self.mirror, total
         )
-        # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
-        weakening = max(-scene.friction.traits.linear_rate, 0.0) * scene.duration
-        self.growth = float(np.exp(min(weakening, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
-        self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
-        size = _row_length(FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3)
-        # All blocks that are released at t = 0 are on it, those of distant bumps included.
-        bumps = scene.prestress.bumps
-        reach = max((abs(centre) + 4.0 * width for centre, _, width in bumps), default=0.0)
-        blocks = (int(np.ceil(reach / scene.dx)) + arrays.ROOM) * (1 if self.mirror else 2)
-        while blocks > size - arrays.ROOM:
-            left, right = self._extension(size)
-            size += left + right
-            self.first_block -= left
+        self.first_block = 0
         self.motion = arrays.make_motion(scene.order + 2 if self.localised else 3, 0)
-        self.segments = arrays.make_segments(0)
-        self.sliding = np.zeros(0, dtype=bool)
         self.tally = arrays.record(arrays.TALLY)
         self.history = arrays.History(np.zeros(0), np.zeros(0), self.tally)
         given = samples or Samples(np.zeros(0), np.zeros(0))
@@ -70,53 +51,58 @@ class Lattice:
         number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
         self.sampled = np.abs(number) if self.mirror else number
         self.recorder = arrays.Recorder(given.times, number, *recorded)
-        self._extend(0, size)
-        self.sliding[1:-1] = self.motion.tau[1:-1] >= 1.0
-        self.history.release_time[self.sliding] = 0.0
-        edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
-        n = self.segments.count.n = edges.size // 2
-        self.segments.starts[:n], self.segments.ends[:n] = edges[0::2], edges[1::2]
-        for block in np.flatnonzero(self.sliding):
+        self._extend(1 if self.mirror else FIRST_BLOCKS + 1, FIRST_BLOCKS + 1)
+        # All blocks that are released at t = 0 are on it, those of distant bumps included.
+        bumps = scene.prestress.bumps
+        reach = max((abs(centre) + 4.0 * width for centre, _, width in bumps), default=0.0)
+        blocks = (int(np.ceil(reach / scene.dx)) + arrays.ROOM) * (1 if self.mirror else 2)
+        while blocks > self.size - arrays.ROOM:
+            self._double()
+        first = np.flatnonzero(self.motion.tau[1:-1] >= 1.0) + 1
+        self.history.release_time[first] = 0.0
+        for block in first:
             begin_to_fall(self.motion, self.medium.bend, block)
         self.tally.first_stick_time = np.nan
-        self.tally.releases = self.sliding.sum()
+        self.tally.releases = first.size
 
     @property
     def size(self) -> int:
         """Length of a row."""
         return self.motion.tau.size
 
-    def _extension(self, size: int) -> tuple[int, int]:
-        """Blocks to add on the left and on the right to double the lattice or a little more."""
-        left = 0 if self.mirror else size
-        return left, _row_length(left + 2 * size) - left - size
+    @property
+    def sliding(self) -> np.ndarray:
+        """Mask of the blocks that slide."""
+        return np.isfinite(self.history.release_time) & np.isnan(self.history.stick_time)
+
+    def _double(self) -> None:
+        self._extend(0 if self.mirror else self.size, self.size)
 
     def _extend(self, left: int, right: int) -> None:
-        """Add blocks at rest: these numbers on the left and on the right."""
+        """Add blocks at rest: these numbers on the left and on the right, or a few more there."""
         self.first_block -= left
-        old, segments = self.motion, self.segments
-        inside = slice(left, left + self.size)
-        size = left + self.size + right
+        old, inside = self.motion, slice(left, left + self.size)
+        size = inside.stop + right
+        # The least length with rows at different positions in their pages.
+        size += (BEYOND_PAGES - size) % PAGE
         self.motion = arrays.make_motion(old.w.shape[0], size)
         for values, kept in zip(self.motion, old, strict=True):
             values[..., inside] = kept
+        traits = self.scene.friction.traits
         away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
-        self.motion.resists[:] = away >= self.scene.friction.traits.zone
+        self.motion.resists[:] = away >= traits.zone
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
         if self.mirror:
             self.motion.tau[0] = self.motion.tau[2]
-        self.largest_force = float(np.abs(self.motion.tau).max()) + self.scene.friction.traits.drive
-        self.sliding = np.pad(self.sliding, (left, right))
+        # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
+        weakening = max(-traits.linear_rate, 0.0) * self.scene.duration
+        growth = float(np.exp(min(weakening, 600.0)))
+        self.largest_force = growth * (float(np.abs(self.motion.tau).max()) + traits.drive)
         release, stick = np.full((2, size), np.nan)
         release[inside], stick[inside] = self.history.release_time, self.history.stick_time
         self.history = arrays.History(release, stick, self.tally)
-        n = segments.count.n
-        self.segments = arrays.make_segments(size)
-        self.segments.starts[:n] = segments.starts[:n] + left
-        self.segments.ends[:n] = segments.ends[:n] + left
-        self.segments.count.n = n
         self.tally.first_stuck_block += left
         sampled = self.sampled - self.first_block
         outside = (sampled < 1) | (sampled > size - 2)
@@ -125,7 +111,11 @@ class Lattice:
 
     def _advance(self, limits: arrays.Limits) -> int:
         """Call the kernel. Returns the reason why it stopped."""
-        state = (self.medium, self.motion, self.segments, self.scratch, self.history, self.recorder)
+        edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
+        segments = arrays.make_segments(self.size)
+        n = segments.count.n = edges.size // 2
+        segments.starts[:n], segments.ends[:n] = edges[0::2], edges[1::2]
+        state = (self.medium, self.motion, segments, self.scratch, self.history, self.recorder)
         return taylor.advance(*state, limits)
 
     def advance_to_end(self, progress: Callable[[float], None] | None) -> int:
@@ -134,14 +124,12 @@ class Lattice:
         step = scene.max_step * scene.dx
         while True:
             before = float(self.tally.time)
-            n = self.segments.count.n
-            sliding = int(np.sum(self.segments.ends[:n] - self.segments.starts[:n]))
-            updated = max(sliding, 1) if self.localised else self.size
-            steps = int(min(max(CALL_WORK / updated, 10), self.call_steps))
-            largest = self.largest_force * self.growth
-            status = self._advance(arrays.Limits(scene.order, step, scene.duration, largest, steps))
+            updated = np.count_nonzero(self.sliding) if self.localised else self.size
+            steps = int(min(max(CALL_WORK / max(updated, 1), 10), self.call_steps))
+            limits = scene.order, step, scene.duration, self.largest_force, steps
+            status = self._advance(arrays.Limits(*limits))
             if status == arrays.GROW:
-                self._extend(*self._extension(self.size))
+                self._double()
             elif status == arrays.UNSTABLE:
                 reason = "slip velocity is not finite or beyond anything the pre-stress can drive"
             elif status != arrays.CONTINUE:

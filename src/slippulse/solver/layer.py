@@ -40,8 +40,7 @@ class LayerScene:
     duration: float
     cells: int = 40  # over the thickness
     nucleation: float = 2.0  # friction is 0 for |x| <= this from t = 0 on
-    bottom: str = "held"  # normal displacement, or "free": no change of normal stress
-    top: str = "held"
+    top: str = "held"  # normal displacement, or "free": no change of normal stress
     coupling: float = 0.0  # friction coefficient mu of a strength - mu s_yy that follows pressure
 
     def __post_init__(self) -> None:
@@ -52,8 +51,7 @@ class LayerScene:
         for name in ("nucleation", "coupling"):
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
-        for name in ("bottom", "top"):
-            check_choice(name, getattr(self, name), ("held", "free"))
+        check_choice("top", self.top, ("held", "free"))
 
     @property
     def slip_scale(self) -> float:
@@ -249,7 +247,6 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elastic, Fields, Fault]:
     """A scene's layer at nodes x before t = 0, for steps of ``ratio`` times the spacing."""
     inside = np.ones(scene.cells + 1)
-    inside[0] = scene.bottom == "held"
     inside[-1] = scene.top == "held"
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[[0, -1]] = 2.0, 0.0

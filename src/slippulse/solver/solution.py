@@ -98,11 +98,6 @@ def numbers_of(lattice: Lattice, status: int) -> dict:
 
 def solution_of(lattice: Lattice, status: int) -> Solution:
     """The solution of a lattice whose kernel ended with a status."""
-    if lattice.localised:
-        lattice.sliding[:] = False
-        n = lattice.segments.count.n
-        for start, end in zip(lattice.segments.starts[:n], lattice.segments.ends[:n], strict=True):
-            lattice.sliding[start:end] = True
     motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
     # After a kernel that stopped early, the samples that it did not take are of a lattice at rest.
     inside = recorder.blocks >= 0
