@@ -89,8 +89,7 @@ class Motion(NamedTuple):
 class Segments(NamedTuple):
     """Contiguous stretches of sliding blocks [start, end), in order; ``count.n`` of them."""
 
-    starts: np.ndarray
-    ends: np.ndarray
+    edges: np.ndarray  # (N,), start, end, start, end, ...
     count: np.record  # type: ignore[assignment]
 
 
@@ -179,8 +178,7 @@ def make_motion(rows: int, size: int) -> Motion:
 
 def make_segments(size: int) -> Segments:
     """No segments, on a lattice of ``size`` blocks."""
-    starts, ends = np.zeros((2, size), dtype=np.int64)
-    return Segments(starts, ends, record(COUNT))
+    return Segments(np.zeros(size, dtype=np.int64), record(COUNT))
 
 
 def make_scratch(size: int, order: int) -> Scratch:

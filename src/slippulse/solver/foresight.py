@@ -112,7 +112,7 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
     lowest = math.inf
     for r in range(segments.count.n):
         for side in range(2):
-            block = segments.ends[r] if side else segments.starts[r] - 1
+            block = segments.edges[2 * r + 1] if side else segments.edges[2 * r] - 1
             if not first <= block < last or (medium.mirror and block == 0):
                 continue
             release, stress = foresee_release(medium, motion, forecast, block, now, h, top)
@@ -127,7 +127,7 @@ def next_event(segments, forecast):
     block, stick, bends = -1, False, False
     earliest = math.inf
     for r in range(segments.count.n):
-        for edge in (segments.starts[r] - 1, segments.ends[r]):
+        for edge in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
             if forecast.release[edge] < earliest:
                 block, earliest = edge, forecast.release[edge]
     for q in range(forecast.sticks.n):
@@ -146,7 +146,7 @@ def simultaneous(segments, forecast, medium, block, latest):
     nearest = 2 if medium.bend is None else 1
     others = 1 if medium.mirror and nearest <= block <= 1 + REACH else 0
     for r in range(segments.count.n):
-        for edge in (segments.starts[r] - 1, segments.ends[r]):
+        for edge in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
             others += 0 < abs(edge - block) <= near and forecast.release[edge] <= latest
     for q in range(forecast.sticks.n):
         distance = abs(forecast.stick_block[q] - block)
@@ -159,7 +159,7 @@ def due_releases(segments, forecast, latest, due):
     """Fill ``due`` with the blocks that are released until ``latest``. Returns their number."""
     count = 0
     for r in range(segments.count.n):
-        for edge in (segments.starts[r] - 1, segments.ends[r]):
+        for edge in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
             joined = count > 0 and due[count - 1] == edge
             if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
                 due[count] = edge

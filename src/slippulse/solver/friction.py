@@ -76,7 +76,7 @@ def power(medium, motion, segments, bend):
     if bend is not None:
         w, falls = motion.w, motion.falls
         for r in range(segments.count.n):
-            for i in blocks(segments.starts[r], segments.ends[r]):
+            for i in blocks(segments.edges[2 * r], segments.edges[2 * r + 1]):
                 weight = 2.0 if medium.mirror and i > 1 else 1.0
                 friction = resistance(motion, bend, i, w[bend.rate, i])
                 total += weight * friction * w[1, i]

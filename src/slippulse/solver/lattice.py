@@ -113,8 +113,7 @@ class Lattice:
         """Call the kernel. Returns the reason why it stopped."""
         edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
         segments = arrays.make_segments(self.size)
-        n = segments.count.n = edges.size // 2
-        segments.starts[:n], segments.ends[:n] = edges[0::2], edges[1::2]
+        segments.edges[: edges.size], segments.count.n = edges, edges.size // 2
         state = (self.medium, self.motion, segments, self.scratch, self.history, self.recorder)
         return taylor.advance(*state, limits)
 

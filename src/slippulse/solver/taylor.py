@@ -16,7 +16,7 @@ from . import foresight, friction, stencils
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .jit import entry, inner, once
-from .segments import release_block, stick_block
+from .segments import contain, flip
 
 # Events closer than this fraction of the largest step are one, as where the fronts of a symmetric
 # scene meet.
@@ -74,7 +74,7 @@ def dissipation(medium, motion, segments):
     square, product = 0.0, 0.0
     rate, change = 0.0, 0.0
     for r in range(segments.count.n):
-        start, end = segments.starts[r], segments.ends[r]
+        start, end = segments.edges[2 * r], segments.edges[2 * r + 1]
         at_axis = medium.mirror and start == 1
         s, p = stencils.stretching(motion.w, start if at_axis else start - 1, end)
         square += s
@@ -119,7 +119,7 @@ def derivatives(medium, motion, segments, alpha, top):
     w, mirror = motion.w, medium.mirror
     leaf, damping = medium.leaf, medium.damping
     for r in range(segments.count.n):
-        a, b = segments.starts[r], segments.ends[r]
+        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
         strain, tau = motion.strain, motion.tau
@@ -151,7 +151,7 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
     """Velocity of all segments at h, sticks and releases until then. Returns False at a blow-up."""
     forecast.sticks.n = 0
     for r in range(segments.count.n):
-        a, b = segments.starts[r], segments.ends[r]
+        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
         suspects = stencils.velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
         if suspects > 0 and not foresight.find_sticks(
             motion, forecast, a, b, suspects, 0.0, h, top
@@ -169,7 +169,7 @@ def end_early(motion, scratch, h, order):
     """Velocities of all blocks that moved, where the step ends early at h."""
     moved, changed = scratch.moved, scratch.changed
     for r in range(moved.count.n):
-        a, b = moved.starts[r], moved.ends[r]
+        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.velocity_after(motion.velocity, motion.w, a, b, h, order)
     for q in range(changed.count.n):
         # A block that was released a moment ago is below 0 only by rounding.
@@ -184,11 +184,12 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     changed, tally = scratch.changed, history.tally
     block, stick = event.block, event.stick
     if stick:
-        stick_block(segments, block)
+        flip(segments, block)
         note_stick(history, block, instant)
     elif not event.bends:
-        release_block(segments, block)
-        release_block(scratch.moved, block)
+        flip(segments, block)
+        if not contain(scratch.moved, block):
+            flip(scratch.moved, block)
         note_release(history, block, instant)
     finite, first, last, speed, lowest, kink, bent = change_course(
         medium, motion, segments, scratch.forecast, scratch.difference, event, h, top
@@ -217,7 +218,7 @@ def take_over(medium, motion, scratch, order, h):
     moved, changed = scratch.moved, scratch.changed
     fastest, first = 0.0, 1 if medium.mirror else 0
     for r in range(moved.count.n):
-        a, b = moved.starts[r], moved.ends[r]
+        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.velocity, a, b, h, order)
         fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
     for q in range(changed.count.n):
@@ -226,7 +227,7 @@ def take_over(medium, motion, scratch, order, h):
             w[2, i] += offset[i]
             offset[i] = 0.0
     for r in range(moved.count.n):
-        a, b = moved.starts[r], moved.ends[r]
+        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
         for i in stencils.blocks(max(a - 1, first), b):
             motion.strain[i] += medium.per_dx * (w[2, i + stencils.ONE] - w[2, i])
     if medium.mirror:
@@ -252,10 +253,10 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
             tally.min_velocity = min(tally.min_velocity, motion.w[1, block])
             for k in range(1, top + 1):
                 motion.w[k, block] = 0.0
-            stick_block(segments, block)
+            flip(segments, block)
             note_stick(history, block, end)
     for q in range(count):
-        release_block(segments, due[q])
+        flip(segments, due[q])
         friction.begin_to_fall(motion, medium.bend, due[q])
         note_release(history, due[q], end)
 
@@ -291,8 +292,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         if t >= limits.end_time:
             return DONE
         # The events of a step may reach beyond the end of the lattice.
-        last = segments.ends[segments.count.n - 1]
-        if last >= size - ROOM or (segments.starts[0] <= ROOM and not medium.mirror):
+        last = segments.edges[2 * segments.count.n - 1]
+        if last >= size - ROOM or (segments.edges[0] <= ROOM and not medium.mirror):
             return GROW
         kinks.k = kinks.ks = kinks.kss = 0.0
         work_kinks.k = work_kinks.ks = work_kinks.kss = 0.0
@@ -301,8 +302,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         end = limits.end_time if h == limits.end_time - t else t + h
         if not foresee(medium, motion, segments, forecast, tally, h, top):
             return UNSTABLE
-        for r in range(segments.count.n):
-            moved.starts[r], moved.ends[r] = segments.starts[r], segments.ends[r]
+        for q in range(2 * segments.count.n):
+            moved.edges[q] = segments.edges[q]
         moved.count.n = segments.count.n
         changed.count.n = 0
 
@@ -330,7 +331,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         tally.pending_step = h
         updates = 0
         for r in range(moved.count.n):
-            updates += moved.ends[r] - moved.starts[r]
+            updates += moved.edges[2 * r + 1] - moved.edges[2 * r]
         fastest = take_over(medium, motion, scratch, order, h)
         if early:
             take_events_at_once(medium, motion, segments, scratch, history, end, h + instantly, top)
