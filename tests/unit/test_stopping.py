@@ -1,6 +1,5 @@
 """A long run shows its progress and stops on a signal; a lock is freed when its holder ends."""
 
-import io
 import signal
 import subprocess
 import sys
@@ -46,13 +45,12 @@ def test_an_interrupt_stops_a_run_within_a_second(kind):
 
 
 def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(capsys):
-    out = io.StringIO()
-    draw = bar(out)
+    draw = bar()
     time.sleep(0.25)
     draw(0.5)
     time.sleep(0.25)
     draw(1.0)
-    shown = out.getvalue()
+    shown = capsys.readouterr().err
     assert " 50%" in shown and " left" in shown and shown.count("\n") == 1
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65)
     sp.simulate(scene, progress=True)

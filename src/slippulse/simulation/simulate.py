@@ -1,6 +1,5 @@
 """Simulation of one scene, or of a sweep of many, each by the scheme that it names."""
 
-import sys
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -166,13 +165,12 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
     _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
 
 
-def bar(stream=None) -> Callable[[float], None]:
+def bar() -> Callable[[float], None]:
     """A function of the fraction done that draws a bar with the time left, on standard error."""
     from tqdm import tqdm
 
     look = "[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left"
-    file = stream or sys.stderr
-    drawn = tqdm(total=1.0, delay=0.2, mininterval=0.2, file=file, bar_format=look)
+    drawn = tqdm(total=1.0, delay=0.2, mininterval=0.2, bar_format=look)
 
     def draw(done: float) -> None:
         drawn.update(done - drawn.n)
