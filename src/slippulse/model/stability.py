@@ -16,7 +16,7 @@ MARGIN = 0.9
 # less than 1e-3 (levels 0.2 to 0.8, beta/dx up to 100), and strong damping is what asks for it.
 STEP_ERROR = 1e-2
 # The bound is sought in rounds; each divides the interval that is left into this many parts.
-ROUNDS, PARTS = 4, 32
+ROUNDS, PARTS = 5, 32
 
 
 def largest_step(
@@ -86,16 +86,13 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if smallest == 0.0:
         return 0.0
-    # The first unstable step counts. No order is stable at the last one.
-    steps = np.geomspace(smallest, 8.0, 160)
-    first = int(np.argmax(unstable(steps)))
-    lower, upper = steps[first - 1] if first else 0.0, steps[first]
+    # No order is stable at the last step.
+    steps = np.append(0.0, np.geomspace(smallest, 8.0, 160))
     for _ in range(ROUNDS):
-        parts = np.linspace(lower, upper, PARTS + 1)
         # The last step is known to be unstable, even where rounding hides it now.
-        first = int(np.argmax(np.append(unstable(parts[1:-1]), True)))
-        lower, upper = parts[first], parts[first + 1]
-    return float(lower)
+        first = int(np.argmax(np.append(unstable(steps[1:-1]), True)))
+        steps = np.linspace(steps[first], steps[first + 1], PARTS + 1)
+    return float(steps[0])
 
 
 def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
