@@ -34,7 +34,7 @@ def covered(run: Mapping, fraction: float) -> set[str]:
     """Names of the numbers of a measured row that a promise covers; fraction: see `transition`."""
     if run["run_flags"]:
         return set()
-    fast = fast_fronts(run)
+    fast = fast_sides(run)
     names = {name for name, sides in COVERED[run["boundary"]].items() if fast.issuperset(sides)}
     if run.get("pulse_state") != "steady":
         names.difference_update(PULSE)
@@ -48,7 +48,7 @@ def covered(run: Mapping, fraction: float) -> set[str]:
     return {name for name in names if math.isfinite(run.get(name, math.nan))}
 
 
-def fast_fronts(run: Mapping) -> set[str]:
+def fast_sides(run: Mapping) -> set[str]:
     """Sides whose front has crossed no less than LOWEST_PRESTRESS; not if its path is unknown."""
     sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):
