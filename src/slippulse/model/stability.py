@@ -39,10 +39,7 @@ def largest_step(
         # sqrt(dt_c^2 + c^2) - c cancels at large damping; this form of it does not.
         damping = damping_ratio + 0.25 * drag
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
-    parameters = damping_ratio, gamma_dx2, drag
-    if not all(map(math.isfinite, parameters)):
-        return 0.0
-    rounded = [float(f"{value:.6g}") for value in parameters]
+    rounded = [float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)]
     return _taylor_bound(order, *rounded)
 
 

@@ -2,8 +2,6 @@
 
 from collections.abc import Iterable
 
-import numba
-
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from .fixed_step import LATTICES, solve_by_scheme
@@ -11,9 +9,7 @@ from .layer import LayerScene, simulate_layer
 
 
 def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
-    """Compile the kernels of schemes, and of the layer, unless the compiler is off."""
-    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
-        return
+    """Compile the kernels of schemes, and of the layer."""
     prestress = Prestress(0.5, 0.5)
     for scheme in schemes:
         if scheme == "layer":

@@ -212,7 +212,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 
 
 @once
-def take_over(medium, motion, scratch, order, h):
+def take_over(medium, motion, scratch, tally, order, h):
     """Advance slip, velocity and strain of all that moved. Returns the largest of some speeds."""
     w, offset = motion.w, motion.offset
     moved, changed = scratch.moved, scratch.changed
@@ -220,6 +220,7 @@ def take_over(medium, motion, scratch, order, h):
     for r in range(moved.count.n):
         a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.velocity, a, b, h, order)
+        tally.block_updates += b - a
         fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
     for q in range(changed.count.n):
         for i in range(changed.first[q], changed.last[q]):
@@ -329,13 +330,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
             tally.viscous_loss += loss_of_step(h, rate, change, kinks)
         tally.friction_loss += loss_of_step(h, power, growth, work_kinks)
         tally.pending_step = h
-        updates = 0
-        for r in range(moved.count.n):
-            updates += moved.edges[2 * r + 1] - moved.edges[2 * r]
-        fastest = take_over(medium, motion, scratch, order, h)
+        fastest = take_over(medium, motion, scratch, tally, order, h)
         if early:
             take_events_at_once(medium, motion, segments, scratch, history, end, h + instantly, top)
-        tally.block_updates += updates
         tally.steps += 1
         tally.time = end
         if not fastest <= BLOW_UP * (1.0 + limits.largest_force * end):
