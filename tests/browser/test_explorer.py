@@ -26,14 +26,11 @@ def press(page, where: str, key: str) -> None:
 def random_scene(random: np.random.Generator, k: int) -> dict:
     """Half of the scenes are symmetric, half have either release; a fifth has no damping."""
     left, right = random.uniform(0.05, 0.95, 2).tolist()
-    ratio = log_uniform(random, 2e-3, explorer_law.LARGEST_RATIO) if k % 5 else 0
-    gamma, width = log_uniform(random, 0.02, 2.0), log_uniform(random, 0.2, 5.0)
+    least, most = np.log([2e-3, 0.02, 0.2]), np.log([explorer_law.LARGEST_RATIO, 2.0, 5.0])
+    ratio, gamma, width = np.exp(random.uniform(least, most)).tolist()
+    ratio = ratio if k % 5 else 0
     scene = dict(left=left, right=left if k % 2 else right, gamma=gamma, width=width, ratio=ratio)
     return scene | {"release": "total" if k % 4 < 2 else "elastic"}
-
-
-def log_uniform(random: np.random.Generator, smallest: float, largest: float) -> float:
-    return float(np.exp(random.uniform(np.log(smallest), np.log(largest))))
 
 
 def test_its_numbers_are_those_of_the_library(page):

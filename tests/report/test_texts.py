@@ -162,7 +162,7 @@ def test_every_erratum_is_shown_and_the_bibliography_is_what_is_cited(manuscript
 
 @pytest.mark.parametrize("reader", [read_captions, read_errata])
 def test_a_text_that_is_not_whole_is_refused(reader, tmp_path):
-    keys = texts.PARTS if reader is read_captions else texts.ERRATUM
+    keys = Caption._fields if reader is read_captions else texts.ERRATUM
     complete = dict.fromkeys(keys, "text")
     wrong = {f"{key}: missing": complete | {key: " "} for key in keys}
     wrong["colour: unknown key"] = complete | {"colour": "red"}

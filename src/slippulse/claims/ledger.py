@@ -8,8 +8,6 @@ from ..data.numerals import MISSING, number, percent, rounded, setting, with_unc
 from ..data.provenance import changes
 from .rules import NOT_TESTABLE, REPRODUCED, VERDICTS
 
-# A tolerance below this is for rounding alone.
-SLIGHT = 1e-6
 # A claim says at which tolerances its verdict changes, up to this factor from its own.
 BAND = 1.5
 
@@ -102,8 +100,8 @@ class Counts(Entry):
 
     def _compared(self) -> str:
         text = self.asked or "no run may contradict"
-        percentage = setting(100.0 * self.tolerance)
-        return f"{text} (tolerance {percentage} %)" if self.tolerance > SLIGHT else text
+        tolerance = setting(100.0 * self.tolerance)
+        return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
     def _off(self) -> str:
         held, _, rest = self.measured_text().partition(", ")

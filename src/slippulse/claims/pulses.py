@@ -223,9 +223,8 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         steady = steady.reindex(pd.MultiIndex.from_frame(table[["beyond", *keys[1:]]]))
         deviations.append((table[["pulse_slip"]].to_numpy() / steady - 1.0).abs())
     settled = [table["pulse_slip"] <= evidence.tolerance(id) for table in deviations[:2]]
-    further = {
-        words: float(np.nanmax(deviations[0][slip], initial=0.0)) for words, slip in slips.items()
-    }
+    largest = deviations[0].max().fillna(0.0)
+    further = {words: float(largest[slip]) for words, slip in slips.items()}
     return Qualitative(decided=agreeing(*settled), further=further)
 
 

@@ -13,7 +13,7 @@ from PIL import Image
 
 from ..claims.ledger import Ledger
 from ..claims.reading import coverage, read_text
-from ..data.numerals import FILTERS, percent
+from ..data.numerals import percent
 from ..data.prose import fill
 from ..data.provenance import changes
 from .tables import alteration_note, errata, verdicts
@@ -108,7 +108,6 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     # A number is a link to its claim or finding, and the tables behind it.
     cite = "[{1}](../claims.html#{0})".format
     names: dict[str, object] = {
-        **FILTERS,
         "config": config,
         "citation": inputs.citation,
         "tables": inputs.tables,

@@ -41,15 +41,12 @@ class Caption(NamedTuple):
     caption: str
 
 
-PARTS = Caption._fields
-
-
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
     """Captions by name of the figure, their expressions evaluated by ``fill``; or ValueError."""
     captions = {}
     for name, parts in read_text(path).items():
-        _check_keys(f"{path}: {name}", parts, PARTS)
-        filled = {key: " ".join(fill(parts[key]).split()) for key in PARTS}
+        _check_keys(f"{path}: {name}", parts, Caption._fields)
+        filled = {key: " ".join(fill(text).split()) for key, text in parts.items()}
         captions[name] = Caption(**filled)
     return captions
 
