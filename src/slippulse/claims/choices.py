@@ -64,8 +64,8 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
     return out
 
 
-def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
-    """Choices that decide, changed alone, whether a claim holds, each with its smallest change."""
+def decisive(combinations: Iterable[Combination]) -> list[Change]:
+    """The smallest change of each choice that decides, changed alone, whether a claim holds."""
     deciding: dict[str, Change] = {}
     changed = changes(combinations)
     for change in sorted(changed, key=attrgetter("size")):
@@ -73,11 +73,10 @@ def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
             deciding.setdefault(change.name, change)
     # Changes of the exact solution are above those of lattices.
     weight = attrgetter("exact", "size")
-    largest = {change.name: weight(change) for change in sorted(changed, key=weight)}
-    ranked = sorted(largest, key=largest.__getitem__)[::-1]
-    out: dict[str, Change | None] = {name: deciding[name] for name in ranked if name in deciding}
+    largest = {change.name: change for change in sorted(changed, key=weight)}
+    ranked = sorted(largest.values(), key=weight)[::-1]
     # If none decides, the choice that moves the deviation most stands alone.
-    return out or dict.fromkeys(ranked[:1])
+    return [deciding[one.name] for one in ranked if one.name in deciding] or ranked[:1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,11 +103,11 @@ class OverChoices(Claim):
             most, least = self.size(max(holding)), self.size(min(failing))
             why += f" It holds at {len(holding)} of {len(rows)} combinations, with deviations up "
             why += f"to {most}, and fails with {least} or more."
-            causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
+            causes = "; on ".join(map(self.cause, decided))
             why += f" It depends on {causes}." if causes else ""
             why = f"{why}{self.at_last_release()}".strip()
         out: dict[str, Any] = {"verdict": verdict, "choices": rows, "why": why}
-        out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
+        out |= {"choice": decided[0].name if decided else "", "combinations": len(rows)}
         return self.shown.written() | out | {"holds_at": len(holding)}
 
     def doubt(self) -> str:
@@ -134,18 +133,18 @@ class OverChoices(Claim):
         text = f" With the last release, {len(sizes)} of the combinations, it is off by {ends}: "
         return f"{text}that is the lattice's, by its spacing and damping."
 
-    def cause(self, name: str, change: Change | None) -> str:
+    def cause(self, change: Change) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""
         sides = []
-        for one in (change.before, change.after) if change else ():
+        for one in (change.before, change.after):
             size = self.size(one.result["deviation"], 3)
             if isinstance(self.shown, Equation):
                 size = f"exponent off by {size}"
             elif isinstance(self.shown, Qualitative):
                 size += " of the runs against"
             verb = "holds" if one.result["holds"] else "fails"
-            sides.append(f"it {verb} at {named(one.choice[name])} ({size})")
-        return f"{NAMES[name]}: {' and '.join(sides)}"
+            sides.append(f"it {verb} at {named(one.choice[change.name])} ({size})")
+        return f"{NAMES[change.name]}: {' and '.join(sides)}"
 
 
 def over_choices(
