@@ -104,23 +104,18 @@ class Evidence:
         kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
         return tables if kept.all() else [table[kept] for table in tables]
 
-    def assign(
-        self, simulation: str, columns: Callable[[pd.DataFrame], Mapping[str, pd.Series]]
-    ) -> None:
+    def assign(self, simulation: str, columns: Callable[[pd.DataFrame], dict]) -> None:
         """Add columns that are computed from the others on each lattice."""
         tables = self._lattices[simulation]
         self._lattices[simulation] = [table.assign(**columns(table)) for table in tables]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
         """Runs on three lattices, of which a condition is true on the finest."""
-        lattices = []
-        for lattice in range(3):
-            parts = []
-            for name in simulations:
-                tables = self._lattices[name]
-                parts.append(tables[lattice][evaluated(tables[0], where)])
-            lattices.append(pd.concat(parts) if len(parts) > 1 else parts[0])
-        return lattices
+        chosen = []
+        for name in simulations:
+            rows = evaluated(self._lattices[name][0], where)
+            chosen.append([table[rows] for table in self._lattices[name]])
+        return [pd.concat(parts) for parts in zip(*chosen, strict=True)]
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
         """Runs on the finest lattice, with extrapolated_QUANTITY and uncertainty_QUANTITY."""
