@@ -24,12 +24,24 @@ from slippulse.model.measured_columns import RECORD_FOR
 YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
 NAN = float("nan")
 KNOWN = [1e-4, 1e-4]
-EQUATION, OVER_CHOICES = rules.equation, rules.verdict_over_choices
+OVER_CHOICES = rules.verdict_over_choices
 
 answers = lambda held, failed, undecided: [True] * held + [False] * failed + [None] * undecided
 every = lambda *counts, **fields: Qualitative(decided=answers(*counts), **fields).verdict()
 fit = lambda p, degrees: {"chi_square": chdtri(degrees, p), "degrees_of_freedom": degrees}
 reading = lambda p, degrees, tolerance: Reading(tolerance=tolerance, **fit(p, degrees)).verdict()
+
+
+def equation(
+    deviations: list[float], uncertainties: list[float], tolerance: float
+) -> tuple[str, float | None]:
+    """The verdict on an equation that predicts 1, and the value that decides."""
+    measured = 1.0 + np.array(deviations)
+    numbers = {"predicted": np.ones_like(measured), "uncertainty": np.array(uncertainties)}
+    fields = Equation(tolerance=tolerance, measured=measured, **numbers).fields()
+    return fields["verdict"], fields.get("measured")
+
+
 # A rule, its arguments (a tolerance where it takes one), and the verdict.
 CASES = {
     "number: well within": (rules.within, (0.001, 0.0001, 0.01), YES),
@@ -41,11 +53,11 @@ CASES = {
     "number: badly known, outside": (rules.within, (0.025, 0.02, 0.01), OPEN),
     "number: no deviation": (rules.within, (NAN, 0.001, 0.01), NONE),
     "number: no uncertainty": (rules.within, (0.001, NAN, 0.01), NONE),
-    "equation: the farthest off decides": (EQUATION, ([0.02, 0.03], KNOWN, 0.01), (NO, 1)),
-    "equation: a failure is not hidden": (EQUATION, ([0.001, 0.02], [0.5, 1e-4], 0.01), (NO, 1)),
-    "equation: badly known": (EQUATION, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 0)),
-    "equation: one without a number": (EQUATION, ([NAN, 0.002], KNOWN, 0.01), (YES, 1)),
-    "equation: no number": (EQUATION, ([NAN], [1e-4], 0.01), (NONE, None)),
+    "equation: the farthest off decides": (equation, ([0.02, 0.03], KNOWN, 0.01), (NO, 1.03)),
+    "equation: a failure is not hidden": (equation, ([0.001, 0.02], [0.5, 1e-4], 0.01), (NO, 1.02)),
+    "equation: badly known": (equation, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 1.001)),
+    "equation: one without a number": (equation, ([NAN, 0.002], KNOWN, 0.01), (YES, 1.002)),
+    "equation: no number": (equation, ([NAN], [1e-4], 0.01), (NONE, None)),
     "choices: all hold": (OVER_CHOICES, ([YES, YES, YES],), YES),
     "choices: a caveat": (OVER_CHOICES, ([YES, CAVEAT, NONE],), CAVEAT),
     "choices: one open": (OVER_CHOICES, ([OPEN, YES],), OPEN),

@@ -159,9 +159,8 @@ class Evidence:
             decided.append(answer if told and answer is not None else by_theory)
         return decided
 
-    def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain | None:
+    def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain:
         """Median and largest deviation of runs at spacing 0 from the exact theory."""
         table = self.finest(simulation)
         deviation = (ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}") - 1.0).abs()
-        deviation = deviation[np.isfinite(deviation)]
-        return (float(deviation.median()), float(deviation.max())) if deviation.size else None
+        return float(deviation.median()), float(deviation.max())

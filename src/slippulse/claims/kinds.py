@@ -124,17 +124,23 @@ class Equation(Claim):
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
         return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
 
+    def verdicts(self, tolerance: float) -> list[str]:
+        """The verdict on each run."""
+        return [rules.within(*pair, tolerance) for pair in zip(*self.relative(), strict=True)]
+
     def alone(self, tolerance: float) -> str:
-        return rules.equation(*self.relative(), tolerance)[0]
+        return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
-        """The numbers of the run that decides, and how many runs have numbers."""
+        """The numbers of the run that decides, the farthest off, and how many runs have numbers."""
         deviation, uncertainty = self.relative()
         usable = int(np.isfinite(deviation + uncertainty).sum())
         out: dict[str, Any] = {"verdict": self.verdict(), "runs": usable}
         out["left_out"] = len(deviation) - usable
-        run = rules.equation(deviation, uncertainty, self.tolerance)[1]
-        if run is not None:
+        if usable:
+            worst, verdicts = self.alone(self.tolerance), self.verdicts(self.tolerance)
+            deciding = [run for run, verdict in enumerate(verdicts) if verdict == worst]
+            run = max(deciding, key=deviation.__getitem__)
             out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
             out |= {"uncertainty": float(self.uncertainty[run]), "deviation": float(deviation[run])}
         return out | dict(self.counts)
@@ -150,7 +156,7 @@ class Approximate(Claim):
     median: Uncertain
     ratio: Uncertain = (NAN, NAN)
     # The median and largest deviation of runs at spacing 0 from the exact theory.
-    from_exact: Uncertain | None = None
+    from_exact: Uncertain = (NAN, NAN)
 
     def alone(self, tolerance: float) -> str:
         return rules.within(*self.median, tolerance)
@@ -160,8 +166,7 @@ class Approximate(Claim):
         usable = self.deviations[np.isfinite(self.deviations)]
         out: dict[str, Any] = {"runs": usable.size, "left_out": self.deviations.size - usable.size}
         out["verdict"] = self.verdict()
-        if self.from_exact is not None:
-            out["exact_median"], out["exact_largest"] = self.from_exact
+        out["exact_median"], out["exact_largest"] = self.from_exact
         if usable.size:
             out["measured"], out["uncertainty"] = self.ratio
             out |= {"predicted": 1.0, "deviation": self.median[0]}

@@ -80,7 +80,7 @@ class Entry(SimpleNamespace):
 
     def _spread(self) -> list[str]:
         """The runs behind a number: how many, their spread, and how many are left out."""
-        parts = [f"{self.runs} runs"] if self.runs else []
+        parts = [f"{self.runs} runs"] if self.runs and self.kind != "qualitative" else []
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
             parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
@@ -108,9 +108,6 @@ class Counts(Entry):
         if rest:
             return f"It holds in {held} cases, with {rest}."
         return "It needs a condition that the paper does not state."
-
-    def _spread(self) -> list[str]:
-        return []
 
 
 class ReadOff(Entry):

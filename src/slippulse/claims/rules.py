@@ -41,16 +41,6 @@ def worst_tested(verdicts: Iterable[str]) -> str:
     return worst(verdict for verdict in verdicts if verdict != NOT_TESTABLE)
 
 
-def equation(
-    deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
-) -> tuple[str, int | None]:
-    """Verdict on an equation, and the run farthest off that has it; None if none has numbers."""
-    verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
-    verdict = worst_tested(verdicts)
-    deciding = [run for run, one in enumerate(verdicts) if one == verdict != NOT_TESTABLE]
-    return verdict, max(deciding, key=deviations.__getitem__, default=None)
-
-
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
     """Verdict on a claim from those at every admissible combination of open choices."""
     held = {HOLDS.get(verdict) for verdict in verdicts}

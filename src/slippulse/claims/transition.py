@@ -138,7 +138,7 @@ def judged(runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]) -
 
 def estimated(
     evidence: Evidence, id: str, boundary: str, quantity: str
-) -> tuple[list[Combination], Uncertain | None, dict[str, float]]:
+) -> tuple[list[Combination], Uncertain, dict[str, float]]:
     """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
     columns = quantity, f"estimated_{quantity}"

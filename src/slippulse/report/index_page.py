@@ -20,11 +20,8 @@ from .texts import answer, judged_lines, parameters, read_captions, read_errata
 SCALE = 0.4
 
 
-def index_page(
-    results: str | Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]
-) -> str:
+def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]) -> str:
     """The page, by paths of texts, figures by heading and titles of scenes; links only to files."""
-    results = Path(results)
     facts = _json(results / "provenance.json")
     ledger = Ledger(_json(results / "claims.json"), _json(results / "findings.json"))
     config = facts["config"]

@@ -147,9 +147,8 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     return names
 
 
-def execute(source: str | Path, inputs: Inputs) -> str:
+def execute(source: Path, inputs: Inputs) -> str:
     """The filled prose of a file, and what its code shows; ValueError names a cell that fails."""
-    source = Path(source)
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)
     for cell in jupytext.read(source).cells:
