@@ -13,9 +13,9 @@ from report.conftest import CLAIM, FRONT, read
 from slippulse.claims.kinds import Qualitative
 from slippulse.claims.paper import written
 from slippulse.data.provenance import provenance
+from slippulse.report import html
 from slippulse.report.claims_page import claims_page
 from slippulse.report.index_page import index_page
-from slippulse.report.scene_page import scenes_page
 from slippulse.report.texts import ERRATUM
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
@@ -127,7 +127,7 @@ def check_accessible(text: str) -> Outline:
 
 
 def test_pages_can_be_read_without_eyes_or_mouse(page):
-    scenes = check_accessible(scenes_page({"one": "A <scene>", "two": "Another"}))
+    scenes = check_accessible(html.page("scenes.html", scenes={"one": "A <scene>", "two": "More"}))
     assert [image["src"] for image in scenes.all("img")] == ["one.png", "two.png"]
     outline = check_accessible(page)
     # Each figure is there once, with its size; the first is above all links but the hidden one.

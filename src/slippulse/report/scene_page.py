@@ -1,4 +1,4 @@
-"""The page of one scene, with its figure inside, and the list of all scenes."""
+"""The page of one scene, with its figure inside."""
 
 import base64
 import math
@@ -42,11 +42,6 @@ def scene_page(
         numbers=[_number(row) for row in numbers.itertuples()],
         parameters={key.replace("_", " "): value for key, value in shown.items()},
     )
-
-
-def scenes_page(scenes: Mapping[str, str]) -> str:
-    """The list of scenes, titles by name, in the folder of their pages."""
-    return page("scenes.html", scenes=scenes)
 
 
 def _number(row) -> dict[str, str]:

@@ -1,11 +1,11 @@
 """Write the list of scenes."""
 
 from ..data.files import write_text
-from ..report.scene_page import scenes_page
+from ..report.html import page
 
 FILES = ("report/templates/scenes.html",)
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: html. Settings: scenes (titles by name)."""
-    write_text(scenes_page(settings["scenes"]), outputs["html"])
+    write_text(page("scenes.html", scenes=settings["scenes"]), outputs["html"])
