@@ -217,7 +217,8 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
     for change in altered:
         keys.append(pair(change["key"], _literal(change["here"]), _literal(change["shipped"])))
     for change in ledger.differences(verdicts):
-        judged.append(pair(change["key"], change["here"], change["shipped"] or "absent"))
+        here, shipped = change["here"] or "absent", change["shipped"] or "absent"
+        judged.append(pair(change["key"], here, shipped))
     lines = []
     if keys:
         differs = f"This run differs from the shipped configuration in {'; '.join(keys)}."
