@@ -60,17 +60,11 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     """Tables of the report, with every number that its text asks for."""
-
-    def row(variable: str) -> dict[str, float]:
-        names = re.findall(rf"\b{variable}\.(\w+)", texts)
-        return {name: 1.0 + 0.01 * i for i, name in enumerate(names)}
-
+    row = lambda variable: dict.fromkeys(re.findall(rf"\b{variable}\.(\w+)", texts), 1.01)
     crack = row("crack")
-    names = ("transition_time", "transition_length")
-    transition = dict.fromkeys((*names, *(f"exact_{name}" for name in names)), 1.0)
-    quoted = [
-        {"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()
-    ]
+    transition = {"transition_time": 1.0, "exact_transition_time": 1.0}
+    transition |= {"transition_length": 1.0, "exact_transition_length": 1.0}
+    quoted = [{"quantity": name, "x": np.nan, "value": 1.01} for name in row("exact")]
     for name in ("release_time", "stick_time", "final_slip"):
         quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
     edge = {"family": "level", "value": "tau_0 = 0.999", "quantity": "front speed"}
