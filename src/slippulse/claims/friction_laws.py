@@ -8,8 +8,6 @@ from .evidence import Evidence, agreeing
 from .kinds import Qualitative
 from .pulses import TWO_WAY
 
-# A pulse a block wide has this many that slide at once.
-ABOUT_ONE = 1.0
 # The strongest rate dependences with pulses in which no block would slide back, over the critical
 # one.
 STRONGEST = (-0.5, 0.9)
@@ -23,7 +21,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
     one_way = spike[spike["regime"].str.startswith("pulse, one-way")]["sliding_at_once"]
     fewest, most = two_way.min(), two_way.max()
-    wide = len(two_way) > 0 and fewest > ABOUT_ONE
+    # In a pulse a block wide one block slides at once.
+    wide = bool(fewest > 1.0)
     why = f"There are pulses in {len(two_way)} of {len(chain)} runs with and {len(one_way)} of "
     why += f"{len(spike)} runs without leaf springs, the others arrest; they are {number(fewest)} "
     why += f"to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
@@ -76,8 +75,7 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     speeds = laws["exact_speed"].dropna()
     undamped = 1.0 / np.sqrt(1.0 - 0.5**2)
     why = "The runs are of friction linear in slip rate, which leaves the front speed as it is."
-    if len(speeds):
-        why += rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} "
-        why += f"to {number(speeds.max())}, where the formula has {number(undamped, 4)} "
-        why += "(figure study_friction_laws)."
+    why += rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} to "
+    why += f"{number(speeds.max())}, where the formula has {number(undamped, 4)} "
+    why += "(figure study_friction_laws)."
     return Qualitative(decided=held, condition=True, further=further, why=why)
