@@ -20,8 +20,8 @@ from slippulse.simulation.simulate import simulate
 from slippulse.solver.fixed_step import FixedStepLattice
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.solution import solve_on_lattice
+from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed as exact_speed
-from slippulse.theory.pulse import steady_pulse
 
 from . import stencils
 
@@ -73,7 +73,7 @@ def kernel() -> dict:
     step = {"max_step": 0.5, "order": 4}
     profile = Prestress(LEVEL, LEVEL, 8.0)
     crack = Scene("displacement", profile, CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **step)
-    width = steady_pulse(LEVEL, GAMMA, 0.0, exact_speed(LEVEL, RATIO)).width
+    width = pulse_at_speed(LEVEL, GAMMA, 0.0, exact_speed(LEVEL, RATIO)).width
     pulse = _scene(PULSE[0], width / 200.0, step)
     cases = (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1]))
     results = {}

@@ -1,10 +1,10 @@
 """No answer of the exact theory hangs on last bits, of its inputs or at the end of its duration."""
 
-from dataclasses import replace
 from itertools import chain
 
 import numpy as np
 import pytest
+from nudges import nudged
 from tolerances import END, NUDGED, NUDGED_DOUBLE
 
 from slippulse.model.prestress import Prestress
@@ -53,24 +53,6 @@ def bump(rng: np.random.Generator) -> tuple[float, float, float]:
     width = rng.uniform(0.3, 1.5)
     # A bump that is felt at x = 0 raises the peak.
     return centre, amplitude if abs(centre) > 9.0 * width else abs(amplitude), width
-
-
-def nudged(value, rng: np.random.Generator):
-    """Numbers moved by 1 to 4 units in the last place, in tuples, arrays, a pre-stress; 0 stays."""
-    if isinstance(value, Prestress):
-        names = ("left", "right", "width", "steps", "bumps")
-        moved = {name: nudged(getattr(value, name), rng) for name in names}
-        if value.symmetric:
-            moved |= {"right": moved["left"], "steps": value.steps, "bumps": value.bumps}
-        return replace(value, **moved)
-    if isinstance(value, tuple):
-        return tuple(nudged(part, rng) for part in value)
-    if not isinstance(value, float | np.ndarray):
-        return value
-    value = np.asarray(value)
-    units = rng.integers(1, 5, value.shape) * rng.choice([-1.0, 1.0], value.shape)
-    moved = np.where(value == 0.0, 0.0, value + units * np.spacing(value))
-    return moved if moved.ndim else float(moved)
 
 
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.theory import front_speed, rate_pulse, steady_pulse, weakening_pulse
+from slippulse.theory import rate_pulse, steady_pulse, weakening_pulse
 from slippulse.theory.friction_laws import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
@@ -66,7 +66,7 @@ def test_slip_does_not_depend_on_damping_and_releases_the_fracture_energy():
 @pytest.mark.parametrize("alpha", [-0.3, 0.0, 0.5])
 def test_a_law_linear_in_slip_rate_gives_the_pulse_in_closed_form(alpha):
     pulse = rate_pulse(0.5, GAMMA, 0.0, sp.friction("linear_rate", alpha=alpha))
-    exact = steady_pulse(0.5, GAMMA, 0.0, front_speed(0.5, 0.0), alpha)
+    exact = steady_pulse(0.5, GAMMA, damping_ratio=0.0, rate_strengthening=alpha)
     for name in ("speed", "width", "slip", "peak_velocity"):
         assert getattr(pulse, name) == pytest.approx(getattr(exact, name), rel=1e-7), name
     assert pulse.sticks

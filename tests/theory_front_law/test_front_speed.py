@@ -2,6 +2,7 @@
 
 import time
 import tracemalloc
+from itertools import product
 
 import numpy as np
 import pytest
@@ -146,20 +147,22 @@ def late_front_speed(scene: sp.Scene) -> float:
     return float(np.polyfit(t[late], x[late], 1)[0])
 
 
-# Level, gamma, dx, damping ratio and release.
+# Level, gamma, dx, damping ratio, release and rate strengthening.
 SPRINGS = [
-    *((0.6, 0.05, 1.0, *rule) for rule in ((0.0, "total"), (0.1, "total"), (0.1, "elastic"))),
-    *((0.6, 0.3, 1.0, *rule) for rule in ((0.0, "total"), (0.1, "elastic"))),
-    *((0.8, 0.5, 1.0, 0.2, "total"), (0.9, 1.0, 1.0, 0.3, "elastic")),
-    *((0.5, 0.5, 1.0, 3.0, "total"), (0.5, 0.65, 0.2, 0.3, "total")),
-    (0.4, 1.0, 0.1, 1.0, "elastic"),
+    *((0.6, 0.05, 1.0, *rule, 0.0) for rule in ((0.0, "total"), (0.1, "total"), (0.1, "elastic"))),
+    *((0.6, 0.3, 1.0, *rule, 0.0) for rule in ((0.0, "total"), (0.1, "elastic"))),
+    *((0.8, 0.5, 1.0, 0.2, "total", 0.0), (0.9, 1.0, 1.0, 0.3, "elastic", 0.0)),
+    *((0.5, 0.5, 1.0, 3.0, "total", 0.0), (0.5, 0.65, 0.2, 0.3, "total", 0.0)),
+    (0.4, 1.0, 0.1, 1.0, "elastic", 0.0),
+    *product([0.5], [0.65], [0.4], [0.1], ["total", "elastic"], [0.9, -0.6]),
 ]
 
 
-@pytest.mark.parametrize(("tau", "gamma", "dx", "ratio", "release"), SPRINGS)
-def test_pulses_of_lattices(tau, gamma, dx, ratio, release):
-    law = lattice_front_speed(tau, gamma, dx, ratio, release)
-    how = {"order": 8, "max_step": 0.15, "resolved_blocks": 1, "release": release}
+@pytest.mark.parametrize(("tau", "gamma", "dx", "ratio", "release", "alpha"), SPRINGS)
+def test_pulses_of_lattices(tau, gamma, dx, ratio, release, alpha):
+    law = lattice_front_speed(tau, gamma, dx, ratio, release, alpha)
+    friction = {"release": release, "friction": sp.friction("linear_rate", alpha=alpha)}
+    how = {"order": 8, "max_step": 0.15, "resolved_blocks": 1} | friction
     layer = "displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, gamma, ratio * dx
     scene = sp.Scene(*layer, **how)
     assert late_front_speed(scene) == pytest.approx(law, rel=LATTICE)

@@ -29,7 +29,7 @@ def test_first_sticks_are_those_derived_independently(alpha, time):
 
 
 def test_the_steady_pulse_and_its_end_are_those_derived_independently():
-    pulse = theory.steady_pulse(LEVEL, GAMMA, 0.0, SPEED, 0.4)
+    pulse = theory.steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO, rate_strengthening=0.4)
     assert pulse.slip == pytest.approx(0.94727, abs=5e-6)
     assert pulse.width / pulse.speed == pytest.approx(2.5255, abs=5e-5)
     assert pytest.approx(0.9473, abs=5e-5) == CRITICAL

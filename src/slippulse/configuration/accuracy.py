@@ -18,8 +18,8 @@ from ..model.prestress import Prestress
 from ..model.release import RELEASES
 from ..model.scene import Scene
 from ..model.stability import chosen_step
+from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import steady_pulse
 from .problems import ConfigError
 from .runs import entries
 
@@ -173,7 +173,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
             continue
         speed = cached_front_speed(level, demand.damping_ratio, demand.release)
         # In the limit dx -> 0 damping acts through the speed alone.
-        width = steady_pulse(level, demand.gamma, 0.0, speed).width
+        width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
         layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
         speed_error = math.sqrt(demand.error / (SPEED + SPEED_LAYER * layer * speed))
         spacings += [width / BLOCKS, width * speed_error]

@@ -7,8 +7,8 @@ import numpy as np
 
 from ..model.cost import Bound, bound_of
 from ..model.scene import Scene
+from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import steady_pulse
 from .accuracy import promised
 from .expand import expand
 from .resolve import accuracy_of, all_simulations, corners, resolve
@@ -86,7 +86,7 @@ def _pulse_blocks(scene: Scene) -> float:
         return math.inf
     try:
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
-        return steady_pulse(level, scene.gamma, scene.beta, speed).width / scene.dx
+        return pulse_at_speed(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
         return math.inf
 

@@ -13,11 +13,11 @@ from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
 from ..model.prestress import prestress_from
 from ..model.recorded_law import law_of
-from ..theory.pulse import (
+from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
     paper_transition_stress,
-    steady_pulse,
+    pulse_at_speed,
 )
 
 # A pulse is unsteady if its width differs from that of the steady pulse at the measured speed by
@@ -68,7 +68,7 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     if pulse.speed <= 1.0:
         return "unsteady"
     beta, dx = run.attrs["beta"], run.attrs["dx"]
-    steady = steady_pulse(tau, run.attrs["gamma"], beta, pulse.speed)
+    steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
     layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer > THICKEST_LAYER * steady.width:
         return "thick_front"

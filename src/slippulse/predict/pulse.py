@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.run import Run
-from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
+from ..theory.closed_pulse import SteadyPulse, paper_pulse, pulse_at_speed
 from .front import exact_speeds
 from .numbers import SIDES, known, level
 
@@ -39,7 +39,7 @@ def _pulses(run: Run, left_speed: float, right_speed: float) -> dict[str, float]
 def _exact(run: Run, level: float, speed: float) -> SteadyPulse | None:
     alpha = run.friction.get("alpha", 0.0)
     physics = level, run.gamma, run.beta, speed
-    return known(lambda: steady_pulse(*physics, rate_strengthening=alpha), None)
+    return known(lambda: pulse_at_speed(*physics, rate_strengthening=alpha), None)
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

@@ -20,9 +20,9 @@ from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
+from ..theory.closed_pulse import pulse_at_speed
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import front_speed, front_speed_undamped
-from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
@@ -111,7 +111,7 @@ def errors(setting: Setting, window: float) -> dict[str, float]:
         pulse = leading_pulse(run, window)
         # At fixed beta/dx damping acts at the front alone in the continuum.
         beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
-        steady = steady_pulse(EVEN.left, GAMMA, beta, float(cached_speed(EVEN.left, ratio)))
+        steady = pulse_at_speed(EVEN.left, GAMMA, beta, float(cached_speed(EVEN.left, ratio)))
         names = ("speed", "peak_velocity", "width", "slip")
         ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
         ratios.append(run.attrs["first_stick_time"] / cached_transition(EVEN, GAMMA, ratio).time)

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.runs import runs
+from ..theory.closed_pulse import paper_pulse, pulse_at_speed
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import paper_pulse, steady_pulse
 
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
@@ -19,7 +19,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     swept, (refined, *_) = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
     left, ratio = refined.prestress.left, refined.damping_ratio
     speed = front_speed(left, ratio, refined.release)
-    pulse = steady_pulse(left, refined.gamma, 0.0, speed)
+    pulse = pulse_at_speed(left, refined.gamma, 0.0, speed)
     limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in QUANTITIES]
     limits.append(("limit", left, ratio, "front_speed", pulse.speed))
     first, rows = swept[0], []
@@ -27,7 +27,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for left in sorted({one.prestress.left for one in swept}):
         paper = paper_pulse(left, first.gamma)
         for ratio, speed in zip(ratios, front_speed(left, ratios, first.release), strict=True):
-            pulse = steady_pulse(left, first.gamma, ratio * first.dx, speed)
+            pulse = pulse_at_speed(left, first.gamma, ratio * first.dx, speed)
             for name in QUANTITIES:
                 value = getattr(pulse, name) / getattr(paper, name)
                 rows.append(("curve", left, ratio, name, value))

@@ -11,12 +11,12 @@ import pandas as pd
 
 from ..model.prestress import Prestress
 from ..solver.layer import LayerScene, simulate_layer
-from ..theory.friction_laws import undamped_weakening_slip, weakening_pulse
-from ..theory.pulse import (
+from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
     paper_transition_stress,
 )
+from ..theory.friction_laws import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
 

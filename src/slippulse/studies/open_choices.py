@@ -6,9 +6,9 @@ import pandas as pd
 from ..configuration.runs import parameters
 from ..model.prestress import Prestress
 from ..theory.arrest import ArrestingCrack
+from ..theory.closed_pulse import paper_transition_displacement
 from ..theory.front_speeds import front_speed
 from ..theory.fronts import fast_fronts, slip_velocity
-from ..theory.pulse import paper_transition_displacement
 from ..theory.vector_roots import roots_between
 
 NEEDS = {

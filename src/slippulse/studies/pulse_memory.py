@@ -5,8 +5,8 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..simulation.exact_rupture import exact_rupture
+from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
@@ -24,7 +24,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         # In the limit dx -> 0 damping acts through the speed alone.
         rule = scene.damping_ratio, scene.release
         old, new = (
-            steady_pulse(tau, scene.gamma, 0.0, front_speed(tau, *rule)) for tau in (before, level)
+            pulse_at_speed(tau, scene.gamma, 0.0, front_speed(tau, *rule))
+            for tau in (before, level)
         )
         memory = new.width / (new.speed - 1.0)
         x = np.concatenate([BEHIND, memory * BEYOND])

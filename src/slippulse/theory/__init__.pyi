@@ -3,6 +3,11 @@ from ..model.balance import prestress_balance_position as prestress_balance_posi
 from .arrest import ArrestingCrack as ArrestingCrack
 from .barrier import barrier_depth as barrier_depth
 from .barrier import barrier_depth_estimate as barrier_depth_estimate
+from .closed_pulse import SteadyPulse as SteadyPulse
+from .closed_pulse import critical_rate_strengthening as critical_rate_strengthening
+from .closed_pulse import paper_pulse as paper_pulse
+from .closed_pulse import paper_transition_displacement as paper_transition_displacement
+from .closed_pulse import paper_transition_stress as paper_transition_stress
 from .dimensional import damage_zone_stress_drop as damage_zone_stress_drop
 from .exact_transition import exact_transition_displacement as exact_transition_displacement
 from .exact_transition import uniform_transition_time as uniform_transition_time
@@ -15,11 +20,6 @@ from .front_speeds import front_speed_undamped as front_speed_undamped
 from .front_speeds import lattice_front_speed as lattice_front_speed
 from .front_speeds import prestress_for_speed as prestress_for_speed
 from .fronts import ExactTransition as ExactTransition
-from .pulse import SteadyPulse as SteadyPulse
-from .pulse import critical_rate_strengthening as critical_rate_strengthening
-from .pulse import paper_pulse as paper_pulse
-from .pulse import paper_transition_displacement as paper_transition_displacement
-from .pulse import paper_transition_stress as paper_transition_stress
 from .pulse import steady_pulse as steady_pulse
 from .rupture import FrontEnd as FrontEnd
 from .rupture import Limit as Limit

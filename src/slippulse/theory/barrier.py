@@ -6,11 +6,11 @@ import numpy as np
 
 from ..model.checks import check_number
 from ..model.prestress import Prestress
+from .closed_pulse import pulse_at_speed
 from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .pulse import steady_pulse
 from .slow_front import SlowFront
 
 # Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
@@ -61,7 +61,7 @@ def barrier_depth(
     place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
     check_number(f"front speed {place}", speed, at_most=FASTEST)
     # The depth is found at gamma = 1, behind a front as far back as its pulse remembers.
-    memory = MEMORY * steady_pulse(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    memory = MEMORY * pulse_at_speed(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)

@@ -1,20 +1,21 @@
 """The Wiener-Hopf factor of a front on the lattice, leaf springs and damping included.
 
-In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2) the front has the
-symbol
+In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the front
+has the symbol
 
-    M(k) = 1 - [S(k) (1 + i b w) + g]/w^2 = M_+(k) M_-(k),
+    M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
 with M_+ analytic and free of zeros for Im k > 0. The symbol is an exact product of an algebraic
 function and two factors that decay on opposite sides of the axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
-    r = sqrt(1 + i b w - (w^2 - g)/4),   q = (i/2) sqrt(w^2 - g),
+    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w),
 
-with the branch points of r and q above the contour: those of q, w = +-sqrt(g), and the waves that
-are radiated behind the front lie there by causality, since damping moves them up. Then every factor
-but 1 - rho e^{ik} is analytic and free of zeros below the contour C, which passes below all of
-them, and closing C downwards leaves
+with the branch points of r and q above the contour: those of q, w = +-sqrt(g) at a = 0, and the
+waves that are radiated behind the front lie there by causality, since damping moves them up. (For
+a < 0 waves grow behind the front, and the contour leaves 0 more steeply, below them.) Then every
+factor but 1 - rho e^{ik} is analytic and free of zeros below the contour C, which passes below all
+of them, and closing C downwards leaves
 
     ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
 
@@ -55,26 +56,37 @@ class Nodes(NamedTuple):
 
 
 def log_prestress(
-    excess: np.ndarray, ratio: np.ndarray, springs: float, release: str
+    excess: np.ndarray,
+    ratio: np.ndarray,
+    springs: float = 0.0,
+    release: str = "total",
+    drag: float = 0.0,
 ) -> np.ndarray:
     """ln tau_0 of steady fronts at speeds v = 1 + excess.
 
     excess and ratio are 1-d; excess > 0, or >= 0 with leaf springs g = gamma dx^2, and
-    v >= sqrt(4 + g)/pi. The release is "total", M_+(0) = tau_0, or "elastic",
-    M_+(0)/M_+(i/(b v)) = tau_0. Both hold with springs as without: a block ahead of the front has
-    not slipped, so its leaf spring is relaxed.
+    v >= sqrt(4 + g)/pi. drag is a = alpha dx, with springs only, above -2 sqrt(g (1 - 1/v^2)). The
+    release is "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0. Both hold with
+    springs as without: a block ahead of the front has not slipped, so its leaf spring is relaxed.
     """
     # Below this size no zero or branch point comes near 0, where the contour starts.
     nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
+    angle = ANGLE
+    if drag:
+        nearest = min(nearest, springs / abs(drag))
+    if drag < 0.0:
+        slowest = float(np.min(excess))
+        size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+        angle = max(ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    contour = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)))
-    f = log_factor(contour, excess[:, None], ratio[:, None], springs)
+    contour = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)), angle)
+    f = log_factor(contour, excess[:, None], ratio[:, None], springs, drag)
     out = (f @ (contour.weight / contour.z)).imag / np.pi
     if springs > 0.0:
         edge = 0.5 * np.sqrt(springs)
         origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
         # The contour leaves 0 at an angle: the value there enters with the rest of half a residue.
-        out = (0.5 - ANGLE / np.pi) * origin + out
+        out = (0.5 - angle / np.pi) * origin + out
     else:
         out += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
@@ -88,11 +100,13 @@ def log_prestress(
     return out
 
 
-def log_factor(contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float) -> np.ndarray:
+def log_factor(
+    contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> np.ndarray:
     """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1; excess, ratio are columns."""
     z = contour.z
     iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio, springs)
+    q, r = roots(iw, ratio, springs, drag)
     both = r + q
     rho = (1.0 + ratio * iw) / both**2
     factor = 2.0 * q / both - rho * contour.bent
@@ -107,7 +121,7 @@ def log_factor(contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: f
         shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
-            lag = lag + springs / (-1j * iw[part] + size)
+            lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
         # artanh h - h without cancellation.
         square, large = h * h, np.abs(h) >= SMALL_ARTANH
         curved = h * square * _ARTANH(square)
@@ -125,9 +139,12 @@ def log(z: np.ndarray) -> np.ndarray:
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
-def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray, np.ndarray]:
+def roots(
+    iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> tuple[np.ndarray, np.ndarray]:
     """q and r (module docstring) with cuts that run straight up from their branch points."""
     four = 4.0 + springs
+    ratio = ratio + 0.25 * drag
     under = 4.0 * ratio**2 - four
     strong = under >= 0.0
     root = np.sqrt(np.abs(under))
@@ -136,18 +153,18 @@ def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray
     r = 0.5 * np.sqrt(large + iw) * np.sqrt(small + iw)
     if springs == 0.0:
         return 0.5 * iw, r
-    side = 1j * np.sqrt(springs)
-    return 0.5 * np.sqrt(iw - side) * np.sqrt(iw + side), r
+    side = np.sqrt(complex(0.25 * drag**2 - springs))
+    return 0.5 * np.sqrt(iw + 0.5 * drag - side) * np.sqrt(iw + 0.5 * drag + side), r
 
 
 @lru_cache(maxsize=32)
-def nodes(panels: int) -> Nodes:
+def nodes(panels: int, angle: float) -> Nodes:
     """Nodes on the contour, with its ray in panels."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
     leg, leg_weight = _panels(LEG_EDGES)
-    turn, size = np.exp(-1j * ANGLE), np.exp(ray)
+    turn, size = np.exp(-1j * angle), np.exp(ray)
     z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
     weights = inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION
     weight = np.concatenate(weights)

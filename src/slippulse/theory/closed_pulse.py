@@ -1,0 +1,195 @@
+"""The steady slip pulse, with damping, and the paper's estimates."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.balance import prestress_balance_position
+from ..model.checks import as_numbers, check_number
+from ..model.prestress import Prestress
+from .domains import check_domains
+
+
+@dataclass(frozen=True)
+class SteadyPulse:
+    """A steady pulse in units of H, with xi = x - v t <= 0 behind the front at xi = 0.
+
+    `steady_pulse` and `paper_pulse` make one.
+
+    Parameters
+    ----------
+    tau0, gamma, beta, speed, rate_strengthening : floats, as in `steady_pulse`
+    width : float, distance from the front to where the slip velocity returns to 0
+    slip, stress_drop : floats, slip that is left behind, and gamma times that
+    peak_velocity : float, largest slip velocity
+    growth, wavenumber : floats, p and q of the complex pair of roots p +- i q
+    """
+
+    tau0: float
+    gamma: float
+    beta: float
+    speed: float
+    width: float
+    slip: float
+    peak_velocity: float
+    stress_drop: float
+    growth: float
+    wavenumber: float
+    rate_strengthening: float = 0.0
+
+    @property
+    def peak_position(self) -> float:
+        """Position xi of the largest slip velocity."""
+        return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
+
+    def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Slip, slip velocity and slip acceleration, at rest outside of the pulse.
+
+        Parameters
+        ----------
+        xi : float or array, positions relative to the front (units of H)
+
+        Returns
+        -------
+        tuple of arrays of the shape of xi
+        """
+        xi = as_numbers("xi", xi)
+        p, q = self.growth, self.wavenumber
+        inside = (xi <= 0.0) & (xi >= -self.width)
+        y = np.where(inside, xi, 0.0)
+        sine, cosine = np.sin(q * y), np.cos(q * y)
+        decay = np.exp(p * y)
+        slip = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
+        slip = np.select([inside, xi < -self.width], [slip, self.slip])
+        size = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
+        velocity = np.where(inside, -size * decay * sine, 0.0)
+        acceleration = np.where(inside, self.speed * size * decay * (p * sine + q * cosine), 0.0)
+        return slip, velocity, acceleration
+
+
+@np.errstate(over="raise", invalid="raise", divide="raise")
+def pulse_at_speed(
+    tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
+) -> SteadyPulse:
+    """The pulse of `theory.steady_pulse` behind a front of a given speed."""
+    check_domains(tau0=tau0, gamma=gamma)
+    check_number("beta", beta, at_least=0.0)
+    check_number("speed", speed, above=1.0)
+    check_number("rate_strengthening", rate_strengthening)
+    tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
+    v, alpha = float(speed), float(rate_strengthening)
+    inertia = (v - 1.0) * (v + 1.0)
+    try:
+        if beta == 0.0:
+            p = 0.5 * alpha * v / inertia
+            q = float(np.sqrt(gamma / inertia - p**2))
+        else:
+            roots = np.roots([beta * v, inertia, -alpha * v, gamma])
+            pair = roots[np.argmax(roots.imag)]
+            p, q = float(pair.real), float(pair.imag)
+        width = np.pi / q
+        slip = tau0 / gamma * (1.0 + np.exp(-p * width))
+        amplitude = v * tau0 * np.hypot(p, q) / gamma
+        peak = amplitude * np.exp(-p / q * np.arctan2(q, p))
+        sizes = float(width), float(slip), float(peak)
+        # Floats of Python overflow without an error.
+        if not all(0.0 < size < math.inf for size in sizes):
+            raise OverflowError
+    except (ArithmeticError, ValueError):
+        place, critical = f"at gamma = {gamma:.4g}", critical_rate_strengthening(gamma, v)
+        if abs(alpha) <= 0.5 * critical:
+            allowed = "numbers whose pulse can be computed"
+            text = f"speed: {v:.4g}, {place}, beta = {beta:.4g}; allowed: {allowed}"
+            raise ValueError(text) from None
+        allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
+        text = f"rate_strengthening: {rate_strengthening!r}; allowed: {allowed}"
+        raise ValueError(f"{text}, or no pulse is steady") from None
+    return SteadyPulse(tau0, gamma, beta, v, *sizes, float(gamma * slip), p, q, alpha)
+
+
+def critical_rate_strengthening(gamma: float, speed: float) -> float:
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): no pulse is steady beyond +- alpha_c.
+
+    Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
+    front alpha_c is 2 tau_0 sqrt(gamma). Raises ValueError: outside the domain.
+
+    Parameters
+    ----------
+    gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
+
+    Returns
+    -------
+    float : alpha_c
+
+    Examples
+    --------
+    >>> critical_rate_strengthening(0.25, 1.25)
+    0.6
+    """
+    check_domains(gamma=gamma)
+    check_number("speed", speed, above=1.0)
+    return 2.0 * math.sqrt(gamma) * math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+
+
+def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
+    """The paper's undamped pulse, section III A and appendix C.
+
+    Raises ValueError: outside the domain.
+
+    Parameters
+    ----------
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+
+    Returns
+    -------
+    SteadyPulse : of speed 1/sqrt(1 - tau_0^2) and peak velocity 1/sqrt(gamma)
+
+    Examples
+    --------
+    >>> round(paper_pulse(0.6, 0.25).peak_velocity, 6)
+    2.0
+    """
+    check_domains(tau0=tau0)
+    return pulse_at_speed(tau0, gamma, 0.0, 1.0 / math.sqrt(1.0 - tau0 * tau0))
+
+
+def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
+    """The paper's estimate of the transition under a displacement boundary, section III B.
+
+    It neglects the elastic coupling and the Gaussian at nucleation.
+    Raises ValueError: outside the domain.
+
+    Parameters
+    ----------
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+
+    Returns
+    -------
+    tuple of floats : T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2)
+
+    Examples
+    --------
+    >>> [round(number, 4) for number in paper_transition_displacement(0.6, 0.25)]
+    [6.2832, 15.708]
+    """
+    check_domains(tau0=tau0, gamma=gamma)
+    time = np.pi / np.sqrt(float(gamma))
+    return float(time), float(2.0 * time / np.sqrt(1.0 - tau0**2))
+
+
+def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
+    """The paper's estimate of the transition under a stress boundary, section III C.
+
+    It takes front speeds as 1. Raises as `prestress_balance_position`.
+
+    Parameters
+    ----------
+    prestress : Prestress, as `prestress_balance_position` takes it
+
+    Returns
+    -------
+    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
+    """
+    distance = abs(prestress_balance_position(prestress))
+    return distance, 2.0 * distance
