@@ -57,6 +57,9 @@ def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tm
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes]
     labels.append(figure.get_supxlabel() + figure.get_supylabel())
     assert sum(bool(label) for label in labels) >= 2 or name in UNLABELLED
+    # Panels have letters in the order of reading.
+    letters = [*filter(None, (axes.get_title(loc="left") for axes in figure.axes))]
+    assert letters == [f"({letter})" for letter in "abcdef"[: len(letters)]]
     assert len(table) > 0 and not np.isinf(table.select_dtypes("number").to_numpy()).any()
     # The resolution is not what is tested, and the layout is found: both take most of the time.
     figure.set_layout_engine("none")
@@ -156,8 +159,8 @@ def test_simulated_pulses_lie_on_the_exact_ones(draw, name):
             assert len(curve) <= 400 and len(exact[run]) <= 801
 
 
-def test_undamped_pulses_are_the_papers_damping_lowers_them_and_slip_only_grows(draw):
-    table, figure = draw(PULSES[1]).table, draw(PULSES[1]).figure
+def test_undamped_pulses_are_the_papers_and_damping_lowers_them(draw):
+    table = draw(PULSES[1]).table
     runs = table[table["role"] == "run"].set_index("run")
     fields = ["slip", "slip_velocity", "slip_acceleration"]
     peaks = table[table["role"] == "exact"].groupby("run")[fields].max()
@@ -166,8 +169,6 @@ def test_undamped_pulses_are_the_papers_damping_lowers_them_and_slip_only_grows(
     runs["peak"] = peaks["slip_velocity"]
     by_damping = runs.pivot(index="left", columns="damping_ratio", values="peak")
     assert (np.diff(by_damping.to_numpy(), axis=1) < 0.0).all()
-    for line in curves(figure.axes[0], "simulation").values():
-        assert (np.diff(line[:, 1]) <= 1e-5).all()
 
 
 def test_the_arrows_are_the_measured_transition(draw):

@@ -29,9 +29,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     # Under an imposed stress the mean over the height stands for the interface. With the top held
     # the displacement falls linearly to 0, so that its mean is half of the slip.
     panels = ["stress", "stress", "displacement", "displacement"]
-    moved = {"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]}
-    rows = pd.DataFrame(moved)
-    rows["displacement"] *= DISPLACEMENT
+    displacement = [DISPLACEMENT, DISPLACEMENT, DISPLACEMENT, 0.0]
+    rows = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": displacement})
     rows["strip_width"] = settings["strip_width"]
     rows[LENGTHS] *= settings["thickness"]
     return rows
@@ -52,12 +51,12 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.add_patch(Rectangle((STRIP - 0.5 * strip, 0.0), strip, 1.0, **cut))
         label(axes, STRIP, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
         label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
-        substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)
-        substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
+        white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
+        label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8, bbox=white)
         arrow(axes, (0.27 * LENGTH, 0.05), (0.13 * LENGTH, 0.05), BLACK, gid="friction")
         label(axes, 0.7, 0.1, "$f_f$", va="bottom")
         label(axes, 0.5 * LENGTH, -RIGID - 0.08, law, va="top")
-        arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED, BOTH)
+        arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED, **BOTH)
         for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
             label(axes, LENGTH + 0.23, y, text, MUTED, ha="left")
         arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED)

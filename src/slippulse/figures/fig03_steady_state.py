@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import draw_prestress, draw_pulses, handles, pulse_table, title
+from .shared.pulses import draw_prestress, draw_pulses, handles, pulse_table, styled_runs, title
 from .style import PAGE, Look, new_panels
 
 NEEDS = {
@@ -25,7 +25,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, rows, (0.08, 0.6, 0.26, 0.29), widths)
+        draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), widths)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
         look: Look = {"ncols": 3, "columnspacing": 1.0}
         axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.5, -0.17), **look)

@@ -50,8 +50,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
         if panel == "stress":
-            fraction = {"role": "fraction", "value": settings["measure"]["share"]}
-            rows.append(pd.DataFrame([fraction]))
+            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 

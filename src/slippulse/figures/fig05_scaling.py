@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared import scaling
-from .shared.pulses import prestress_inset
+from .shared.pulses import draw_prestress
 from .shared.scaling import DRAWN, OTHER, QUANTITIES, run_colours, transition_table
 from .shared.selection import spread_values
 from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, colour_scale, new_panels
@@ -26,10 +26,10 @@ def draw(table: pd.DataFrame) -> Figure:
             box = (0.1, 0.6, 0.34, 0.31)
             inset = scaling.ratio_inset(axes, box, few, quantity, "left", other)
             inset.set_xlabel(f"${SYMBOLS[LEVEL[boundary]]}$", fontsize=SMALL, labelpad=0.0)
-        narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
-        narrow = narrow[narrow["left"].isin(spread_values(runs["left"], DRAWN))]
-        levels = list(run_colours(narrow, "left"))
-        prestress_inset(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, levels, 6.0)
+        levels = runs["left"].isin(spread_values(runs["left"], DRAWN))
+        narrow = runs[levels & (runs["width"] == runs["width"].min())]
+        narrow = narrow.assign(colour=[*run_colours(narrow, "left")])
+        draw_prestress(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
         panels[column].set_title(title, loc="center")
         for quantity in (LEVEL[boundary], other):
             look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}

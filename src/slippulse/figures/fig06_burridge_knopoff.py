@@ -6,7 +6,6 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
 from ..data.point import point
@@ -22,7 +21,6 @@ SHOWN, BEYOND = 18, 2
 # Width and height of a block, and height of the plate above the ground, in spacings.
 BLOCK, HEIGHT = 0.5, 0.44
 PLATE = 1.12
-# Height of the points of a coil spring.
 COIL = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
 # Largest drawn displacement over a spacing, and shortest spring over its length.
 FARTHEST, SHORTEST = 0.85, 0.35
@@ -84,9 +82,8 @@ def window(run: xr.Dataset) -> tuple[float, float]:
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     """Names and samples drawn: start, first stick, half of its time, two more with all in view."""
     low, high = window(run)
-    x, slip, velocity = (
-        run[name].values for name in ("sample_position", "sample_slip", "sample_velocity")
-    )
+    x, velocity = run["sample_position"].values, run["sample_velocity"].values
+    slip = run["sample_slip"].values
     in_view = ~(slip[:, (x <= low) | (x >= high)] > 0.0).any(axis=1)
     last = int(np.flatnonzero(in_view)[-1])
     stuck = (slip > 0.0) & (velocity <= 0.0)
@@ -154,13 +151,10 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
             leaves = [*np.stack(np.broadcast_arrays(x, y), axis=-1)]
             look = {"colors": BLUE, "linewidths": 0.9, "gid": "leaf springs"}
             axes.add_collection(LineCollection(leaves, **look))
-        for middle, block in zip(centre, state.itertuples(), strict=True):
-            colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
-            patch = Rectangle(
-                (middle - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state
-            )
-            patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
-            axes.add_patch(patch)
+        framed, colours = state["arresting_block"], state["state"].map(COLOURS)
+        look = {"edgecolor": np.where(framed, BLACK, "0.2")}
+        look |= {"linewidth": np.where(framed, 1.8, 0.5), "zorder": 3}
+        axes.bar(centre, HEIGHT, BLOCK, base, color=colours, **look)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
         look = {"ha": "right", "va": "center", "fontsize": 8.0, "linespacing": 0.95}
         axes.text(low - 0.2, base + 0.5 * HEIGHT, text, **look)

@@ -1,7 +1,6 @@
 """A scene: slip velocity over time and position, fields at the end, and numbers beside theory."""
 
 import math
-from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -31,31 +30,23 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
     x = run["x"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     parts = [pd.DataFrame([{"role": "title", "series": title}]), space_time.run_rows(run)]
-    for name in FIELDS:
+    # The right pulse is measured; on the left there is one once blocks stick.
+    ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
+    if math.isfinite(run.attrs["first_stick_time"]):
+        ends = {"exact_left": lower} | ends
+    steady = []
+    for name, largest in LARGEST.items():
         values = run[name].values
         spaced = inside[spaced_indices(inside.size, PROFILE_POINTS)]
         kept = np.union1d(spaced, inside[np.argmax(values[inside])])
         rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
         parts.append(pd.DataFrame(rows))
-    # The right pulse is measured; on the left there is one once blocks stick.
-    ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
-    if math.isfinite(run.attrs["first_stick_time"]):
-        ends = {"exact_left": lower} | ends
-    steady = [
-        (name, end, theory[f"{prefix}_{LARGEST[name]}"])
-        for name, (prefix, end) in product(FIELDS, ends.items())
-    ]
+        steady += [(name, end, theory[f"{prefix}_{largest}"]) for prefix, end in ends.items()]
     rows = pd.DataFrame(steady, columns=["series", "position", "value"])
     parts.append(rows.assign(role="steady").dropna())
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
     columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)
-
-
-def number_text(value: float, uncertainty: float, theory: float) -> str:
-    """Write a number with its uncertainty (NaN: none), and the value of the theory beside it."""
-    text = with_uncertainty(value, uncertainty)
-    return f"{text} (theory {number(theory, MOST)})" if math.isfinite(theory) else text
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -85,16 +76,16 @@ def draw(table: pd.DataFrame) -> Figure:
         look["label"] = "steady pulse of this side, exact"
         for pulse in steady[steady["series"] == field].itertuples():
             axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
-            # One entry of the legend stands for both sides.
-            look["label"] = None
-        # The velocity is 0 in the middle, and the legend is for both panels.
+        # The velocity is 0 in the middle; one entry of the legend stands for both sides and panels.
         if len(axes.lines) > 2 and field == "slip_velocity":
-            axes.legend(loc="center")
+            axes.legend(handles=axes.lines[1:3], loc="center")
         axes.set(xlabel=r"position $x$", ylabel=f"{name} at the end")
         axes.set_xlim(ends["position"].min(), ends["position"].max())
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):
-        line = f"{with_symbols(row.label)}: {number_text(row.value, row.uncertainty, row.theory)}"
+        line = f"{with_symbols(row.label)}: {with_uncertainty(row.value, row.uncertainty)}"
+        if math.isfinite(row.theory):
+            line += f" (theory {number(row.theory, MOST)})"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center", fontsize=8.0)
     return figure

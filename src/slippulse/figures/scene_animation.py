@@ -20,8 +20,8 @@ FIELDS = {
 }
 
 
-def animate(run: xr.Dataset, title: str) -> FuncAnimation:
-    """Make an animation of frames that are evenly spread over the samples of a run."""
+def save_animation(run: xr.Dataset, title: str, path: str | Path) -> None:
+    """Write an animated GIF of frames that are evenly spread over the samples of a run."""
     lower, upper = limits(run)
     x, times = run["sample_position"].values, run["sample_time"].values
     inside = (x >= lower) & (x <= upper)
@@ -38,20 +38,14 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
     clock = figure.suptitle("", fontsize=9.0)
     plain = title.replace("$", r"\$")
 
-    def draw(frame: int) -> list:
+    def draw(frame: int) -> None:
         for line, values in lines:
             line.set_ydata(values[frame])
         clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$")
-        return [line for line, _ in lines]
 
     # The layout is found once, for the longest title, and kept: the frames must not jump.
     draw(int(frames[-1]))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    return FuncAnimation(figure, draw, frames=frames, interval=1000 / PER_SECOND, blit=False)
-
-
-def save_animation(animation: FuncAnimation, path: str | Path) -> None:
-    """Write an animated GIF."""
-    writer = PillowWriter(fps=PER_SECOND)
+    animation, writer = FuncAnimation(figure, draw, frames=frames), PillowWriter(fps=PER_SECOND)
     write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))

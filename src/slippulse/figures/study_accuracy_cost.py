@@ -4,19 +4,19 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, entry, new_panels
+from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, legend_above, new_panels
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
 PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
 PANELS["transition_time"] = r"$T_\text{trans}$"
-LOOKS: dict[str, Look] = {
-    "textbook": {"color": BLACK, "marker": "x", "linestyle": "-", "linewidth": 0.6},
-    "best": {"color": GREY, "drawstyle": "steps-post"},
-    "preset": {"color": ORANGE, "marker": "o", "linestyle": "none", "markersize": 5.0},
-}
 BEST = "smallest error of any setting of the localised scheme at this work"
-NAMES = {"textbook": "textbook scheme", "best": BEST, "preset": "presets"}
+LOOKS: dict[str, Look] = {
+    "textbook": {"color": BLACK, "marker": "x", "linewidth": 0.6, "label": "textbook scheme"},
+    "best": {"color": GREY, "drawstyle": "steps-post", "label": BEST},
+    "preset": {"color": ORANGE, "marker": "o", "linestyle": "none", "label": "presets"},
+}
+LOOKS["preset"]["markersize"] = 5.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -75,6 +75,5 @@ def draw(table: pd.DataFrame) -> Figure:
     speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
     speeds.set(ylabel="front speed", title=r"$\Gamma = 0$")
     speeds.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)
-    handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
-    figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)
+    legend_above(figure, trades[0], columnspacing=1.5)
     return figure

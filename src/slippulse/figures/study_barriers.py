@@ -85,7 +85,6 @@ def draw(table: pd.DataFrame) -> Figure:
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest)]
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
     curve_axes.set_title(conditions(True, damping_ratio=largest))
-    # The depth on lattices over the exact one, a line a scene.
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
         look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
         look |= {"linewidth": 0.7, "markeredgewidth": 0.7} | OPEN

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ..data.numerals import setting
 from . import style
@@ -51,17 +52,15 @@ def draw(table: pd.DataFrame) -> Figure:
         gamma = {"gamma": row.gamma} if row.gamma > 0.0 else {}
         levels = ", ".join(dict.fromkeys([setting(row.left), setting(row.right)]))
         names[row.scene] = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
-    # A scene without an exact solution is named in the panel of the differences.
-    solved = set(table.loc[table["role"] == "exact", "scene"])
-    others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - solved}
-    _draw_differences(difference_axes, table[table["role"] == "difference"], others)
-    lines = [style.entry(names[scene], color=SCENES[scene]) for scene in SCENES if scene in solved]
-    figure.legend(handles=lines, loc="outside upper center", ncols=3)
+    lines = [style.entry(names[scene], color=colour) for scene, colour in SCENES.items()]
+    # The last scene is in the panel of the differences alone.
+    figure.legend(handles=lines[:-1], loc="outside upper center", ncols=3)
+    _draw_differences(difference_axes, table[table["role"] == "difference"], lines[-1])
     return figure
 
 
-def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:
-    """Draw the largest and the smallest difference of each scene; the others lie between them."""
+def _draw_differences(axes: Axes, rows: pd.DataFrame, last: Line2D) -> None:
+    """Draw the largest and the smallest difference of each scene; ``last`` names the last one."""
     drawn = []
     for scene, colour in SCENES.items():
         scene_rows = rows[rows["scene"] == scene]
@@ -73,8 +72,7 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) ->
     for quantity in dict.fromkeys(drawn):
         label = "slip velocity" if quantity == "velocity" else quantity
         axes.plot([], [], MARKERS[quantity], color=GREY, label=label)
-    for label, colour in others.items():
-        axes.plot([], [], color=colour, label=label)
+    axes.add_line(last)
     style.draw_first_order(axes, rows["dx"], 1.5, GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))

@@ -38,7 +38,6 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (*distributions, refined, gaussian) = style.new_panels(PAGE, 5.0, "ab;cd")
     roles = style.by_role(table)
     sweep, runs = roles["sweep"], roles["refinement"]
-    # The fraction of the runs that are nearer to each prediction than a distance.
     for axes, quantity in zip(distributions, QUANTITIES, strict=True):
         for boundary, (colour, boundary_name) in KINDS.items():
             sound = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]

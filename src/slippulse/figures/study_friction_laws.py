@@ -29,7 +29,6 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    # Front speeds on lattices, and exact ones at their distances as lines.
     for colour, (level, rows) in zip(COLOURS, fronts.groupby("level"), strict=True):
         for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
             resolution = points["d_c"] / dx

@@ -8,7 +8,6 @@ from .style import BLACK, GREY, OPEN, PAGE, Look, entry
 
 NEEDS = {"studies": ["layer"]}
 
-# Measured numbers, with their names.
 QUANTITIES = {"speed": "front speed", "pulse_width": "width", "pulse_slip": "slip"}
 QUANTITIES["first_stick"] = "first stick"
 # Numbers of one dimension by the prefix of their columns: how they are drawn, and what they are.

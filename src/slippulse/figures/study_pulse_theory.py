@@ -56,7 +56,6 @@ def draw(table: pd.DataFrame) -> Figure:
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, grid[0], columnspacing=1.0)
     rows = roles["refined"]
-    # The relative distance of each quantity from its limit over the spacing.
     for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)

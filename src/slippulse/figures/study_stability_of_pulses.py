@@ -37,26 +37,24 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
         parts.append(rows.assign(role="lattice", level=level, dx=run.attrs["dx"]))
     # The runs with the lowest level on the left send the narrowest pulse.
-    lowest = float(beyond_step["left"].min())
-    for run in (point(beyond_step, i) for i in range(beyond_step.sizes["point"])):
-        if run.attrs["left"] == lowest:
-            right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
-            largest = right.max("sample_position").values
-            position, level = prestress_from(run.attrs).steps[-1]
-            rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
-            before = {"before": run.attrs["right"], "step": position}
-            parts.append(rows.assign(role="velocity", level=level, **before))
+    lowest = beyond_step["left"].values == beyond_step["left"].values.min()
+    for run in (point(beyond_step, int(i)) for i in np.flatnonzero(lowest)):
+        right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
+        position, level = prestress_from(run.attrs).steps[-1]
+        largest = right.max("sample_position").values
+        rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
+        before = {"before": run.attrs["right"], "step": position}
+        parts.append(rows.assign(role="velocity", level=level, **before))
     return pd.concat(parts, ignore_index=True)
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
     figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, "abc")
-    slip = table[table["role"].isin(["exact", "lattice"])]
+    slip = table[table["role"].isin(["exact", "lattice"])].sort_values("x")
     for level, rows in slip.groupby("level"):
         colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
         exact, lattice = (rows[rows["role"] == role] for role in ("exact", "lattice"))
-        exact, lattice = exact.sort_values("x"), lattice.sort_values("x")
         steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
         slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
         marks = lattice.iloc[::MARKED]

@@ -2,7 +2,7 @@
 
 from ..data.point import point
 from ..data.store import load_dataset
-from ..figures.scene_animation import animate, save_animation
+from ..figures.scene_animation import save_animation
 from ..figures.style import house_style
 
 
@@ -10,4 +10,4 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: gif. Settings: title."""
     data = point(load_dataset(files["data"]), 0)
     with house_style():
-        save_animation(animate(data, settings["title"]), outputs["gif"])
+        save_animation(data, settings["title"], outputs["gif"])

@@ -1,7 +1,5 @@
 """Pulses in the frame that moves with them, simulated and exact: their table, and the drawing."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -118,17 +116,11 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         panels[2].set_ylim(-1.3, 1.3)
     else:
         # The inset stands where slip and velocity are small.
-        draw_prestress(panels[1], table, (0.09, 0.66, 0.33, 0.22), 5.0)
+        draw_prestress(panels[1], (0.09, 0.66, 0.33, 0.22), styled_runs(table), 5.0)
         # The exact acceleration has no bound at the front.
         panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
     style.legend_below(figure, handles(table), 6)
     return figure
-
-
-def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> None:
-    """Draw the pre-stress of the runs of one boundary with `prestress_inset`."""
-    runs = styled_runs(table).drop_duplicates(["left", "right", "width"])
-    prestress_inset(axes, box, runs, runs["colour"], widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
@@ -152,14 +144,13 @@ def title(table: pd.DataFrame) -> str:
     return rf"{style.conditions(held)}, ${SYMBOLS[column]} = {values}$"
 
 
-def prestress_inset(
-    axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float
-) -> None:
-    """Draw the pre-stress of runs in a box of a panel, to some widths of the widest Gaussian."""
+def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> None:
+    """Draw the pre-stress of coloured runs in an inset, to some widths of the widest Gaussian."""
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
-    for run, colour in zip(runs.itertuples(), colours, strict=True):
-        inset.plot(x, Prestress(run.left, run.right, run.width)(x), color=colour, linewidth=0.8)
+    for run in runs.drop_duplicates(["left", "right", "width"]).itertuples():
+        tau = Prestress(run.left, run.right, run.width)(x)
+        inset.plot(x, tau, color=run.colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
     # Room between the peak and the title.
     inset.margins(y=0.12)

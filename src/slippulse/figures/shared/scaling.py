@@ -43,7 +43,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     """Draw measured against predicted; ``colours`` of the runs are c (face) and edgecolors."""
     x, y = runs[f"paper_{quantity}"], runs[quantity]
     width = 1.0 if len(np.unique(colours["edgecolors"], axis=0)) > 1 else 0.3
-    _scatter(axes, runs, x, y, colours, marker="o", s=15.0, linewidths=width)
+    _scatter(axes, runs, x, y, colours, s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
     symbol = QUANTITIES[quantity]
@@ -72,7 +72,7 @@ def ratio_inset(
         inset.plot(group[across], exact, linewidth=0.8, label=name, gid="exact", **look)
     ratio = runs[quantity] / runs[f"paper_{quantity}"]
     column = across if across == "damping_ratio" else line
-    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, column)}, marker="o")
+    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, column)})
     look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3, "borderaxespad": 0.3}
     inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
     return inset
@@ -84,9 +84,8 @@ def _scatter(
     """Draw a marker a run: in its colours, or open and grey where the run is flagged."""
     look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "none", "zorder": 3} | sizes
     flagged = runs["run_flags"].notna()
-    if flagged.any():
-        grey: Look = {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
-        axes.scatter(x[flagged], y[flagged], **look | grey)
+    grey: Look = {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
+    axes.scatter(x[flagged], y[flagged], **look | grey)
     shown: Look = {name: values[~flagged.to_numpy()] for name, values in colours.items()}
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **look | shown)
 

@@ -24,11 +24,7 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Rows (role, series, time, position, value) of all that `draw_profile` and `draw_map` show.
-
-    Roles are parameter (series: its name), flag (series: the flags), and those of `velocity_map`,
-    `prestress_profile` and `edges`.
-    """
+    """Rows of all that `draw_profile` and `draw_map` show; series names a parameter or flags."""
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     if run.attrs["run_flags"]:
         rows.append({"role": "flag", "series": run.attrs["run_flags"]})
@@ -64,9 +60,8 @@ def limits(run: xr.Dataset) -> tuple[float, float]:
 def velocity_map(run: xr.Dataset) -> pd.DataFrame:
     """Sampled slip velocity where it is not 0 (role map), and its largest value (role largest)."""
     lower, upper = limits(run)
-    x, times, velocity = (
-        run[name].values for name in ("sample_position", "sample_time", "sample_velocity")
-    )
+    x, times = run["sample_position"].values, run["sample_time"].values
+    velocity = run["sample_velocity"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     columns = inside[spaced_indices(inside.size, MAP_SAMPLES)]
     rows = spaced_indices(times.size, MAP_SAMPLES)
