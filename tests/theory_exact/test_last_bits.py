@@ -78,6 +78,7 @@ def answers_at(rupture: Rupture, x: np.ndarray, time: float) -> dict:
         "pulse_width": [rupture.pulse_width(time, side) for side in ("left", "right")],
         "slip_velocity": rupture.slip_velocity(x, time),
         "slip": rupture.slip(x, time),
+        "strain": rupture.strain(x, time),
         "map": np.array([*rupture.map([0.5 * time, time], x).values()]),
     }
 

@@ -278,8 +278,21 @@ class Rupture:
         """
         return self._points(("slip",), x, time)["slip"]
 
+    def strain(self, x, time) -> np.ndarray:
+        """du/dx at points.
+
+        Parameters
+        ----------
+        x, time : float or array, as for `slip_velocity`
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
+        return self._points(("strain",), x, time)["strain"]
+
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Some of FIELDS (du/dt, u and du/dx) on a grid of at most 1e7 points, by name.
+        """Some of FIELDS on a grid of at most 1e7 points, by name: arrays [time, position].
 
         Parameters
         ----------
