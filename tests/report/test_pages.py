@@ -157,8 +157,8 @@ def test_it_says_what_was_found_and_from_what(page):
     assert page.index('id="verdict"') < page.index(exceptions) < page.index("Gap 0.500.")
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "Of 4 runs, 1 misprint." in page
-    assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
-    order = ("values differ", 'id="verdict"', "Figures of the paper</h2>")
+    assert "1 value differs" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
+    order = ("value differs", 'id="verdict"', "Figures of the paper</h2>")
     assert sorted(order, key=page.index) == [*order]
     assert "results/scenes/not_made.html" in page
     # A line tells every verdict of its claims, and what has it if there are several.

@@ -147,7 +147,7 @@ def _opening(line: Line) -> str:
     verdict = line.claim.verdict
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
-    start = "No" if verdict == "not reproduced" else "Not decided in this run"
+    start = "No" if verdict == "not reproduced" else "Not decided"
     clause = next(said[verdict][0] for said in SENTENCES if verdict in said)
     return f"**{start}**: that {line.named}, {clause}."
 
