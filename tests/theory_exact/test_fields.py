@@ -154,6 +154,17 @@ def test_transition_in_uniform_prestress(tau0, known):
     assert 1e-6 * gaussian.time == pytest.approx(damped, rel=1e-4)
 
 
+@pytest.mark.parametrize("right", [0.1, 0.5, 0.9])
+def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther(right):
+    numbers = []
+    for left in (-1.0, -0.3, -0.1):
+        rupture = Rupture(sp.Prestress(left, right), 0.65, 0.1, duration=9.0)
+        end = rupture.front_ends[0][0]
+        assert end.reason == "stops" and rupture.limit is None
+        numbers.append((-end.x, *rupture.transition))
+    assert (np.diff(numbers, axis=0) > 0.0).all()
+
+
 def test_a_crack_with_two_slow_fronts_is_arrested():
     """Without leaf springs each front stops where Int_X^e tau dx = 0; the other gets slow at e."""
     profile = sp.Prestress(-0.5, -0.5)

@@ -196,6 +196,7 @@ CALLS = [
     ("tau0: 0.3; allowed: values whose front outruns", theory.continuum_front_speed, 0.3, 2.0, 0.3),
     ("beta: 0.0; allowed", theory.continuum_front_speed, 0.3, 2.0, 0.0),
     ("position: -100; allowed", CRACK.time_at, -100),
+    ("fraction: 1.0; allowed", CRACK.transition, 1.0),
     ("times: nan; allowed: a finite number", RUPTURE.map, [math.nan], [0.0]),
     ("time: 5.0; allowed: <= duration = 4", RUPTURE.slip, 0.0, 5.0),
     ("tau0: 1.0; allowed", theory.barrier_depth, 1.0, -0.1, 0.65),
@@ -205,6 +206,7 @@ CALLS = [
     ("gamma: 0.0; allowed", theory.barrier_depth, 0.5, -0.1, 0.0),
     ("tau_barrier: 0.5; allowed", theory.barrier_depth_estimate, 0.5, 0.5, 0.65),
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
+    ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),
     ("fronts that stay within 20000", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
 ]
 REFUSED = [(named, partial(function, *arguments)) for named, function, *arguments in CALLS]

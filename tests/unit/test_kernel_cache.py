@@ -78,6 +78,11 @@ def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(compil
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
         run_with(compiled, f"import slippulse as sp; sp.simulate({scene}, {samples})")
     assert times() == kernels
+    # One that is missing is compiled, and no other.
+    textbook = next(compiled.rglob("*advance_fixed*.nbc"))
+    textbook.unlink()
+    run_with(compiled, COMPILE_ALL)
+    assert {name for name, time in times().items() if time != kernels[name]} == {textbook.name}
 
 
 def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
