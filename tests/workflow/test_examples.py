@@ -58,6 +58,10 @@ def stress_barrier(table, path):
 def other_friction(table, path):
     """No theory of another friction stands beside its numbers."""
     assert table["front_speed_right"][0] == pytest.approx(1.0, rel=tol.DRAFT_SPEED)
+    law = "<td>slip weakening, d_c = 0.1, nucleation = 2</td>"
+    assert law in path.read_text(encoding="utf-8")
+    drawn = pd.read_csv(path.with_suffix(".csv")).set_index("role")["series"]
+    assert drawn["friction"] == "slip weakening"
     numbers = pd.read_csv(path.with_name("other_friction_numbers.csv"))
     assert np.isfinite(numbers["value"]).all() and numbers["theory"].isna().all()
 

@@ -9,12 +9,13 @@ import pandas as pd
 
 from ..data.numerals import number, rounded, setting, with_uncertainty
 from ..model.prestress import prestress_from
+from ..model.recorded_law import law_of
 from .html import page
 
 PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
 LATTICE = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
 WORK = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
-SHOWN = (*PHYSICS, *LATTICE, *WORK, "pulse_state", "run_flags")
+SHOWN = (*PHYSICS, "friction", *LATTICE, *WORK, "pulse_state", "run_flags")
 NONE = "\N{EN DASH}"
 
 
@@ -31,6 +32,11 @@ def scene_page(
             size = f"{setting(amplitude)} and width {setting(width)}"
             parts.append(f"bump of {size} at x = {setting(x)}")
         shown["steps_and_bumps"] = "; ".join(parts)
+    if "friction" in shown:
+        law = law_of(attributes)
+        words = [law.pop("law").replace("_", " ")]
+        words += [f"{key} = {setting(value)}" for key, value in law.items()]
+        shown["friction"] = ", ".join(words)
     return page(
         "scene.html",
         name=name,

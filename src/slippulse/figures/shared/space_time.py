@@ -10,6 +10,7 @@ from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
 from ...model.prestress import prestress_from
+from ...model.recorded_law import law_of
 from ..style import BLACK, DASHES, GREY, VELOCITY_MAP, Look, conditions
 from .selection import spaced_indices
 
@@ -26,18 +27,23 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
     """Rows of all that `draw_profile` and `draw_map` show; series names a parameter or flags."""
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
+    law = law_of(run.attrs)["law"]
+    if law != "coulomb":
+        rows.append({"role": "friction", "series": law.replace("_", " ")})
     if run.attrs["run_flags"]:
         rows.append({"role": "flag", "series": run.attrs["run_flags"]})
     return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
 
 
 def description(roles: dict[str, pd.DataFrame]) -> str:
-    """Boundary, pre-stress and damping of a run, and its flags, as a title."""
+    """Boundary, pre-stress, damping, another friction and flags of a run, as a title."""
     value = roles["parameter"].set_index("series")["value"]
     value["tau_0"], held = value["left"], value["gamma"] > 0.0
     levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
     names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio"]
     title = conditions(held, **value[names])
+    if "friction" in roles:
+        title += f", {roles['friction']['series'].iloc[0]}"
     if "flag" in roles:
         title += f", flagged: {roles['flag']['series'].iloc[0]}".replace("_", " ")
     return title
