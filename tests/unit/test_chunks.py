@@ -98,3 +98,14 @@ def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
         with pytest.raises(UnreadableFile, match="not the runs of one sweep"):
             join.run(files, outputs, {"kind": kind, "record": ["fronts", "fields"]})
     assert not any(tmp_path.iterdir())
+
+
+def test_a_table_with_a_row_too_many_is_named(made, tmp_path):
+    first, second = made("displacement", [1, 2]), made("displacement", [2, 2])
+    index = -1
+    lines = second[index].read_text(encoding="utf-8").splitlines(keepends=True)
+    longer = tmp_path / "longer.csv"
+    longer.write_text("".join([*lines, lines[-1]]), encoding="utf-8")
+    files = {"chunks": [first[index], longer], "finest": [first[1]]}
+    with pytest.raises(UnreadableFile, match=r"longer\.csv"):
+        join.run(files, {"joined": tmp_path / "joined"}, {"kind": KINDS[index], "record": []})

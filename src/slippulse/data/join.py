@@ -34,7 +34,9 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     last = ["factor"] if "factor" in chunks[0] else []
     blocks = len(chunks[0][last].drop_duplicates()) if last else 1
     runs = _run_numbers(paths, [len(chunk) // blocks for chunk in chunks])
-    for chunk, numbers in zip(chunks, runs, strict=True):
+    for path, chunk, numbers in zip(paths, chunks, runs, strict=True):
+        if len(chunk) != blocks * len(numbers):
+            raise UnreadableFile(path, DIFFERENT)
         chunk.index = pd.MultiIndex.from_product([range(blocks), numbers])
     # The chunk with the first run says the order of the columns.
     ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])

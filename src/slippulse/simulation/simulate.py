@@ -13,10 +13,8 @@ from ..model.scene import Scene
 from ..solver.fixed_step import solve_by_scheme
 from ..solver.solution import Solution
 from .continuum import solve_exactly
+from .flags import ENERGY_RESIDUAL
 from .sweep import recorded, solve_sweep
-
-# Numbers that flags of a lattice go by.
-REASONS = "pulse_blocks resolved_blocks min_stuck_stress min_velocity energy_residual"
 
 
 class UnresolvedRun(RuntimeError):
@@ -75,8 +73,14 @@ def simulate(
     data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
-        reasons = ", ".join(f"{name} {numbers[name]:.4g}" for name in REASONS.split())
-        raise UnresolvedRun(f"the run is flagged: {numbers['run_flags']} ({reasons})")
+        raise UnresolvedRun(
+            f"the run is flagged: {numbers['run_flags']} (lowest stress of a stuck block"
+            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at"
+            f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
+            f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
+            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
+            f" allowed {ENERGY_RESIDUAL:g})"
+        )
     return data
 
 
