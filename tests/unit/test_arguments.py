@@ -19,6 +19,7 @@ GOOD_SETTINGS = {"accuracy": 1e-2, "boundary": "displacement", "prestress": PLAI
 TINY, EXACT = sp.Scene(**GOOD), sp.Scene(**GOOD, scheme="continuum")
 # By the exact solution, which takes no compiled kernels while tests are collected.
 SWEEP = sp.run_sweep([EXACT, EXACT])
+RUN = sp.point(SWEEP, 0)
 RUPTURE = theory.Rupture(PLAIN, 0.65, duration=4.0)
 CRACK = theory.ArrestingCrack(sp.Prestress(-0.5, 0.0))
 FAR = sp.Prestress(0.5, 0.5, bumps=((1e9, 0.5, 1.0),))
@@ -166,6 +167,9 @@ CALLS = [
     (TOO_LATE, sp.run_sweep, [EXACT], [LATE]),
     ("run: a sweep of 2; allowed: one run", sp.measure, SWEEP),
     ("allowed: a Dataset that simulate returned", sp.measure, TINY),
+    ("blocks; allowed: a whole run", sp.measure, RUN.isel(x=slice(None, None, 2))),
+    ("blocks; allowed: a whole run", sp.measure, RUN.sel(x=slice(0.0, None))),
+    ("blocks; allowed: a whole run", sp.measure, RUN.sel(x=slice(0.5, None))),
     ("scene: None; allowed: a Scene", sp.simulate, None),
     ("scenes: []; allowed: a list of Scenes, at least one", sp.run_sweep, []),
     ("allowed: 'continuum' for all, or for none", sp.run_sweep, [TINY, EXACT]),

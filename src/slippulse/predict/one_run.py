@@ -3,6 +3,7 @@
 import math
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from ..model.checks import short_repr
@@ -44,6 +45,8 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     ------
     TypeError
         If `run` is not such a Dataset.
+    ValueError
+        If `run` has not all of its blocks.
 
     Notes
     -----
@@ -65,5 +68,20 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     if "point" in run.dims:
         allowed = "one run; point(sweep, index) takes it out of a sweep"
         raise TypeError(f"run: a sweep of {run.sizes['point']}; allowed: {allowed}")
+    if not _whole(run):
+        allowed = "a whole run, without blocks cut off or left out along x"
+        raise ValueError(f"run: {run.sizes['x']} blocks; allowed: {allowed}")
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
     return unknown | measured_row(run, SETTINGS)
+
+
+def _whole(run: xr.Dataset) -> bool:
+    """True if the blocks stand at equal spacing, all released ones between two at rest."""
+    x, released = run["x"].values, np.isfinite(run["release_time"].values)
+    if x.size < 2 or released[0] or released[-1]:
+        return False
+    # A mirrored lattice counts releases on one side.
+    side = x >= 0.0 if run.attrs["half_lattice_used"] else True
+    first_releases = run.attrs["releases"] - run.attrs["re_releases"]
+    equal = np.allclose(np.diff(x), run.attrs["dx"], rtol=1e-6, atol=0.0)
+    return equal and np.count_nonzero(released & side) == first_releases
