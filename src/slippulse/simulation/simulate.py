@@ -73,14 +73,17 @@ def simulate(
     data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
-        raise UnresolvedRun(
-            f"the run is flagged: {numbers['run_flags']} (lowest stress of a stuck block"
-            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at"
-            f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
+        facts = (
+            f" (lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding"
+            f" at {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
             f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
             f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
             f" allowed {ENERGY_RESIDUAL:g})"
         )
+        if scene.scheme == "continuum":
+            # These are numbers of a lattice.
+            facts = f" ({numbers['limit_reason']})" if numbers["limit_reason"] else ""
+        raise UnresolvedRun(f"the run is flagged: {numbers['run_flags']}{facts}")
     return data
 
 
