@@ -21,8 +21,7 @@ def named(axes, gid: str) -> list:
 
 def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
     """The mean displacement is the slip under a stress, and half of the slip under a held top."""
-    table = fig01_system_sketch.table({}, {}, {"thickness": 2.0, "strip_width": 0.1})
-    assert table["strip_width"].iloc[0] == 0.2 and table["y"].max() == 2.0
+    table = fig01_system_sketch.table({}, {}, {"strip_width": 0.1})
     stress, held = fig01_system_sketch.draw(table).axes
     assert named(stress, "imposed stress") and not named(stress, "held top")
     assert named(held, "held top") and not named(held, "imposed stress")

@@ -101,7 +101,7 @@ def test_every_panel_has_a_letter_in_the_order_of_reading(rows):
 def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):
     outputs = {ending: tmp_path / f"sketch.{ending}" for ending in ("csv", "png", "pdf")}
     settings = {"figure": "fig01_system_sketch", "altered": ""}
-    settings["values"] = {"thickness": 1.0, "strip_width": 0.1}
+    settings["values"] = {"strip_width": 0.1}
     with matplotlib.rc_context():
         # The defaults of Matplotlib are what is left where a module is imported in a context.
         matplotlib.rcdefaults()

@@ -30,8 +30,8 @@ def test_a_note_names_what_differs_in_the_runs_of_a_figure(overlay, note):
 
 
 def test_a_note_names_altered_keys_that_a_figure_reads_and_nothing_else():
-    altered = alterations({"figures": {"fig01_system_sketch": {"thickness": 2.0}}})
-    assert altered.note([], ["figures.fig01_system_sketch"]) == "altered: thickness = 2.0"
+    altered = alterations({"figures": {"fig01_system_sketch": {"strip_width": 0.5}}})
+    assert altered.note([], ["figures.fig01_system_sketch"]) == "altered: strip_width = 0.5"
     assert altered.note([], ["figures.fig07_damage_zone"]) == ""
     altered = alterations({})
     assert not altered.untaken() and not any(altered.simulations.values())

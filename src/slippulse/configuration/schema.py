@@ -268,7 +268,6 @@ class Measure(Block):
 
 
 class Sketch(Block):
-    thickness: float = key("of the layer in the sketch [H]", ge=0.01, le=100.0)
     strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
 
 

@@ -19,7 +19,6 @@ LENGTH, RIGID = 3.5, 0.2
 DISPLACEMENT = 0.5
 # Position of the strip, and of displacement 0.
 STRIP, REST = 1.68, 2.38
-LENGTHS = ["y", "displacement", "strip_width"]
 RED = "#c00000"
 HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
@@ -31,16 +30,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     panels = ["stress", "stress", "displacement", "displacement"]
     displacement = [DISPLACEMENT, DISPLACEMENT, DISPLACEMENT, 0.0]
     rows = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": displacement})
-    rows["strip_width"] = settings["strip_width"]
-    rows[LENGTHS] *= settings["thickness"]
-    return rows
+    return rows.assign(strip_width=settings["strip_width"])
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw two panels, one a boundary condition: layer, substrate, strip, friction, and axes."""
     figure, panels = new_panels(COLUMN, 3.4, "a;b")
-    # All lengths are drawn in thicknesses.
-    table = table.assign(**(table[LENGTHS] / table["y"].max()))
     strip = table["strip_width"].iloc[0]
     box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
     cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
