@@ -1,4 +1,4 @@
-# The names that the package loads when they are used, for editors and type checkers.
+# The public names, which the package loads when they are used.
 from . import theory as theory
 from .configuration.accuracy import settings_for as settings_for
 from .data.point import point as point

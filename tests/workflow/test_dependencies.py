@@ -64,7 +64,7 @@ def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
         if re.search(r"\b(import_module|__import__|resolve_name)\(", path.read_text("utf-8"))
     }
     named = ("draw_figure", "job", "predict", "run_study", "simulate", "study_grid")
-    assert computed == {f"steps/{name}" for name in named} | {"__init__", "theory/__init__"}
+    assert computed == {f"steps/{name}" for name in named}
 
 
 def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(inputs):

@@ -1,6 +1,6 @@
-# The names that the package loads when they are used, for editors and type checkers.
-from ..model.balance import prestress_balance_position as prestress_balance_position
+# The public names, which the package loads when they are used.
 from .arrest import ArrestingCrack as ArrestingCrack
+from .arrest import prestress_balance_position as prestress_balance_position
 from .barrier import barrier_depth as barrier_depth
 from .barrier import barrier_depth_estimate as barrier_depth_estimate
 from .closed_pulse import SteadyPulse as SteadyPulse
