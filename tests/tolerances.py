@@ -43,8 +43,6 @@ FIXED_AGAINST_LOCALISED = 1e-3
 AMPLIFICATION, AMPLIFICATION_WEAK = 1e-9, 1.01e-4
 # Fractions of a bound that are just below and just above it.
 BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
-# A run of the localised scheme this far above the bound does not outlast its first oscillations.
-WELL_ABOVE_BOUND = 1.25
 # The measured boundary is below the derived one by the resolution of the bisection, or above it:
 # within 400 steps a mode that grows by less than a few per cent a step is not seen, and without
 # damping growth begins more slowly.
