@@ -4,7 +4,6 @@ Every block is compared in test_burridge_knopoff.py.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ import tolerances as tol
 from reference.lattice_state import elastic_stress, sliding
 
 import slippulse as sp
-from slippulse.model.release import RELEASES
 from slippulse.solver.fixed_step import LATTICES
 
 
@@ -53,9 +51,3 @@ def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end
     assert run.attrs["min_stuck_stress"] <= lowest + tol.STRESS_AT_END
     if lowest <= scene.reverse_threshold:
         assert "reverse_sliding" in run.attrs["run_flags"]
-
-
-def test_without_damping_the_release_rules_are_one():
-    scene = sp.Scene("stress", sp.Prestress(-0.5, 0.0), 6.0, 0.1)
-    one, two = (sp.simulate(replace(scene, release=release)) for release in RELEASES)
-    assert one.equals(two)
