@@ -3,6 +3,7 @@
 import json
 import platform
 import time
+import timeit
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import product
@@ -39,12 +40,7 @@ POWERS, LENGTH = (7, 8, 9), 160.0
 
 def best(run: Callable[[], object], repeats: int) -> float:
     """Least processor seconds of a few repeats, without other work of the machine."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        run()
-        times.append(time.process_time() - start)
-    return min(times)
+    return min(timeit.repeat(run, timer=time.process_time, repeat=repeats, number=1))
 
 
 def stencil_rate(blocks: int) -> float:
@@ -159,11 +155,7 @@ def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"machine": machine} | timed, indent=1)
     (folder / "benchmark.json").write_text(f"{text}\n", encoding="utf-8")
-    for name, numbers in timed.items():
-        print(name)
-        for key, number in numbers.items():
-            print(f"  {key}: {number:.3g}")
-    print(f"All in {folder}/benchmark.json")
+    print(f"{text}\nAll in {folder}/benchmark.json")
 
 
 if __name__ == "__main__":
