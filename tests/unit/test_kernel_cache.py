@@ -19,14 +19,6 @@ def run_with(folder, program: str, **variables: str) -> str:
     return subprocess.check_output(command, env=environment, text=True).strip()
 
 
-@pytest.fixture(scope="module")
-def compiled(tmp_path_factory):
-    """A cache that holds the kernels that `compile_all` compiles, and no others."""
-    folder = tmp_path_factory.mktemp("kernels")
-    run_with(folder, COMPILE_ALL)
-    return folder
-
-
 def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path, monkeypatch):
     copied = tmp_path / "solver"
     shutil.copytree(jit.SOURCES, copied, ignore=shutil.ignore_patterns("__pycache__"))
@@ -67,21 +59,22 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
 
 
 @pytest.mark.slow
-def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(compiled):
-    times = lambda: {path.name: path.stat().st_mtime_ns for path in compiled.rglob("*.nbc")}
+def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(tmp_path):
+    times = lambda: {path.name: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")}
+    run_with(tmp_path, COMPILE_ALL)
     kernels = times()
     assert {name.partition(".")[0] for name in kernels} == {"taylor", "fixed_step", "layer"}
-    run_with(compiled, COMPILE_ALL)
+    run_with(tmp_path, COMPILE_ALL)
     for scheme in SCHEMES:
         profile = "'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1"
         scene = f"sp.Scene({profile}, beta=0.01, scheme={scheme!r}, order=8)"
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
-        run_with(compiled, f"import slippulse as sp; sp.simulate({scene}, {samples})")
+        run_with(tmp_path, f"import slippulse as sp; sp.simulate({scene}, {samples})")
     assert times() == kernels
     # One that is missing is compiled, and no other.
-    textbook = next(compiled.rglob("*advance_fixed*.nbc"))
+    textbook = next(tmp_path.rglob("*advance_fixed*.nbc"))
     textbook.unlink()
-    run_with(compiled, COMPILE_ALL)
+    run_with(tmp_path, COMPILE_ALL)
     assert {name for name, time in times().items() if time != kernels[name]} == {textbook.name}
 
 

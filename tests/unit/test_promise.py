@@ -124,25 +124,20 @@ def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study
     assert "missed by 0 (front_speed_right inf)" in summary(study, 10.0)
 
 
-def test_the_numbers_of_a_scene_carry_the_verdict(tables, study):
+def test_the_numbers_and_the_page_of_a_scene_carry_the_verdict(tables, study, tmp_path):
     parts = (study, judged(study, tables[0], 10.0, SHARE))
     first = tables[0].iloc[0]
-    plain, with_promise = (scene_numbers(first, part[part["point"] == 0]) for part in parts)
-    assert set(with_promise.columns) - set(plain.columns) == {"promised", "kept"}
-    assert set(with_promise["kept"]) == {"true"} and set(with_promise["promised"]) == {10.0}
-    pd.testing.assert_frame_equal(with_promise[plain.columns], plain)
-
-
-def test_the_page_of_a_scene_says_what_is_kept(tmp_path):
+    plain, promised = (scene_numbers(first, part[part["point"] == 0]) for part in parts)
+    assert set(promised.columns) - set(plain.columns) == {"promised", "kept"}
+    assert set(promised["kept"]) == {"true"} and set(promised["promised"]) == {10.0}
+    pd.testing.assert_frame_equal(promised[plain.columns], plain)
+    promised.loc[1, "kept"] = "false"
+    promised.loc[2, ["promised", "kept"]] = [math.nan, ""]
     picture = tmp_path / "one.png"
     picture.write_bytes(b"")
-    plain = {"quantity": [*"abc"], "label": [*"abc"]}
-    plain |= {"value": 1.0, "uncertainty": 0.01, "theory": math.nan}
-    promise = {"promised": [0.01, 0.001, math.nan], "kept": ["true", "false", ""]}
-    page = scene_page("one", "One", picture, pd.DataFrame(plain | promise), {}, "")
-    for text in ("promised accuracy", "0.01, kept", "0.001, missed", "not covered"):
-        assert text in page
-    assert "promised" not in scene_page("one", "One", picture, pd.DataFrame(plain), {}, "")
+    before, after = (scene_page("one", "One", picture, part, {}, "") for part in (plain, promised))
+    for text in ("promised accuracy", "10, kept", "10, missed", "not covered"):
+        assert text in after and text not in before
 
 
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
