@@ -31,21 +31,21 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
-    texts = {"note": r"measured at $\Delta x=0$", "why": "since $x$ is so", "further": further}
+    shown = {"note": r"measured at $\Delta x=0$", "why": "since $x$ is so"}
+    shown["figure"] = "fig05_scaling"
     claims = []
     for i, (id, entry) in enumerate(entries.items(), start=1):
         # The numbers of no two claims are equal.
         deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
         numbers = {"median": (deviation, 0.00021), "ratio": (1.0 + deviation, 0.00021)}
         numbers |= {"deviations": 1e-3 * i * np.arange(3.0), "from_exact": (1e-5 * i, 2e-5 * i)}
-        claim = Approximate(tolerance=entry["tolerance"], **(numbers | texts))
+        claim = Approximate(tolerance=entry["tolerance"], **numbers, further=further)
         if entry["kind"] == "qualitative":
-            claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, **texts)
+            claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, further=further)
         statement = (
             rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$"
         )
-        shown = entry | {"statement": statement, "figure": "fig05_scaling"}
-        claims.append(written(id, claim, shown, "III A"))
+        claims.append(written(id, claim, entry | shown | {"statement": statement}, "III A"))
     return claims
 
 

@@ -100,7 +100,8 @@ def estimated(
     """An estimate at one release rule and damping ratio, by the exact solution."""
     choice = {"release": release, "damping_ratio": ratio, "solution": "exact"} | others
     numbers = {"deviations": np.array([0.0]), "median": (deviation, uncertainty)}
-    return Combination(choice, Approximate(tolerance=0.2, **numbers))
+    claim = Approximate(tolerance=0.2, told={"reason": ""}, **numbers)
+    return Combination(choice, claim)
 
 
 # The length of the transition under leaf springs, as the exact theory has it.
@@ -109,12 +110,24 @@ KNOWN_LENGTHS += [("total", 0.058, 0.204), ("elastic", 0.1, 0.156)]
 LENGTHS = [estimated(*known) for known in KNOWN_LENGTHS]
 
 
-def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_most():
-    claim = over_choices(LENGTHS).written()
+@pytest.fixture(scope="module")
+def over_all(project):
+    """A claim judged over choices, as JSON has it, with the sentences on all such claims."""
+    common = read_text(project / "manuscript/claims.yaml")["over_choices"]
+    entry = ESTIMATED | {"why": "{{ runs }} runs.", "doubt": "{{ unsure.reason }}"}
+
+    def write(combinations: list[Combination]) -> dict:
+        return written("length", over_choices(combinations), entry, "", common)
+
+    return write
+
+
+def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_most(over_all):
+    claim = over_all(LENGTHS)
     assert (claim["verdict"], claim["choice"]) == (DEPENDS, "damping_ratio")
     assert (claim["holds_at"], claim["combinations"]) == (2, 4)
-    start = "It holds at 2 of 4 combinations, with deviations up to 16 %, and fails with 20 % or"
-    assert claim["why"].startswith(f"{start} more.")
+    start = "1 runs. It holds at 2 of 4 combinations, with deviations up to 16 %, and"
+    assert claim["why"].startswith(f"{start} fails with 20 % or more.")
     sides = ("holds at 0 (13.6 %)", "fails at 0.058 (20.4 %)", "holds at elastic (15.6 %)")
     assert all(side in claim["why"] for side in (*sides, "total (23.5 %)"))
     flips = [("not reproduced", DEPENDS), (DEPENDS, "reproduced")]
@@ -123,26 +136,32 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     assert tolerances == pytest.approx([0.136, 0.235], rel=1e-3)
 
 
-def test_the_last_release_of_a_lattice_decides_nothing_and_is_told_beside():
+def test_the_last_release_of_a_lattice_decides_nothing_and_is_told_beside(over_all):
     last = [estimated(*known, fraction=LAST) for known in KNOWN_LENGTHS]
-    claim = over_choices(last).written()
+    claim = over_all(last)
     assert claim["verdict"] == DEPENDS and claim["choice"] == "" and "depends" not in claim["why"]
     told = "With the last release, 4 of the combinations, it is off by 14 % to 24 %"
-    assert told in claim["why"] and "last release" not in over_choices(LENGTHS).written()["why"]
+    assert told in claim["why"] and "last release" not in over_all(LENGTHS)["why"]
 
 
-def test_one_verdict_at_every_choice_is_the_verdict():
+def test_one_verdict_at_every_choice_is_the_verdict(over_all):
     assert sorted(WORST_FIRST) == sorted(VERDICTS)
-    held = over_choices(LENGTHS[1::2]).written()
-    assert held["verdict"] == "reproduced" and held["why"] == ""
+    held = over_all(LENGTHS[1::2])
+    assert held["verdict"] == "reproduced" and held["why"] == "1 runs."
     assert over_choices(LENGTHS[0::2]).verdict() == "not reproduced"
-    unsure = over_choices([estimated("total", 0.0, 0.19, 0.05), *LENGTHS[3:]]).written()
-    assert unsure["verdict"] == "reproduced with caveat" and "0" in unsure["why"]
+    unsure = estimated("total", 0.0, 0.19, 0.05)
+    reasons = {"": "it is within the tolerance, but not with its uncertainty", "so": "so"}
+    for reason, words in reasons.items():
+        doubted = replace(unsure, claim=replace(unsure.claim, told={"reason": reason}))
+        claim = over_all([doubted, *LENGTHS[3:]])
+        assert claim["verdict"] == "reproduced with caveat" and "doubt" not in claim
+        choices = r"the release rule total and the damping ratio $\beta/\Delta x$ 0"
+        assert claim["why"] == f"With {choices}, {words}."
 
 
 def test_each_claim_of_the_texts_has_a_judge_and_each_judge_a_text():
     with pytest.raises(ValueError, match=r"claims: .*estimate, .*pulse_slip.*; allowed: the same"):
-        all_claims(evidence(), [])
+        all_claims(evidence(), {}, [])
 
 
 def test_no_claim_compares_a_function_with_itself(project):

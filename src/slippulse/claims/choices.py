@@ -7,9 +7,9 @@ from itertools import permutations
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..data.numerals import number, percent, setting
+from ..data.numerals import setting
 from . import rules
-from .kinds import Claim, Equation, Qualitative
+from .kinds import Claim
 
 # Values of open choices, by name.
 Chosen = dict[str, float | str]
@@ -90,61 +90,34 @@ class OverChoices(Claim):
         verdicts = [one.claim.verdict(tolerance) for one in self.combinations]
         return rules.verdict_over_choices(verdicts)
 
+    @cached_property
+    def decided(self) -> list[Change]:
+        """The changes of choices on which the claim depends."""
+        return decisive(self.combinations)
+
     def fields(self) -> dict[str, Any]:
         """The numbers shown, a row for each combination, and the choice that moves most."""
         rows = [one.choice | one.result for one in self.combinations]
-        holding = [row["deviation"] for row in rows if row["holds"]]
-        decided = decisive(self.combinations)
-        verdict, why = self.verdict(), self.shown.why
-        if verdict == rules.CAVEAT:
-            why = self.doubt()
-        elif verdict == rules.DEPENDS:
-            failing = [row["deviation"] for row in rows if row["holds"] is False]
-            most, least = self.size(max(holding)), self.size(min(failing))
-            why += f" It holds at {len(holding)} of {len(rows)} combinations, with deviations up "
-            why += f"to {most}, and fails with {least} or more."
-            causes = "; on ".join(map(self.cause, decided))
-            why += f" It depends on {causes}." if causes else ""
-            why = f"{why}{self.at_last_release()}".strip()
-        out: dict[str, Any] = {"verdict": verdict, "choices": rows, "why": why}
-        out |= {"choice": decided[0].name if decided else "", "combinations": len(rows)}
-        return self.shown.written() | out | {"holds_at": len(holding)}
+        out: dict[str, Any] = {"verdict": self.verdict(), "choices": rows}
+        out |= {"combinations": len(rows), "holds_at": sum(bool(row["holds"]) for row in rows)}
+        return self.shown.written() | out | {"choice": self.decided[0].name if self.decided else ""}
 
-    def doubt(self) -> str:
-        """Why the first combination with a caveat has it."""
-        unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
-        choice = unsure.choice.items()
-        settings = [f"{NAMES[name]} {named(value)}" for name, value in choice if name in NAMES]
-        why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
-        return f"With {' and '.join(settings)}, {why}."
-
-    def size(self, deviation: float, digits: int = 2) -> str:
-        """A deviation in the unit of the kind: of an exponent, or relative."""
-        exponent = isinstance(self.shown, Equation)
-        return number(deviation, 2) if exponent else percent(deviation, digits)
-
-    def at_last_release(self) -> str:
-        """How far the last release is off, in a sentence; empty if it is no choice."""
+    def names(self) -> dict[str, Any]:
+        """What sentences tell of the numbers shown, of all combinations and of one in doubt."""
+        results = [one.result for one in self.combinations]
         last = [one.result for one in self.combinations if one.choice.get("fraction") == LAST]
-        sizes = [result["deviation"] for result in last if result["deviation"] is not None]
-        if not sizes:
-            return ""
-        ends = f"{self.size(min(sizes))} to {self.size(max(sizes))}"
-        text = f" With the last release, {len(sizes)} of the combinations, it is off by {ends}: "
-        return f"{text}that is the lattice's, by its spacing and damping."
-
-    def cause(self, change: Change) -> str:
-        """A choice on which the claim depends, with what holds on either side of a change."""
-        sides = []
-        for one in (change.before, change.after):
-            size = self.size(one.result["deviation"], 3)
-            if isinstance(self.shown, Equation):
-                size = f"exponent off by {size}"
-            elif isinstance(self.shown, Qualitative):
-                size += " of the runs against"
-            verb = "holds" if one.result["holds"] else "fails"
-            sides.append(f"it {verb} at {named(one.choice[change.name])} ({size})")
-        return f"{NAMES[change.name]}: {' and '.join(sides)}"
+        in_doubt = [one for one in self.combinations if one.result["verdict"] == rules.CAVEAT]
+        unsure = (in_doubt or self.combinations)[0]
+        choice = {NAMES[name]: value for name, value in unsure.choice.items() if name in NAMES}
+        return self.shown.told | {
+            "holding": [result["deviation"] for result in results if result["holds"]],
+            "failing": [result["deviation"] for result in results if result["holds"] is False],
+            "last": [result["deviation"] for result in last if result["deviation"] is not None],
+            "changes": self.decided,
+            "choice_names": NAMES,
+            "settings": [f"{name} {named(value)}" for name, value in choice.items()],
+            "unsure": unsure.claim.told,
+        }
 
 
 def over_choices(

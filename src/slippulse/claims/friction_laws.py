@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 
-from ..data.numerals import number
 from .evidence import Evidence, agreeing
 from .kinds import Qualitative
 from .pulses import TWO_WAY
@@ -12,6 +11,8 @@ from .pulses import TWO_WAY
 # one.
 STRONGEST = (-0.5, 0.9)
 SIZES = ("width", "slip")
+# The pre-stress at which the front speed under slip weakening is told.
+LEVEL = 0.5
 
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
@@ -23,12 +24,11 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     fewest, most = two_way.min(), two_way.max()
     # In a pulse a block wide one block slides at once.
     wide = bool(fewest > 1.0)
-    why = f"There are pulses in {len(two_way)} of {len(chain)} runs with and {len(one_way)} of "
-    why += f"{len(spike)} runs without leaf springs, the others arrest; they are {number(fewest)} "
-    why += f"to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
+    told = {"wide": wide, "two_way": len(two_way), "with_springs": len(chain)}
+    told |= {"one_way": len(one_way), "without_springs": len(spike)}
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
     decided = [len(runs) > 0 or None for runs in (two_way, one_way)]
-    return Qualitative(decided=decided, condition=wide, further=further, why=why if wide else "")
+    return Qualitative(decided=decided, condition=wide, further=further, told=told)
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -42,8 +42,7 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     further = {f"ruptures: {kind}": float(count) for kind, count in kinds.value_counts().items()}
     further["left out, since blocks would slide back"] = float(outside.sum())
     further["left out, since fracture energy stops them"] = float(len(bounded) - len(ruptures))
-    why = "Tested are friction linear in slip rate, bounded laws of it, and slip weakening."
-    return Qualitative(decided=kinds != "crack", condition=True, further=further, why=why)
+    return Qualitative(decided=kinds != "crack", condition=True, further=further)
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -55,10 +54,9 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     decays = (falls["last"] < (1.0 - evidence.tolerance(id)) * falls["first"]).unstack()
     laws = decays[decays.index > 0.0]
     words = "laws, by their strengthening, that leave a steady pulse"
-    why = "Tested is one family of laws, friction that strengthens linearly with slip rate."
     answers = agreeing(laws.iloc[:, 0], laws.iloc[:, -1])
     further = {words: float((~laws).sum().max())}
-    return Qualitative(decided=answers, condition=True, further=further, why=why)
+    return Qualitative(decided=answers, condition=True, further=further)
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
@@ -71,11 +69,8 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     held = (change > evidence.tolerance(id)).to_numpy().ravel()
     least = change.min()
     further = {f"smallest change of the {size}": float(least[f"pulse_{size}"]) for size in SIZES}
-    laws = evidence.tables["friction_laws"].query("law == 'slip_weakening' and level == 0.5")
+    laws = evidence.tables["friction_laws"].query(f"law == 'slip_weakening' and level == {LEVEL}")
     speeds = laws["exact_speed"].dropna()
-    undamped = 1.0 / np.sqrt(1.0 - 0.5**2)
-    why = "The runs are of friction linear in slip rate, which leaves the front speed as it is."
-    why += rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} to "
-    why += f"{number(speeds.max())}, where the formula has {number(undamped, 4)} "
-    why += "(figure study_friction_laws)."
-    return Qualitative(decided=held, condition=True, further=further, why=why)
+    told = {"slowest": speeds.min(), "fastest": speeds.max(), "level": LEVEL}
+    told["undamped"] = 1.0 / np.sqrt(1.0 - LEVEL**2)
+    return Qualitative(decided=held, condition=True, further=further, told=told)

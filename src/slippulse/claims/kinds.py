@@ -21,19 +21,18 @@ MOST_UNDECIDED = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class Claim(ABC):
-    """The result about one claim; every kind may have further numbers by name, and two texts.
+    """The result about one claim; every kind may have further numbers by name.
 
     ``tolerance`` is 0 where no number is compared with one. ``besides`` has the verdict, at a
     tolerance, on what must hold besides; ``failing`` is the verdict on a claim that fails.
-    ``why`` is a sentence or two on the verdict, ``note`` replaces that in manuscript/claims.yaml.
+    ``told`` has what the sentences of manuscript/claims.yaml on the claim tell besides, by name.
     """
 
     tolerance: float = 0.0
     besides: Callable[[float], str] | None = None
     failing: str = rules.FAILED
     further: Mapping[str, float] = field(default_factory=dict)
-    why: str = ""
-    note: str = ""
+    told: dict[str, Any] = field(default_factory=dict)
 
     @abstractmethod
     def alone(self, tolerance: float) -> str:
@@ -72,8 +71,11 @@ class Claim(ABC):
 
     def written(self) -> dict[str, Any]:
         """All fields in claims.json that the result sets."""
-        texts = {"why": self.why} | ({"note": self.note} if self.note else {})
-        return texts | {"further": dict(self.further)} | self.fields() | {"flips_at": self.flips()}
+        return {"further": dict(self.further)} | self.fields() | {"flips_at": self.flips()}
+
+    def names(self) -> dict[str, Any]:
+        """What sentences tell besides these fields."""
+        return self.told
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,7 +3,6 @@
 import numpy as np
 import pandas as pd
 
-from ..data.numerals import number, percent
 from . import rules
 from .evidence import Evidence
 from .kinds import Approximate, Qualitative
@@ -61,15 +60,6 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     levels = pulses.reset_index()
     fracture = float((levels["gamma"] * levels["weakening"] / levels["tau0"] ** 2).max())
     uncertainty = float((change(runs, "pulse", "pulse_width") * ratio).median())
-    why = "The paper does not say that its formula carries over. In the plane, under a slip "
-    why += rf"weakening that takes {percent(fracture)} of the energy $\tau_0^2/2\gamma$, pulses "
-    why += f"are {number(ratio.min(), 2)} to {number(ratio.max(), 2)} times as wide as the formula "
-    why += "for Coulomb friction in one dimension; the one-dimensional model with the same "
-    why += f"weakening and the paper's damping has {number(damped.min(), 2)} to "
-    why += f"{number(damped.max(), 2)}: friction and plane are not separated. By algebra a "
-    why += rf"point of the steady pulse slides for {number(CROSSINGS)} $\tau_0$ times as long as a "
-    why += r"shear wave goes to the top and back, whatever $\gamma$: at a point the height is not "
-    why += r"quasi-static, though the rupture lasts longer than the $2H/c_s$ of section IV C 2."
     further = {}
     for quantity in ("speed", "pulse_slip", "first_stick"):
         words = f"median of plane over formula, {quantity.replace('_', ' ')}"
@@ -84,7 +74,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         ratio=(float(ratio.median()), uncertainty),
         failing=rules.BEYOND,
         further=further,
-        why=why,
+        told={"fracture": fracture, "crossings": CROSSINGS},
     )
 
 

@@ -5,8 +5,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
+from ..data.prose import fill
 from . import friction_laws, layer, pulses, space_time_figure, transition
-from .evidence import Evidence
+from .evidence import Evidence, Texts
 from .kinds import Claim
 from .ledger import with_texts
 from .reading import places_of
@@ -72,6 +73,8 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "stress_pulse_other_laws": friction_laws.stress_pulse_other_laws,
     "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
 }
+# Texts of an entry that are not in claims.json as they are.
+UNWRITTEN = ("sentences", "doubt")
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
@@ -80,22 +83,25 @@ EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict
 )
 
 
-def all_claims(evidence: Evidence, sentences: Sequence[Mapping]) -> list[dict]:
-    """The ledger as in claims.json; a ValueError names claims in the texts or in the code alone."""
+def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
+    """The ledger as in claims.json; a ValueError names claims in the texts or in the code alone.
+
+    ``common`` has, by verdict, why claims have it that are judged over open choices.
+    """
     odd = ", ".join(sorted({*evidence.entries} ^ {*CLAIMS}))
     if odd:
         raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.meet)
     where = places_of(evidence.entries, sentences)
     return [
-        written(id, CLAIMS[id](evidence, id), entry, where[id])
+        written(id, CLAIMS[id](evidence, id), entry, where[id], common)
         for id, entry in evidence.entries.items()
     ]
 
 
-def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
+def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping = {}) -> dict:
     """One claim with its text, as JSON has it."""
-    out = EMPTY | {name: value for name, value in entry.items() if name != "sentences"}
+    out = EMPTY | {name: value for name, value in entry.items() if name not in UNWRITTEN}
     if entry["kind"] == "approximate":
         # The spread of its runs, and the exact theory.
         out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
@@ -105,7 +111,17 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     if "earlier_tolerance" in entry:
         out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
     out = finite(out)
+    names = out | claim.names()
+    out |= {key: sentence(out[key], names) for key in ("note", "why")}
+    if out["choices"] and out["verdict"] in common:
+        names |= {"why": out["why"], "doubt": sentence(entry.get("doubt", ""), names)}
+        out["why"] = sentence(common[out["verdict"]], names)
     return out | {"why": with_texts(out).why_text()}
+
+
+def sentence(text: str, names: Mapping) -> str:
+    """A text with its expressions evaluated, in one line."""
+    return " ".join(fill(text, names).split())
 
 
 def finite(value):

@@ -8,14 +8,13 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from ..data.numerals import number, percent, with_uncertainty
 from ..measurement.fronts import straight_line
 from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, exponent, ratios, studied
 from .kinds import NAN, Approximate, Claim, Equation, Qualitative
 from .rules import Uncertain
-from .space_time_figure import arrow_and_stick
+from .space_time_figure import drawn
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
@@ -144,65 +143,47 @@ def estimated(
     columns = quantity, f"estimated_{quantity}"
     combinations = judged(runs, lambda tables: evidence.approximate(id, tables, *columns))
     exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
-    drawn = {}
+    arrow = {}
     suffix = "_stress" if boundary == "stress" else ""
     read = evidence.readings.get(f"arrow_{quantity}{suffix}")
     if read:
         scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
         predicted = float(scene[f"paper_transition_{quantity}"])
-        drawn["arrow of figure 4 over the estimate"] = read["value"] / predicted
-        drawn["its reading error"] = read["reading_error"] / predicted
-    return combinations, exact, drawn
+        arrow["arrow of figure 4 over the estimate"] = read["value"] / predicted
+        arrow["its reading error"] = read["reading_error"] / predicted
+    return combinations, exact, arrow
 
 
 def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """An estimate under a displacement boundary, by the first stick and by the slip."""
-    combinations, exact, drawn = estimated(evidence, id, "displacement", quantity)
+    combinations, exact, arrow = estimated(evidence, id, "displacement", quantity)
     slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP])
     ratio = ratios(slips, quantity, f"estimated_{quantity}")
     near = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {f"runs that reach the {SLIP}": float(ratio.count()), "in all": float(len(ratio))}
-    further |= {"of these within the tolerance": float(near.sum())} | drawn
-    why = undamped_and_damped(combinations)
-    if quantity == "time":
-        literal = slips["slip_time_nucleation"].count()
-        why = "Section III B has both readings, so that neither is an error: it defines the time "
-        why += r"by the slip $2\tau/\gamma$ at the nucleation point, and takes it from a reduced "
-        why += "equation in which that is the first stick. In the full equation they differ: "
-        why += rf"{literal} of {len(ratio)} runs reach the slip with the $\tau=1$ that stands at "
-        why += rf"that point, and {ratio.count()} with $\tau_0$, by which it is judged. "
-        why += arrow_and_stick(evidence)
-    return over_choices(combinations, from_exact=exact, further=further, why=why)
+    further |= {"of these within the tolerance": float(near.sum())} | arrow
+    told = drawn(evidence) | undamped_and_damped(combinations)
+    told |= {"of_runs": len(ratio), "reach": ratio.count()}
+    told["reach_literally"] = slips["slip_time_nucleation"].count()
+    return over_choices(combinations, from_exact=exact, further=further, told=told)
 
 
-def undamped_and_damped(combinations: Iterable[Combination]) -> str:
-    """The deviations by the first stick without damping and with it, in a sentence."""
+def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[float]]:
+    """The deviations by the first stick without damping and, by release rule, with it."""
     sizes: dict[str, list[float]] = {"undamped": [], "elastic": [], "total": []}
     for one in combinations:
         choice, deviation = one.choice, one.result["deviation"]
         if choice["criterion"] == STICK and deviation is not None:
             part = "undamped" if choice["damping_ratio"] == 0.0 else str(choice["release"])
             sizes[part].append(deviation)
-    if not all(sizes.values()):
-        return ""
-    ranges = {part: f"{percent(min(span))} to {percent(max(span))}" for part, span in sizes.items()}
-    why = f"By the first stick it is off by {ranges['undamped']} without damping, the limit in "
-    why += "which the paper derives it. With damping, which makes fronts faster, it is off by "
-    why += f"{ranges['elastic']} under the printed release rule and by {ranges['total']} under "
-    return why + "that of the authors' code."
+    return sizes
 
 
 def held_stress(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """An estimate under a stress boundary, at each fraction of the way and at the last release."""
-    combinations, exact, drawn = estimated(evidence, id, "stress", quantity)
-    why = ""
-    if drawn:
-        over, error = drawn.values()
-        why = "The paper says that the estimate is short, and calls agreement an arrow of "
-        why += f"{with_uncertainty(over, error)} times it, at the pre-stress that we read off "
-        why += "figure 4, right; its origin may be shifted besides."
-    further = drawn | fraction_medians(combinations)
-    return over_choices(combinations, from_exact=exact, further=further, why=why)
+    combinations, exact, arrow = estimated(evidence, id, "stress", quantity)
+    further = arrow | fraction_medians(combinations)
+    return over_choices(combinations, from_exact=exact, further=further)
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
@@ -223,12 +204,11 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
             measured=measured,
             uncertainty=uncertainty,
             counts={"runs": len(tables[0])},
-            note=rf"exponent of ${symbol}_\mathrm{{trans}}$, which is the farther from 1",
+            told={"symbol": symbol},
         )
 
-    why = r"By both readings of $T_\mathrm{trans}$ in section III B." if displacement else ""
     runs = transitions(evidence) if displacement else arrests(evidence)
-    return over_choices(judged(runs, judge), why=why)
+    return over_choices(judged(runs, judge))
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
@@ -238,7 +218,7 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
         left = evidence.approximate(id, tables, "covered / time", "1")
         right = evidence.approximate(id, tables, "(length - covered) / time", "1")
         side, front = ("right", right) if right.median[0] > left.median[0] else ("left", left)
-        return replace(front, note=f"mean speed of the {side} front, which is the farther off")
+        return replace(front, told={"side": side})
 
     combinations = judged(arrests(evidence), judge)
     return over_choices(combinations, further=fraction_medians(combinations))
@@ -276,14 +256,10 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
         gap, power = studied(tables, gaps), exponent(tables, covered, predicted, ("left", "width"))
         further = {"median gap in H, over all sweeps": gap[0], "exponent": power[0]}
-        small, why = rules.within(*gap, GAP), ""
-        if small == rules.CAVEAT:
-            why = f"lattices stop it early: the median gap, {number(gap[0], 2)} $H$ with an "
-            why += f"uncertainty of {number(gap[1], 2)}, is below $H$, but their sum is not. "
-            why += "Equation (11) is a balance at rest, into which damping does not enter: the "
-            why += "caveat is of our lattices, not of the paper"
+        small = rules.within(*gap, GAP)
+        told = {"near": small, "gap": gap[0], "gap_uncertainty": gap[1]}
         besides = rules.worst([small, rules.within(abs(power[0] - 1.0), power[1], allowed)])
-        return replace(claim, besides=lambda _: besides, further=further, why=why)
+        return replace(claim, besides=lambda _: besides, further=further, told=told)
 
     tables = evidence.lattices(*sweeps, where=INSIDE)
     shown, ratio = judge(tables), ratios(tables[0], covered, predicted)

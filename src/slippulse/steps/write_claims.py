@@ -21,7 +21,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     _, tables = given(files)
     steady = settings["measure"]["steady_tolerance"]
     evidence = Evidence(tables, texts["claims"], steady, settings["published"])
-    claims = all_claims(evidence, sentences)
+    claims = all_claims(evidence, texts["over_choices"], sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])
     write_json(beside, outputs["findings"])
