@@ -12,7 +12,7 @@ import slippulse as sp
 
 DURATION = 16.0
 REACH = 40
-UNEVEN = sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),))
+UNEVEN = sp.Prestress(0.2, 0.6, peak=1.01, bumps=((5.0, -0.7, 1.0),))
 TWO_POINTS = sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0)))
 PROFILES = {
     "displacement, even": ("displacement", 0.3, sp.Prestress(0.3, 0.3)),
