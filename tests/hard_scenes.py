@@ -27,8 +27,8 @@ class Keys:
     x: float = 1.0
 
     def rupture(self) -> Rupture:
-        names = ("prestress", "gamma", "damping_ratio", "release", "duration", "refinement")
-        return Rupture(*(getattr(self, name) for name in names))
+        *arguments, _ = vars(self).values()
+        return Rupture(*arguments)
 
 
 def stretched(keys: Keys, factor: float) -> Keys:

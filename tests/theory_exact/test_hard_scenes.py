@@ -5,16 +5,51 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hard_scenes import FAMILIES, VARIANTS, Compared, scene
+from hard_scenes import FAMILIES, VARIANTS, Compared, Keys, scene
 from tolerances import NUDGED, NUDGED_DOUBLE
 
+from slippulse.model.prestress import Prestress
 from slippulse.theory import part
-from slippulse.theory.lower_bound import stays_positive
 
 # The first scenes are in each run of the tests, each with one variant; all with the slow tests.
 FAST, ALL = 50, 500
 # Scenes in which something sticks.
 STICK = (13, 16, 23, 28, 37, 41)
+# Pre-stress of scenes that once gave wrong answers without a flag.
+RESTS = Prestress(-0.45, -0.45, 0.95, bumps=((3.27, 1.25, 0.715),))
+STOPS = Prestress(-0.854, 0.417, 30.0, 1.0, ((114.0, -0.189),), ((26.7, 0.269, 4.96),))
+DIP = Prestress(0.4314, 0.4314, 4.43, steps=((7.21, 0.893), (-6.456, -1.177)))
+CENTRE, BUMP = 11.132018776746689, (-0.8827475088463022, 0.43810831317438026)
+LEVEL, BUMPS = 0.5828621621834829, ((CENTRE, *BUMP), (-CENTRE, *BUMP))
+EVEN = Prestress(LEVEL, LEVEL, 3.158165039598508, 1.000000000001, bumps=BUMPS)
+# The scenes; one right answer of each, with its error.
+KNOWN = {
+    # The characteristic that comes to the front next entered where the pre-stress is positive.
+    # Lattices tend to this end; the grid of their blocks is 0.01.
+    "a front that rests and goes on": (
+        Keys(RESTS, 0.108, 0.1, "total", 11.565),
+        lambda rupture: rupture.front_ends[0][1].x,
+        pytest.approx(8.72, abs=0.01),
+    ),
+    # Next to it du/dt is below 0 for a short while only, and slip is never.
+    "a front that has stopped": (
+        Keys(STOPS, 0.00102, 2.0, "elastic", 110.0),
+        lambda rupture: rupture.limit.time,
+        pytest.approx(92.196663, abs=1e-5),
+    ),
+    # The dip of the trailing edge is much narrower than the rupture.
+    "a first stick in a dip": (
+        Keys(DIP, 0.0242, 2.0, "total", 76.8),
+        lambda rupture: rupture.first_stick,
+        pytest.approx((16.331963629, -8.390786526), abs=1e-6),
+    ),
+    # There the pace of the trailing edge is rounding, of either sign.
+    "a first stick at the centre of symmetry": (
+        Keys(EVEN, 0.0760121501359528, 1.0, "elastic", 25.693078285585813),
+        lambda rupture: rupture.first_stick,
+        pytest.approx((11.290149, 0.0), abs=1e-6),
+    ),
+}
 
 
 @pytest.mark.parametrize("number", range(FAST))
@@ -23,6 +58,28 @@ def test_two_solutions_agree_before_either_has_a_limit(number):
     variant = list(VARIANTS)[number // len(FAMILIES) % len(VARIANTS)]
     other = compared.answers_of(VARIANTS[variant](compared.keys))
     assert compared.faults(other) == [], variant
+
+
+@pytest.mark.parametrize(("keys", "answer", "expected"), KNOWN.values(), ids=KNOWN)
+def test_scenes_off_the_beaten_path_are_right_or_flagged(keys, answer, expected):
+    assert answer(keys.rupture()) == expected
+    faults, _ = all_variants(keys, 200)
+    assert not any(faults.values()), faults
+
+
+def test_mirrored_parts_that_have_not_met():
+    """A scene that misses symmetry by less than rounding is solved on both sides."""
+    profile = Prestress(-0.3, -0.3, bumps=((10.0, 1.5, 1.0), (-10.0, 1.5, 1.0)))
+    other = replace(profile, bumps=(*profile.bumps, (50.0, 1e-14, 1.0)))
+    x = np.linspace(-14.0, 14.0, 57)
+    for duration in (2.0, 5.0):
+        keys = Keys(profile, 0.65, 0.1, "total", duration)
+        one, two = keys.rupture(), replace(keys, prestress=other).rupture()
+        assert len(one.front_ends) == 3 and (one.limit is None) == (two.limit is None)
+        assert one.largest_velocity == pytest.approx(two.largest_velocity, rel=1e-6)
+        assert one.stick_time(x) == pytest.approx(two.stick_time(x), abs=1e-6, nan_ok=True)
+        for name, values in one.map([0.7 * duration, duration], x).items():
+            assert values == pytest.approx(two.map([0.7 * duration, duration], x)[name], abs=1e-6)
 
 
 @pytest.mark.parametrize("number", STICK)
@@ -44,27 +101,6 @@ def test_an_edge_as_steep_as_waves_is_slow_and_not_a_jump_in_each_of_its_pieces(
     assert finer.time == pytest.approx(limit.time, rel=NUDGED)
 
 
-@pytest.mark.parametrize("number", STICK)
-def test_what_is_bounded_above_zero_is_so_in_between(number):
-    """Where the bound holds, 15 positions in between slide until the first stick."""
-    rupture = scene(number).rupture()
-    time = 0.97 * rupture.first_stick.time
-    part = next(p for p in rupture._solved if p.curve.covers(rupture.first_stick.x))
-    fronts = (part.curve.front_at(time, rupture.first_stick.x, side) for side in (-1.0, 1.0))
-    x = np.linspace(*fronts, 121)
-    velocity = part.velocity(x, np.full(x.size, time))
-    pairs, at_ends = (np.array([values[:-1], values[1:]]) for values in (x, velocity))
-    bounded = stays_positive(part, pairs, at_ends, time)
-    assert bounded.mean() > 0.5
-    inner = np.linspace(*pairs[:, bounded], 17)[1:-1].ravel()
-    assert np.min(part.velocity(inner, np.full(inner.size, time))) > 0.0
-    # No pair around what has stuck is bounded.
-    middle = np.array([[rupture.first_stick.x - 0.01], [rupture.first_stick.x + 0.01]])
-    later = 1.01 * rupture.first_stick.time
-    velocity = part.velocity(middle.ravel(), np.full(2, later))
-    assert not stays_positive(part, middle, velocity[:, None], later).any()
-
-
 @pytest.mark.parametrize("number", [39, 53, 59])
 def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monkeypatch):
     """The scale of a part is a fraction of the duration then."""
@@ -82,10 +118,10 @@ def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monke
 
 
 @cache
-def all_variants(number: int) -> tuple[dict[str, list[str]], bool]:
+def all_variants(keys: Keys, positions: int = 16) -> tuple[dict[str, list[str]], bool]:
     """Faults by variant, and whether refinement removes a limit: six solutions of a scene."""
-    compared = Compared(scene(number))
-    others = {name: compared.answers_of(change(compared.keys)) for name, change in VARIANTS.items()}
+    compared = Compared(keys, positions)
+    others = {name: compared.answers_of(change(keys)) for name, change in VARIANTS.items()}
     removed = np.isfinite(compared.answers.limit) and np.isinf(others["refinement 2"].limit)
     return {name: compared.faults(other) for name, other in others.items()}, bool(removed)
 
@@ -93,11 +129,11 @@ def all_variants(number: int) -> tuple[dict[str, list[str]], bool]:
 @pytest.mark.slow
 @pytest.mark.parametrize("number", range(ALL))
 def test_all_solutions_agree_before_either_has_a_limit(number):
-    found, _ = all_variants(number)
+    found, _ = all_variants(scene(number))
     assert not any(found.values()), found
 
 
 @pytest.mark.slow
 def test_few_limits_are_removed_by_refinement():
-    removed = [all_variants(number)[1] for number in range(ALL)]
+    removed = [all_variants(scene(number))[1] for number in range(ALL)]
     assert sum(removed) <= 0.15 * ALL
