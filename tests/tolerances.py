@@ -84,9 +84,6 @@ SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 ORDER_BAND = 0.35
 # The damped theory against simulation at dx = 0.02, where the front has long been steady.
 FRONT_SPEED_STUDY = 5e-5
-# The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
-PULSE_SLIP_THEORY, PULSE_PEAK_THEORY = 5e-4, 2e-3
-PULSE_WIDTH_BLOCKS = 2.0
 
 # ln M_+(0) by panels up to 2500 with the leading tail alone: the rest is of second order in 1/2500.
 CAUCHY_BY_PANELS = 1e-6

@@ -10,7 +10,6 @@ import yaml
 from numpy.polynomial import polynomial as poly
 from scipy.integrate import quad
 from scipy.linalg import expm
-from scipy.optimize import brentq
 from scipy.special import j0
 
 from slippulse import Prestress, theory
@@ -87,18 +86,6 @@ def test_uniform_pre_stress_in_closed_form(b, time):
         errors.append(abs(slip_velocity(fronts, gamma, 0.0, time) - printed))
     assert errors[1] < tolerances.NARROW_GAUSSIAN
     assert errors[1] < 0.3 * errors[0]
-
-
-def test_the_left_front_takes_for_ever():
-    """The times to 9/10, 99/100, ... of the way grow, and the balance holds from the entry on."""
-    crack = theory.ArrestingCrack(Prestress(-0.75, 0.0, width=5.0), 0.1)
-    fractions = 1.0 - 10.0 ** -np.arange(1.0, 6.0)
-    times = [crack.transition(float(fraction)).time for fraction in fractions]
-    assert np.all(np.diff(times) > 0.0)
-    for x, time in zip(fractions * crack.balance_position, times, strict=True):
-        delay = lambda e, end=time + x: e + float(crack.fronts.arrival(e)) - end
-        entry = brentq(delay, 0.0, crack.end - 1e-9, xtol=1e-13)
-        assert abs(crack.prestress.integral(x, entry)) <= 1e-9
 
 
 def random_layers():
