@@ -10,20 +10,20 @@ import xarray as xr
 import slippulse as sp
 from slippulse import theory
 from slippulse.measurement.promise import covered
+from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.model.stability import chosen_step
-from slippulse.predict.comparison import measured_row
+from slippulse.predict.comparison import measured_row, pulse_state
 from slippulse.predict.one_run import SETTINGS
 
 GAMMA, SPEED, END = 0.65, 1.2, 30.0
 
 
-def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> dict:
-    """Numbers of a run whose right front came to a distance, and waited at 4/5 of it, if at all.
+def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, str]:
+    """Pulse of a run whose right front came to a distance, and waited at 4/5 of it; its state.
 
     pulses : start, end and peak velocity of a sine of slip velocity
     """
-    dx = 0.05
-    x = dx * np.arange(-10, 800)
+    x = 0.05 * np.arange(-10, 800)
     released = (x >= 0.0) & (x <= reached)
     release = END - stopped - (reached - x) / SPEED - np.where(x < 0.8 * reached, wait, 0.0)
     release, stick = np.where(released, release, np.nan), np.where(released, END, np.nan)
@@ -33,14 +33,12 @@ def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> dict:
         velocity[inside] = peak * np.sin(np.pi * (x[inside] - start) / (end - start))
         stick[inside] = np.nan
     arrays = {"release_time": release, "stick_time": stick, "slip": 1.0 * released}
-    arrays |= {"slip_velocity": velocity, "slip_acceleration": 0.0 * x, "prestress": 0.5 + 0.0 * x}
-    attributes = sp.Scene("displacement", sp.Prestress(0.5, 0.5), END, dx, GAMMA).attributes()
-    attributes |= dict.fromkeys(("energy_residual", "min_velocity", "min_stuck_stress"), 0.0)
-    attributes |= dict.fromkeys(("steps", "block_updates", "re_releases"), 0)
-    attributes |= {"run_flags": "", "friction_ratio_needed": 0.0, "end_time": END}
-    attributes |= dict.fromkeys(("first_stick_time", "first_stick_position"), np.nan)
+    arrays |= {"slip_velocity": velocity, "prestress": 0.5 + 0.0 * x}
+    scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), END, 0.05, GAMMA)
     data = {name: ("x", array) for name, array in arrays.items()}
-    return measured_row(xr.Dataset(data, {"x": x}, attributes), SETTINGS)
+    run = xr.Dataset(data, {"x": x}, scene.attributes() | {"end_time": END})
+    pulse = leading_pulse(run, SETTINGS["front_window"])
+    return pulse, pulse_state(run, pulse)
 
 
 def test_a_promise_looks_at_the_prestress_that_fronts_cross():
@@ -98,16 +96,14 @@ def test_a_rough_chain_that_a_long_step_moves_is_flagged():
 def test_a_front_that_stopped_is_not_extrapolated_and_one_that_paused_is_measured_after_it():
     """It was said to be at 30 and to have the patch as its pulse."""
     for pulses in ((), ((2.0, 3.0, 3.0),)):
-        row = made_up(12.0, stopped=15.0, pulses=pulses)
-        assert row["pulse_state"] == "stopped" and row["pulse_front"] == 12.0
-        assert row["pulse_peak_velocity"] == 0.0 and np.isnan(row["pulse_width"])
-    assert made_up(30.0, wait=8.0)["front_speed_right"] == pytest.approx(SPEED, rel=tol.ALGEBRA)
+        pulse, state = made_up(12.0, stopped=15.0, pulses=pulses)
+        assert state == "stopped" and pulse.front == 12.0
+        assert pulse.peak_velocity == 0.0 and np.isnan(pulse.width)
+    assert made_up(30.0, wait=8.0)[0].speed == pytest.approx(SPEED, rel=tol.ALGEBRA)
 
 
 def test_the_leading_one_of_two_pulses_is_measured():
     pulse, other = (27.0, 30.0, 1.0), (2.0, 5.0, 1.3)
-    one, two = made_up(30.0, pulses=(pulse,)), made_up(30.0, pulses=(pulse, other))
-    assert two["pulse_state"] == "several" != one["pulse_state"]
-    for name in ("pulse_front", "pulse_width", "pulse_peak_velocity", "pulse_slip"):
-        assert two[name] == one[name]
-    assert two["pulse_width"] == pytest.approx(3.0, abs=0.1)
+    (one, _), (two, state) = (made_up(30.0, pulses=chosen) for chosen in ((pulse,), (pulse, other)))
+    assert state == "several" and two == one._replace(pulses=2)
+    assert two.width == pytest.approx(3.0, abs=0.1)
