@@ -1,7 +1,5 @@
 """Faults of machines: a run works, or fails in one clear line and leaves what was there."""
 
-import hashlib
-import json
 import multiprocessing
 import os
 import resource
@@ -16,26 +14,18 @@ import numpy as np
 import pandas as pd
 import pytest
 from faults import SIGNALS, WAYS, digests, fault_run, prepare, start
-from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, made, planned, refused, snakemake
+from pipeline_copy import BY_PROFILE, copy_project, made, planned, refused, snakemake
 
 from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
 from slippulse.data.saving import save_dataset
+from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.steps.job import logged
 from slippulse.steps.processes import JobFailed, Jobs
 
 SCENE = "results/measurements/one.csv"
-DATA, RECORD = "results/data/one.nc", "results/records/data/one.nc.json"
 FIGURE = "results/figures/fig07_damage_zone.png"
-
-
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory) -> Path:
-    """A folder with a space and an umlaut in its path, and a few results."""
-    folder = prepare(tmp_path_factory.mktemp("with spaces") / "und Umläuten")
-    assert start(folder, (SCENE, FIGURE)).wait() == 0
-    return folder
 
 
 def test_a_run_is_stopped_by_each_signal_and_the_next_gives_the_same(tmp_path):
@@ -50,8 +40,9 @@ def test_a_run_is_stopped_in_every_way_twenty_times(tmp_path):
 
 
 @pytest.mark.slow
-def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(finished, tmp_path):
-    elsewhere = prepare(tmp_path / "elsewhere")
+def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(tmp_path):
+    elsewhere, finished = prepare(tmp_path / "elsewhere"), prepare(tmp_path / "und Umläuten")
+    assert start(finished, (SCENE, FIGURE)).wait() == 0
     strange = {"TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "DISPLAY": ""}
     strange |= {"PYTHONHASHSEED": "1", "MPLBACKEND": "wrong", "OMP_NUM_THREADS": "3"}
     strange["FONTCONFIG_FILE"] = str(tmp_path / "no fonts")
@@ -63,30 +54,14 @@ def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(f
     assert planned(snakemake(finished, *folder, "--dry-run", "--", SCENE, **how)) == {}
 
 
-@pytest.mark.slow
-def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
-    """Run as `make replicate` does, whose logger prints the logs of jobs that fail."""
-    copy = Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
-    (copy / SCENE).unlink()
-    (copy / DATA).write_bytes(b"no data")
-    record = json.loads((copy / RECORD).read_text())
-    record["outputs"] = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
-    (copy / RECORD).write_text(json.dumps(record))
-    for command in (BY_PROFILE, SNAKEMAKE):
-        said = refused(copy, "--", SCENE, overlay="overlay.yaml", command=command)
-        last = said.strip().splitlines()[-1]
-        assert "one.nc: cannot be read" in last
-        assert "delete it and run again" in last
-        assert last.endswith("(details: results/logs/measure/one.traceback)")
-        assert not (copy / SCENE).exists()
-    assert "Traceback" in (copy / "results/logs/measure/one.traceback").read_text()
+@pytest.mark.parametrize(("name", "load"), [("one.csv", load_table), ("one.nc", load_dataset)])
+def test_a_result_that_cannot_be_read_is_named(tmp_path, name, load):
+    (tmp_path / name).write_text('a,b\n1,2,3\n"4', encoding="utf-8")
+    with pytest.raises(UnreadableFile, match=rf"{name}: cannot be read .* delete it and run again"):
+        load(tmp_path / name)
 
 
-def test_a_table_that_cannot_be_read_and_a_log_that_cannot_be_written_are_named(tmp_path):
-    path = tmp_path / "edited.csv"
-    path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
-    with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run"):
-        load_table(path)
+def test_a_log_that_cannot_be_written_is_named(tmp_path):
     (tmp_path / "logs").write_text("a file")
     reason = r"allowed: a results folder that can be written\Z"
     with pytest.raises(SystemExit, match=reason), logged(tmp_path / "logs/one.log"):
