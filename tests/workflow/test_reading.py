@@ -34,8 +34,7 @@ for text in ("as planned", "edited"):
         print(error)
 """
 WAYS = {
-    "text": "path.read_text()",
-    "bytes": "open('results/text', 'rb').read()",
+    "bytes": "path.read_bytes()",
     "a table": "import pandas; pandas.read_csv(path)",
     "another program": "subprocess.run(['cat', 'results/text'], stdout=subprocess.DEVNULL)",
 }

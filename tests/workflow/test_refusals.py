@@ -4,6 +4,7 @@ import random
 import re
 import warnings
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -23,43 +24,31 @@ LONG_NAME = {"simulations": {"a" * 900: {}}}
 MISTAKES["name of 900 letters"] = {"overlay": LONG_NAME, "refusal": ["'aaaa", "..."]}
 MANY = [0.001 * i for i in range(1, 801)]
 GRID, SAMPLES = {"left": MANY, "gamma": MANY}, {"times": 100_000, "positions": 100_000}
-COMMON = {"right": "same", "record": ["fronts"], "dx": [0.01], "duration": {"time": 60.0}}
-FAST = COMMON | {"boundary": "stress", "left": [0.9999], "damping_ratio": [1.0]}
-PULSE = COMMON | {"boundary": "displacement", "gamma": [0.5], "left": [0.5]}
 # Changes of simulations that take too much, and words of the refusal.
 EXPENSIVE = {
-    "fast fronts": ("fast", FAST, "block updates; allowed: 4e+13"),
-    "wide Gaussian": ("pulse", PULSE | {"width": [1e9]}, "block updates"),
-    "strong damping": ("pulse", PULSE | {"damping_ratio": [1e4], "dx": [0.001]}, "block updates"),
     "many runs": ("steady_displacement", GRID, "1.92e+06 runs; allowed: 2e+04"),
-    "long duration": ("steady_displacement", {"duration": {"time": 1e6}}, "block updates"),
+    "long duration": ("steady_displacement", {"duration": {"time": 1e6}}, "allowed: 4e+13"),
     "many samples": ("space_time_stress", {"samples": SAMPLES}, "bytes"),
     "few chunks": ("steady_displacement", GRID | {"chunks": 3}, "6.4e+05 runs in each of 3 chunks"),
     "many chunks": ("steady_displacement", GRID | {"chunks": 1000}, "1000 chunks; allowed: 1e+03"),
 }
 # Values of the command line, and their refusals.
-PRESETS = "(did you mean 'draft'?); allowed: draft, paper, reference"
 SAID = {
     "word for a switch": ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
     "number for a switch": ({"allow_large": "2"}, "allow_large: 2; allowed: true or false"),
-    "sexagesimal": ({"model": {"damping_ratio": "1:30"}}, "_ratio: '1:30'; allowed: a number >= 0"),
     "word for a number": ({"model": {"damping_ratio": "much"}}, "'much'; allowed: a number >= 0"),
     "anchor": ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
-    "quote": ({"preset": "draft'"}, f'preset: "draft\'" {PRESETS}'),
 }
 # Files that are no overlay at all.
 FILES = {
     "text": (b"just some text\n", "'just some text'", "a mapping of keys"),
     "list": (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
-    "number": (b"42\n", "42", "a mapping of keys"),
     "nothing": (b"# nothing\n", "None", "a mapping of keys"),
     "key without value": (b"model: {damping_ratio: }", "line 1", "no value", "null, which removes"),
     "open bracket": (b"preset: [draft\n", "not YAML", "line 2"),
-    "tab": (b"simulations:\n\tmine: 1\n", "not YAML", "line 2"),
     "picture": (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
     "older YAML": (b"# as it was\n%YAML 1.1\n---\nallow_large: yes\n", "'%YAML 1.1'", "YAML 1.2"),
     "python tag": (b"preset: !!python/object/apply:os.system [touch x]\n", "line 1", "no tags"),
-    "tag": (b"preset: !preset draft\n", "line 1", "'!preset'", "no tags"),
     "anchor": (b"model: &a {release: total}\nmeasure: *a\n", "line 1", "anchor or alias"),
     "template": (b"__use_yte__: true\n?if True:\n  preset: draft\n", "a template"),
     "key twice": (b"preset: draft\npreset: paper\n", "line 2", 'duplicate key "preset"', "once"),
@@ -81,12 +70,13 @@ def shipped(project) -> dict:
     return config
 
 
-def assert_one_clear_message(message: str, parts: list[str]) -> None:
+def assert_clear(message: str, parts: Sequence[str] = ()) -> None:
     for part in parts:
         assert part in message
+    assert len(message.splitlines()) <= 6
     for line in message.splitlines():
-        assert re.search(r"allowed: |it is required", line) and len(line) < 400, line
-    assert len(message.splitlines()) <= 6 and "Traceback" not in message
+        assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
+        assert len(line) < 400 and "http" not in line, line
 
 
 @pytest.mark.parametrize("case", MISTAKES)
@@ -97,7 +87,7 @@ def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, monkeypatch, case
         read_config(shipped, [MISTAKES[case]["overlay"]])
     parts = MISTAKES[case]["refusal"]
     parts = parts.splitlines() if isinstance(parts, str) else parts
-    assert_one_clear_message(str(refusal.value), parts)
+    assert_clear(str(refusal.value), parts)
     assert not [*tmp_path.iterdir()]
 
 
@@ -117,10 +107,8 @@ def mutated(value, chance: random.Random) -> object:
 
 def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
     chance, counts = random.Random(41), Counter()
-    small = {key: shipped[key] for key in shipped if key not in ("published", "scenes")}
-    small["simulations"] = {name: shipped["simulations"][name] for name in KEPT[:3]}
-    barrier = shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}
-    small |= {"published": {}, "scenes": {"one": barrier}}
+    scene = shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}
+    small = shipped | {"published": {}, "scenes": {"one": scene}}
     for _ in range(2000):
         overlay = mutated(small, chance)
         if not isinstance(overlay, dict):
@@ -130,9 +118,7 @@ def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
             counts["allowed"] += 1
         except ConfigError as refusal:
             counts["refused"] += 1
-            for line in str(refusal).splitlines():
-                assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
-                assert len(line) < 400 and "http" not in line, line
+            assert_clear(str(refusal))
     assert counts["allowed"] > 100 and counts["refused"] > 1000
 
 
@@ -167,7 +153,7 @@ def test_a_file_that_is_no_overlay_is_refused(tmp_path, case):
     with pytest.raises(ConfigError) as refusal:
         read_overlay(tmp_path / "mine.yaml")
     assert "\n" not in str(refusal.value)
-    assert_one_clear_message(str(refusal.value), [f"{tmp_path}/mine.yaml: ", *parts])
+    assert_clear(str(refusal.value), [f"{tmp_path}/mine.yaml: ", *parts])
 
 
 def test_scalars_are_what_yaml_and_json_say(tmp_path):

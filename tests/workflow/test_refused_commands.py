@@ -33,11 +33,6 @@ def folder(project, tmp_path):
     return copy_project(project, tmp_path, link=True)
 
 
-def lines_of(text: str) -> list[str]:
-    """Lines of an output; Snakemake also names the profile that it uses."""
-    return [line for line in text.splitlines() if not line.startswith("Using ")]
-
-
 @pytest.mark.parametrize(("overlay", "arguments", "refusal"), COMMANDS)
 def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal):
     (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
@@ -47,9 +42,21 @@ def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal)
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
-def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(folder):
-    (line,) = lines_of(refused(folder, "--config", "x", command=BY_PROFILE))
-    assert "name=value pairs" in line
+@pytest.mark.parametrize(
+    ("arguments", "caches", "refusal"),
+    [
+        pytest.param("--config x", "", "name=value pairs", id="option"),
+        pytest.param("-- fig07", "/proc/none", "Error", id="caches that cannot be written"),
+    ],
+)
+def test_what_snakemake_itself_refuses_is_one_line_by_the_profile(
+    folder, arguments, caches, refusal
+):
+    how = {"environment": {"XDG_CACHE_HOME": caches}, "command": BY_PROFILE}
+    text = refused(folder, *arguments.split(), **how)
+    # Snakemake also names the profile that it uses.
+    (line,) = (line for line in text.splitlines() if not line.startswith("Using "))
+    assert refusal in line and caches in line
 
 
 @pytest.mark.slow
@@ -147,12 +154,6 @@ def test_an_environment_that_differs_from_the_lock_is_refused(folder):
     text = refused(folder, "--quiet", "all", "--", "verify", **how)
     assert text.startswith("xarray: 0.0.1 is installed; allowed: ") and text.count("\n") == 1
     assert not (folder / "results").exists()
-
-
-def test_a_folder_of_caches_that_cannot_be_written_is_one_line(folder):
-    how = {"environment": {"XDG_CACHE_HOME": "/proc/none"}, "command": BY_PROFILE}
-    (line,) = lines_of(refused(folder, "--", "fig07", **how))
-    assert "/proc/none" in line and "Error" in line
 
 
 def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):

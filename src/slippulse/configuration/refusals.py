@@ -65,7 +65,7 @@ def _missing_line(path: Path, config: Mapping) -> str:
     line = f"{dotted(path)}: missing; it is required (null removes a key)"
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
-    if len(path) > 2:
+    if len(path) > 2 and isinstance(path[-2], str):
         # An incomplete new entry may be a misspelt one.
         _, _, siblings = _deepest(path[:-2], config)
         line += nearest(path[-2], {*siblings} - {path[-2]})
