@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from faults import SIGNALS, WAYS, digests, fault_run, prepare, start
+from faults import SIGNALS, digests, fault_run, prepare, start
 from pipeline_copy import BY_PROFILE, copy_project, made, planned, refused, snakemake
 
 from slippulse.data.files import UnreadableFile
@@ -31,12 +31,6 @@ FIGURE = "results/figures/fig07_damage_zone.png"
 def test_a_run_is_stopped_by_each_signal_and_the_next_gives_the_same(tmp_path):
     said = fault_run(tmp_path / "und Umläuten", len(SIGNALS), 3, [FIGURE])
     assert all(f"1 by {signal}" in said for signal in SIGNALS)
-
-
-@pytest.mark.slow
-def test_a_run_is_stopped_in_every_way_twenty_times(tmp_path):
-    said = fault_run(tmp_path / "und Umläuten", 20 * len(WAYS), 3, [FIGURE, SCENE])
-    assert all(f"20 by {way}" in said for way in WAYS)
 
 
 @pytest.mark.slow
@@ -69,9 +63,8 @@ def test_a_log_that_cannot_be_written_is_named(tmp_path):
 
 
 # Places of folders, where a file is put, and of files, where a folder is put.
-FOLDERS = ("results", "results/data", "results/logs", ".snakemake")
-FILES = ("kernels/localised.txt", "measurements/arrest.csv", "records/data/arrest.nc.json")
-PLACES = [(place, "file") for place in FOLDERS] + [(f"results/{name}", "folder") for name in FILES]
+PLACES = [("results", "file"), ("results/logs", "file"), (".snakemake", "file")]
+PLACES += [("results/data/arrest.nc", "folder"), ("results/records/data/arrest.nc.json", "folder")]
 PLACES[1:] = [pytest.param(*place, marks=pytest.mark.slow) for place in PLACES[1:]]
 
 
