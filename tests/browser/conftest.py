@@ -88,10 +88,10 @@ def explorer(tmp_path_factory):
     return path
 
 
-@pytest.fixture
-def page(explorer, opened) -> Iterator[Page]:
-    """The explorer on a wide screen, when it has drawn."""
-    with opened(explorer, 1440) as page:
+@pytest.fixture(params=[(1440, "light")])
+def page(explorer, opened, request) -> Iterator[Page]:
+    """The explorer on a wide screen, or as a test asks for, when it has drawn."""
+    with opened(explorer, *request.param) as page:
         settled(page)
         yield page
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import product
 
 import pytest
 from browser.conftest import SCHEMES, settled
@@ -17,6 +18,7 @@ const keep = (list) => window.shifts.push(...list.getEntries().map((entry) => en
 new PerformanceObserver(keep).observe({ type: "layout-shift", buffered: true });
 """
 LARGEST_SHIFT = 0.01
+both_widths = pytest.mark.parametrize("page", [(400, "light"), (1440, "light")], indirect=True)
 reading = lambda page: page.locator("#reading").text_content()
 time_of = lambda page: float(page.locator("#time").input_value())
 
@@ -48,29 +50,23 @@ def levels(page: Page) -> list[float]:
     return [float(page.locator(f"#{name}-typed").input_value()) for name in ("left", "right")]
 
 
-@pytest.mark.parametrize("width", [400, 1440])
-def test_dragging_changes_the_pre_stress(explorer, opened, width):
-    with opened(explorer, width) as page:
-        settled(page)
-        with still(page):
-            page.locator("#prestress").scroll_into_view_if_needed()
-            before = page.locator("#map").inner_html()
-            drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.7, 0.2))
-            both = levels(page)
-            assert both[0] == both[1] and -0.9 < both[1] < 0.7
-            assert page.locator("#map").inner_html() != before
-            assert f"right={both[1]:g}" in page.url
-        page.locator("#alike").uncheck()
-        drag(page, inside(page, "prestress", 0.7, 0.8), inside(page, "prestress", 0.5, 0.8))
-        left, right = levels(page)
-        assert left < right == both[1]
-
-
-def test_a_dragged_level_into_negative_pre_stress_moves_nothing_else(page):
-    page.locator("#alike").uncheck()
+@both_widths
+def test_dragging_changes_the_pre_stress(page):
+    page.locator("#prestress").scroll_into_view_if_needed()
+    before = page.locator("#map").inner_html()
     with still(page):
-        drag(page, inside(page, "prestress", 0.85, 0.8), inside(page, "prestress", 0.45, 0.8))
-        drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.45, 0.2))
+        drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.7, 0.2))
+        both = levels(page)
+        assert both[0] == both[1] and -0.9 < both[1] < 0.7
+        assert page.locator("#map").inner_html() != before
+        assert f"right={both[1]:g}" in page.url
+    page.locator("#alike").uncheck()
+    # Negative levels move nothing else on the page.
+    with still(page):
+        drag(page, inside(page, "prestress", 0.7, 0.8), inside(page, "prestress", 0.45, 0.8))
+        left, right = levels(page)
+        assert left < 0.0 and right == both[1]
+        drag(page, inside(page, "prestress", 0.7, 0.2), inside(page, "prestress", 0.45, 0.2))
         assert max(levels(page)) < 0.0
 
 
@@ -166,23 +162,19 @@ def test_little_motion_is_asked_for_and_given(page):
     assert 2 <= len(times) <= 5
 
 
-@pytest.mark.parametrize("width", [1440, 400])
-def test_the_map_stays_in_view(explorer, opened, width):
-    with opened(explorer, width) as page:
-        settled(page)
-        for name in ("end", "velocity", "simulated") if width > 1000 else ("end",):
-            page.locator(f"#{name}").scroll_into_view_if_needed()
-            for part in ("map", "play"):
-                box = page.locator(f"#{part}").bounding_box()
-                assert box["y"] >= -1.0 and box["y"] + box["height"] < 844, (name, part)
+@both_widths
+def test_the_map_stays_in_view(page):
+    narrow = page.viewport_size["width"] < 1000
+    for name in ("end",) if narrow else ("end", "velocity", "simulated"):
+        page.locator(f"#{name}").scroll_into_view_if_needed()
+        for part in ("map", "play"):
+            box = page.locator(f"#{part}").bounding_box()
+            assert box["y"] >= -1.0 and box["y"] + box["height"] < 844, (name, part)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("width", [400, 1440])
-def test_it_is_accessible_at_rest_and_while_it_plays(explorer, opened, violations, width, scheme):
-    with opened(explorer, width, scheme) as page:
-        settled(page)
-        assert violations(page) == []
-        page.locator("#play").press("Enter")
-        page.locator("details summary").press("Enter")
-        assert violations(page) == []
+@pytest.mark.parametrize("page", [*product((400, 1440), SCHEMES)], indirect=True)
+def test_it_is_accessible_at_rest_and_while_it_plays(page, violations):
+    assert violations(page) == []
+    page.locator("#play").press("Enter")
+    page.locator("details summary").press("Enter")
+    assert violations(page) == []

@@ -32,10 +32,6 @@ def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down(draw)
     uniform = select(drawn.table, role="simulation", panel="prestress")
     for _, rows in uniform.query("left >= 0.3 and damping_ratio <= 1").groupby("release"):
         assert len(rows) >= 8 and deviation(rows, "speed", "theory").max() < tol.FRONT_SPEED_STUDY
-    # The two rules agree without damping, and differ with it.
-    plain = select(uniform, damping_ratio=0.0)
-    total, elastic = (select(plain, release=rule)["speed"] for rule in ("total", "elastic"))
-    assert total.to_list() == pytest.approx(elastic.to_list(), rel=tol.FRONT_SPEED_STUDY)
     ids = {line.get_gid() for line in drawn.figure.findobj(Line2D)}
     assert {f"theory {ratio:g}" for ratio in uniform["damping_ratio"].unique()} <= ids
     # Leaf springs, under both rules.
@@ -188,7 +184,6 @@ def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_b
     fits, axes = inference(drawn.measured["published_figure"]), drawn.figure.axes
     for release in ("total", "elastic"):
         fit, rows = fits[release], select(drawn.table, part="best", release=release)
-        assert (rows["pull"] ** 2).sum() == pytest.approx(fit["chi2"])
         pulls = [fit["pulls"][name] for name in rows["reading"]]
         assert rows["pull"].to_list() == pytest.approx(pulls)
         for panel, name in zip(axes[1:3], ("tau0", "gamma"), strict=True):

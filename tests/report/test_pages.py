@@ -8,7 +8,7 @@ from itertools import pairwise
 import pytest
 import yaml
 from PIL import Image
-from report.conftest import CLAIM, FRONT, read
+from report.conftest import CLAIM, FRONT
 
 from slippulse.claims.kinds import Qualitative
 from slippulse.claims.paper import written
@@ -57,7 +57,7 @@ class Outline(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def results(project, tmp_path_factory):
+def results(project, shipped, tmp_path_factory):
     """The folder of a small run with another preset; the texts of its page are next to it."""
     results = tmp_path_factory.mktemp("page") / "results"
     for folder in ("figures", "scenes", *{path.partition("/")[0] for path in TABLES}):
@@ -69,8 +69,7 @@ def results(project, tmp_path_factory):
             (results / f"figures/{name}.{ending}").touch()
         Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
     (results / "claims.html").write_text(claims_page(CLAIMS, (), (), TABLES), encoding="utf-8")
-    config = read(project / "config/config.yaml")
-    facts = provenance(project, config | {"preset": "draft"}, config, results)
+    facts = provenance(project, shipped | {"preset": "draft"}, shipped, results)
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     caption = {"alt": "A line <up>", "caption": "(a) $x$."}
     caption["finding"] = "Found in {{ claim('speed').runs }} runs."
