@@ -7,6 +7,7 @@ from scipy.optimize import brentq
 from scipy.special import j0, jn_zeros
 
 import slippulse as sp
+from slippulse.model.balance import integral
 from slippulse.theory import Rupture, front_speed, uniform_transition_time
 from slippulse.theory.fronts import fast_fronts, slip_velocity
 
@@ -186,7 +187,7 @@ def test_a_crack_with_two_slow_fronts_is_arrested():
     profile = sp.Prestress(-0.5, -0.5)
     rupture = Rupture(profile, 0.0, 0.1, "total", 9.0)
     zero = brentq(lambda x: float(profile(x)), 0.5, 3.0, xtol=1e-14)
-    stop = brentq(lambda x: profile.integral(x, zero), -20.0, -zero - 0.1, xtol=1e-13)
+    stop = brentq(lambda x: integral(profile, x, zero), -20.0, -zero - 0.1, xtol=1e-13)
     ((left, right),) = rupture.front_ends
     assert (left.reason, right.reason) == ("stops", "stops")
     assert (left.x, right.x) == pytest.approx((stop, -stop), abs=1e-8)

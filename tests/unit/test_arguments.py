@@ -50,7 +50,6 @@ TAKE_A_NUMBER = [
     ("damping_ratio", lambda x: theory.ArrestingCrack(sp.Prestress(-0.5, 0.0), x)),
     ("x", lambda x: RUPTURE.stick_time(x)),
     ("time", lambda x: RUPTURE.pulse_width(x, "left")),
-    ("upper", lambda x: PLAIN.integral(0.0, x)),
 ]
 
 linear = lambda alpha: {"friction": sp.friction("linear_rate", alpha=alpha)}

@@ -39,14 +39,6 @@ def check_number(key: str, value: Any, integer: bool = False, **limits: float) -
     raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{text}")
 
 
-def check_runaway(gamma: float, alpha: float, key: str = "rate_strengthening") -> None:
-    """Refuse alpha < 0 at which slip of d2u/dt2 = tau - gamma u - alpha du/dt never slows down."""
-    if alpha < 0.0 and alpha * alpha >= 4.0 * gamma:
-        bound = f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
-        allowed = bound if gamma else ">= 0 without leaf springs"
-        raise ValueError(f"{key}: {alpha!r}; allowed: {allowed}, or slip runs away")
-
-
 def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
     """An array of finite numbers within the bounds of `check_number`."""
     if isinstance(value, Real):

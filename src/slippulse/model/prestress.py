@@ -126,31 +126,6 @@ class Prestress:
         # meant to meet.
         return np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau)
 
-    def integral(self, lower: float, upper: float) -> float:
-        """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.
-
-        Parameters
-        ----------
-        lower, upper : float, units of H
-            Finite; the integral changes its sign where they are exchanged.
-
-        Returns
-        -------
-        float, units of the stress drop times H
-        """
-        check_number("lower", lower)
-        check_number("upper", upper)
-        low, high = min(lower, upper), max(lower, upper)
-        total = 0.0
-        for left, right, level in self.intervals:
-            a, b = max(left, low), min(right, high)
-            if a < b:
-                area = _gaussian_area(a, b, 0.0, self.width)
-                total += level * (b - a) + (self.peak - level) * area
-        for centre, amplitude, width in self.bumps:
-            total += amplitude * _gaussian_area(low, high, centre, width)
-        return total if upper >= lower else -total
-
 
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
@@ -162,15 +137,6 @@ def prestress_from(attributes: Mapping) -> Prestress:
         allowed = "a JSON object of steps and bumps"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
     return Prestress(**numbers, **parts)
-
-
-def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:
-    a, b = ((end - centre) / (math.sqrt(2.0) * width) for end in (lower, upper))
-    if b < 0.0:
-        a, b = -b, -a
-    # On one side of the centre the areas of the tails do not cancel.
-    area = math.erfc(a) - math.erfc(b) if a > 0.0 else math.erf(b) - math.erf(a)
-    return width * math.sqrt(0.5 * math.pi) * area
 
 
 def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:

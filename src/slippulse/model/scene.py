@@ -8,11 +8,12 @@ from html import escape
 from numbers import Real
 from typing import Any, Self
 
-from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
+from .checks import check_choice, check_kind, check_number, short_repr
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, prestress_from
 from .recorded_law import law_of
 from .release import RELEASES
+from .runaway import check_runaway
 from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")

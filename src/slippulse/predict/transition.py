@@ -5,7 +5,7 @@ from functools import cache, partial
 
 import pandas as pd
 
-from ..model.balance import prestress_balance_position
+from ..model.balance import integral, prestress_balance_position
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 from ..model.run import Run
@@ -67,7 +67,7 @@ def _half_width(crack: ArrestingCrack) -> float:
     """Width of the far pulse at half of its peak, which is once on each side of the zero of tau."""
 
     def above_half(x: float) -> float:
-        return crack.prestress.integral(x, crack.end) - crack.peak_velocity
+        return integral(crack.prestress, x, crack.end) - crack.peak_velocity
 
     ahead = root_between(above_half, crack.zero, crack.end, xtol=1e-12)
     rear = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)

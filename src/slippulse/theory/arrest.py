@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 
-from ..model.balance import prestress_balance_position
+from ..model.balance import integral, prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
 from ..model.roots import root_between
@@ -52,7 +52,7 @@ class ArrestingCrack:
 
     def _entry(self, position: float) -> float:
         """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
-        last, balance = self.end - 1e-9, partial(self.prestress.integral, position)
+        last, balance = self.end - 1e-9, partial(integral, self.prestress, position)
         if balance(last) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
             raise ValueError(f"position: {position!r}; allowed: farther from {limit}")
@@ -97,7 +97,7 @@ class ArrestingCrack:
     @property
     def peak_velocity(self) -> float:
         """Largest slip velocity far away: half the integral of tau to the right of its zero x*."""
-        return 0.5 * self.prestress.integral(self.zero, self.end)
+        return 0.5 * integral(self.prestress, self.zero, self.end)
 
     def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
         """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right.
@@ -116,5 +116,5 @@ class ArrestingCrack:
         entered = np.array([self._entry(x) for x in slow])
         slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
         positions = np.concatenate([entries, slow])
-        velocity = [0.5 * self.prestress.integral(x, self.end) for x in positions]
+        velocity = [0.5 * integral(self.prestress, x, self.end) for x in positions]
         return np.concatenate([delay, slow_delay]), np.array(velocity)

@@ -5,9 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..model.checks import check_choice, check_kind, check_number, check_runaway
+from ..model.checks import check_choice, check_kind, check_number
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
+from ..model.runaway import check_runaway
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel, Point
 from .prestress_pieces import EXTENT, Piece, analytic, gaussians, pieces
 from .riemann import kernel_rate

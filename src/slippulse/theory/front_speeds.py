@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number, check_runaway
+from ..model.checks import as_numbers, check_choice, check_number
 from ..model.release import RELEASES
+from ..model.runaway import check_runaway
 from .domains import DOMAINS, broadcast_numbers, check_domains
 from .vector_roots import increasing_roots
 from .wiener_hopf import log_prestress
