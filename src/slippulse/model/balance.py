@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .checks import check_kind
+from .checks import check_kind, check_that
 from .prestress import Prestress
 
 
@@ -72,12 +72,8 @@ def _balance_position(prestress: Prestress) -> float:
     ends = [abs(centre) + 40.0 * width for centre, _, width in gaussians]
     distance = max(ends + [abs(position) + prestress.width for position, _ in prestress.steps])
     left, right = prestress.level(np.array([-distance, distance])).tolist()
-    if right != 0.0:
-        allowed = "0, or the balance integral is not finite"
-        raise ValueError(f"prestress.right: {right!r}; allowed: {allowed}")
-    if left >= 0.0:
-        allowed = "< 0, or the pre-stress is never balanced"
-        raise ValueError(f"prestress.left: {left!r}; allowed: {allowed}")
+    check_that(right == 0.0, "prestress.right", right, "0, or the balance integral is not finite")
+    check_that(left < 0.0, "prestress.left", left, "< 0, or the pre-stress is never balanced")
     lower, upper = -distance, 0.0
     while integral(prestress, lower, distance) > 0.0:
         lower *= 2.0

@@ -26,6 +26,12 @@ def short_repr(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def check_that(holds: bool, key: str, value: object, allowed: str) -> None:
+    """Refuse a value unless a condition on it holds."""
+    if not holds:
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+
+
 def check_number(key: str, value: Any, integer: bool = False, **limits: float) -> None:
     """Refuse anything but a finite number, or an integer, within some of LIMITS."""
     kind, word = (Integral, "whole") if integer else (Real, "finite")
@@ -48,8 +54,7 @@ def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
         array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
         array = np.asarray(None)
-    if array.dtype.kind not in "iuf":
-        raise ValueError(f"{key}: {short_repr(value)}; allowed: finite numbers")
+    check_that(array.dtype.kind in "iuf", key, value, "finite numbers")
     numbers = array.astype(float, copy=False)
     if numbers.size:
         # All numbers lie between these two; where one is NaN, both are.
@@ -60,11 +65,10 @@ def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
 
 def check_kind(key: str, value: object, kind: type) -> None:
     """Refuse anything that is not of a class."""
-    if not isinstance(value, kind):
-        raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind.__name__}")
+    check_that(isinstance(value, kind), key, value, f"a {kind.__name__}")
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
     """Refuse anything that is not one of ``choices``."""
-    if not isinstance(value, str | int | float) or isinstance(value, bool) or value not in choices:
-        raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")
+    plain = isinstance(value, str | int | float) and not isinstance(value, bool)
+    check_that(plain and value in choices, key, value, ", ".join(map(str, choices)))

@@ -8,7 +8,7 @@ from html import escape
 from numbers import Real
 from typing import Any, Self
 
-from .checks import check_choice, check_kind, check_number, short_repr
+from .checks import check_choice, check_kind, check_number, check_that
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, prestress_from
 from .recorded_law import law_of
@@ -130,9 +130,8 @@ class Scene:
             # Numbers of other types would be computed with as such, and compiled for.
             kind = int if "integer" in bounds else float
             object.__setattr__(self, name, kind(getattr(self, name)))
-        if self.prestress.width < self.dx:
-            allowed = f">= dx = {self.dx:g}, which must see the peak"
-            raise ValueError(f"prestress.width: {self.prestress.width!r}; allowed: {allowed}")
+        width, allowed = self.prestress.width, f">= dx = {self.dx:g}, which must see the peak"
+        check_that(width >= self.dx, "prestress.width", width, allowed)
         for centre, _, width in self.prestress.bumps:
             reach = abs(centre) + 4.0 * width
             check_number("prestress.bumps reach", reach, at_most=FARTHEST_BUMP * self.dx)
@@ -141,14 +140,14 @@ class Scene:
     def _check_physics(self) -> None:
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
-        elif not isinstance(self.gamma, Real) or self.gamma != 0.0:
+        else:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
-            raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
+            absent = isinstance(self.gamma, Real) and self.gamma == 0.0
+            check_that(absent, "gamma", self.gamma, allowed)
         check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
-        if self.scheme not in self.friction.schemes:
-            schemes = " or ".join(self.friction.schemes)
-            allowed = f"{schemes}, with friction law {self.friction.law!r}"
-            raise ValueError(f"scheme: {self.scheme!r}; allowed: {allowed}")
+        schemes = self.friction.schemes
+        allowed = f"{' or '.join(schemes)}, with friction law {self.friction.law!r}"
+        check_that(self.scheme in schemes, "scheme", self.scheme, allowed)
 
     def _check_step(self) -> None:
         bound = self.largest_stable_step
@@ -229,9 +228,8 @@ class Scene:
         -------
         Scene
         """
-        if not hasattr(attributes, "keys"):
-            allowed = "a mapping of names to values"
-            raise ValueError(f"attributes: {short_repr(attributes)}; allowed: {allowed}")
+        given = hasattr(attributes, "keys")
+        check_that(given, "attributes", attributes, "a mapping of names to values")
         try:
             values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
             values["prestress"] = prestress_from(attributes)

@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Sequence
 
-import numpy as np
 import xarray as xr
 
 from ..data.variables import described
-from ..model.checks import check_kind, check_number, short_repr
+from ..model.checks import check_kind, check_number, check_that
 from ..model.cost import bound_of
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
@@ -61,7 +60,7 @@ def simulate(
     """
     check_kind("scene", scene, Scene)
     known = isinstance(progress, bool | None) or callable(progress)
-    _require(known, "progress", progress, "a function of the fraction done, True, or None")
+    check_that(known, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
     _check_within(samples, scene.duration)
     exceeded = bound_of(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
@@ -128,40 +127,35 @@ def run_sweep(
     """
     listed = isinstance(scenes, Sequence) and len(scenes) > 0
     known = listed and all(isinstance(scene, Scene) for scene in scenes)
-    _require(known, "scenes", scenes, "a list of Scenes, at least one")
+    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
     schemes = sorted({scene.scheme for scene in scenes})
     alike = "continuum" not in schemes or len(schemes) == 1
-    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
+    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
     samples = [None] * len(scenes) if samples is None else samples
-    _check_samples(samples, scenes)
+    listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
+    allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
+    check_that(listed, "samples", samples, allowed)
+    for scene, samples_of_scene in zip(scenes, samples, strict=True):
+        _check_within(samples_of_scene, scene.duration)
     _check_record(record, samples)
     check_number("threads", threads, integer=True, at_least=1, at_most=1024)
     known = progress is None or callable(progress)
-    _require(known, "progress", progress, "a function of (done, all), or None")
+    check_that(known, "progress", progress, "a function of (done, all), or None")
     return described(solve_sweep(_solve, scenes, samples, record, int(threads), progress))
 
 
-def _check_samples(samples: Sequence[Samples | None], scenes: Sequence[Scene]) -> None:
-    listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
-    allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
-    _require(listed, "samples", samples, allowed)
-    for scene, samples_of_scene in zip(scenes, samples, strict=True):
-        _check_within(samples_of_scene, scene.duration)
-
-
 def _check_within(samples: Samples | None, duration: float) -> None:
-    if samples is None:
-        return
-    check_kind("samples", samples, Samples)
-    if np.any(samples.times > duration):
+    if samples is not None:
+        check_kind("samples", samples, Samples)
+        last = float(samples.times.max(initial=0.0))
         allowed = f"up to the duration of the scene, {duration:g}"
-        raise ValueError(f"samples.times: {samples.times[-1]:g}; allowed: {allowed}")
+        check_that(last <= duration, "samples.times", last, allowed)
 
 
 def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:
     listed = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
     known = listed and all(isinstance(word, str) and word in RECORDS for word in record)
-    _require(known, "record", record, f"a list of {', '.join(RECORDS)}")
+    check_that(known, "record", record, f"a list of {', '.join(RECORDS)}")
     if "samples" not in record:
         return
     given = [item for item in samples if item is not None]
@@ -169,7 +163,7 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
         allowed = "Samples for each scene, the second argument"
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
     shapes = {(item.times.shape, item.positions.shape) for item in given}
-    _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
+    check_that(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
 
 
 def bar() -> Callable[[float], None]:
@@ -192,8 +186,3 @@ def _solve(
 ) -> Solution:
     solve = solve_exactly if scene.scheme == "continuum" else solve_by_scheme
     return solve(scene, samples, progress)
-
-
-def _require(holds: bool, name: str, value: object, allowed: str) -> None:
-    if not holds:
-        raise ValueError(f"{name}: {short_repr(value)}; allowed: {allowed}")
