@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..model.checks import check_choice, check_kind, check_number, short_repr
+from ..model.checks import check_choice, check_kind, check_number, check_that, short_repr
 from ..model.friction import COULOMB, friction_from
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
@@ -119,8 +119,7 @@ def settings_for(
     check_number("accuracy", accuracy, at_least=1e-4, at_most=0.1)
     check_choice("release", release, RELEASES)
     check_kind("prestress", prestress, Prestress)
-    if not isinstance(fields, bool):
-        raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
+    check_that(isinstance(fields, bool), "fields", fields, "true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]

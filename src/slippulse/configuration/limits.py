@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ..model.checks import check_that
 from ..model.cost import Bound, bound_of
 from ..model.scene import Scene
 from ..theory.closed_pulse import pulse_at_speed
@@ -29,9 +30,8 @@ def simulation_problems(config: Configuration) -> list[str]:
         try:
             sweep = resolve(simulation, config.model, accuracy)
             count = run_count(sweep)
-            if simulation.chunks > count:
-                allowed = f"up to the number of runs, {count}"
-                raise ValueError(f"chunks: {simulation.chunks}; allowed: {allowed}")
+            allowed = f"up to the number of runs, {count}"
+            check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
             scenes, _ = expand(promised(corners(sweep)))
             _check_profiles(scenes)
             _check_resolution(scenes)

@@ -4,7 +4,7 @@ from itertools import islice
 
 import xarray as xr
 
-from ..model.checks import check_number, short_repr
+from ..model.checks import check_number, check_that
 from .points import runs_in
 
 
@@ -25,15 +25,14 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
 
     Raises
     ------
-    TypeError, ValueError
+    ValueError
         if ``sweep`` is not a sweep, has no such run, or blocks that are not those of its runs
 
     Examples
     --------
     >>> run = sp.point(xarray.open_dataset("results/data/arrest.nc"), 0)
     """
-    if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
-        allowed = "a Dataset that run_sweep returned, or of results/data"
-        raise TypeError(f"sweep: {short_repr(sweep)}; allowed: {allowed}")
+    known = isinstance(sweep, xr.Dataset) and "point" in sweep.sizes
+    check_that(known, "sweep", sweep, "a Dataset that run_sweep returned, or of results/data")
     check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     return next(islice(runs_in(sweep), index, None)).dataset()

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..model.checks import short_repr
+from ..model.checks import check_that
 
 AXES = ("sample_time", "sample_position")
 DIMENSIONS = {name: (name,) for name in AXES} | {"sample_slip": AXES, "sample_velocity": AXES}
@@ -33,9 +33,9 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     numbers, blocks = _over(sweep, "point"), _over(sweep, "block")
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
     size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    if np.any(size < 0) or np.sum(size) != blocks.get("x", size[:0]).size:
-        allowed = "numbers of blocks whose sum is the length of x"
-        raise ValueError(f"row_size: {short_repr(size.tolist())}; allowed: {allowed}")
+    fitting = np.all(size >= 0) and np.sum(size) == blocks.get("x", size[:0]).size
+    allowed = "numbers of blocks whose sum is the length of x"
+    check_that(bool(fitting), "row_size", size.tolist(), allowed)
     ends = np.cumsum(size)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(size.size):

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .checks import check_number, short_repr
+from .checks import check_number, check_that, short_repr
 
 # Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
 # without end.
@@ -73,9 +73,9 @@ class Prestress:
             rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
             object.__setattr__(self, name, rows)
         positions = [position for position, _ in self.steps]
-        if 0.0 in positions or len({*positions}) < len(positions):
-            allowed = "different ones, none of them 0 (see left, right)"
-            raise ValueError(f"prestress.steps: positions {positions}; allowed: {allowed}")
+        different = 0.0 not in positions and len({*positions}) == len(positions)
+        allowed = "different positions, none of them 0 (see left, right)"
+        check_that(different, "prestress.steps", positions, allowed)
 
     @property
     def symmetric(self) -> bool:
@@ -85,16 +85,7 @@ class Prestress:
         return self.left == self.right and parts == mirrored
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
-        """Side level at positions x, with the steps, without the Gaussian and the bumps.
-
-        Parameters
-        ----------
-        x : array of float, units of H
-
-        Returns
-        -------
-        array of the shape of x
-        """
+        """Side level at positions x (units of H), with the steps, without Gaussian and bumps."""
         x = np.asarray(x, dtype=float)
         level = np.where(x < 0.0, self.left, self.right)
         for position, value in sorted(self.steps, key=lambda step: abs(step[0])):

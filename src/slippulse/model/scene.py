@@ -195,13 +195,7 @@ class Scene:
         return self.damping_ratio, self.gamma * self.dx**2, traits.steepest * self.dx
 
     def attributes(self) -> dict:
-        """Every parameter as a plain number or text, for a data file.
-
-        Returns
-        -------
-        dict
-            `from_attributes` makes the scene of it.
-        """
+        """Every parameter as a plain number or text, for a data file; see `from_attributes`."""
         profile = self.prestress
         parts = {"steps": profile.steps, "bumps": profile.bumps}
         values = vars(profile) | vars(self) | {"half_lattice": int(self.half_lattice)}
@@ -219,14 +213,8 @@ class Scene:
     def from_attributes(cls, attributes: Mapping) -> Self:
         """The scene of a simulation's attributes, or of its row in a measured table.
 
-        Parameters
-        ----------
-        attributes : mapping of names to values
-            As `attributes` writes them; older files have rate_strengthening, or no friction.
-
-        Returns
-        -------
-        Scene
+        The attributes are as `attributes` writes them; older files have rate_strengthening, or no
+        friction.
         """
         given = hasattr(attributes, "keys")
         check_that(given, "attributes", attributes, "a mapping of names to values")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..model.checks import short_repr
+from ..model.checks import check_that
 from .comparison import measured_row
 
 # The settings of `measure` in the shipped configuration, which is not part of the package.
@@ -43,10 +43,8 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
 
     Raises
     ------
-    TypeError
-        If `run` is not such a Dataset.
     ValueError
-        If `run` has not all of its blocks.
+        If `run` is not such a Dataset, or has not all of its blocks.
 
     Notes
     -----
@@ -62,15 +60,12 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     >>> round(numbers["transition_time"], 1), numbers["run_flags"]
     (4.2, '')
     """
-    if not isinstance(run, xr.Dataset) or not {"release_time", "stick_time"} <= set(run):
-        allowed = "a Dataset that simulate returned"
-        raise TypeError(f"run: {short_repr(run)}; allowed: {allowed}")
-    if "point" in run.dims:
-        allowed = "one run; point(sweep, index) takes it out of a sweep"
-        raise TypeError(f"run: a sweep of {run.sizes['point']}; allowed: {allowed}")
-    if not _whole(run):
-        allowed = "a whole run, without blocks cut off or left out along x"
-        raise ValueError(f"run: {run.sizes['x']} blocks; allowed: {allowed}")
+    known = isinstance(run, xr.Dataset) and {"release_time", "stick_time"} <= set(run)
+    check_that(known, "run", run, "a Dataset that simulate returned")
+    allowed = "one run; point(sweep, index) takes it out of a sweep"
+    check_that("point" not in run.dims, "run", run, allowed)
+    allowed = "a whole run, without blocks cut off or left out along x"
+    check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
     return unknown | measured_row(run, SETTINGS)
 
