@@ -12,15 +12,13 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from ..model.checks import check_choice, check_kind, check_number, check_that, short_repr
-from ..model.friction import COULOMB, friction_from
+from ..model.checks import check_choice, check_kind, check_number, check_that
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
 from ..model.scene import Scene
 from ..model.stability import chosen_step
 from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
-from .problems import ConfigError
 from .runs import entries
 
 # The constants below were found for beta/dx up to 1. At 10 the longest stable step alone errs by
@@ -140,20 +138,18 @@ def settings_for(
 
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """Add the spacing of each run where an accuracy is promised, or raise ConfigError."""
+    """Add the spacing of each run where an accuracy is promised, or raise ValueError."""
     promise, scheme = simulation["accuracy"].get("promise"), simulation["scheme"]
     if promise is None:
         return simulation
-    if scheme != "localised":
-        # A grid study does not see the error of another scheme's step.
-        raise ConfigError(f"scheme: {scheme!r}; allowed: 'localised' where accuracy is given")
+    # A grid study does not see the error of another scheme's step.
+    check_that(scheme == "localised", "scheme", scheme, "'localised' where accuracy is given")
     if math.isnan(promise):
         return simulation
     laws = simulation.get("friction", [])
-    if any(friction_from(law) != COULOMB for law in laws):
-        # The constants hold for it alone. Other laws have pulses without a width, or that diverge.
-        allowed = "law coulomb where accuracy is given, or a dx of its own"
-        raise ConfigError(f"friction: {short_repr(laws)}; allowed: {allowed}")
+    # The constants hold for it alone. Other laws have pulses without a width, or that diverge.
+    coulomb = all(law["law"] == "coulomb" for law in laws)
+    check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
     for release, prestress, gamma, _, damping_ratio, _ in entries(simulation):
