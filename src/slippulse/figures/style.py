@@ -1,6 +1,6 @@
 """The look of every figure, in one place."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from textwrap import fill
@@ -17,7 +17,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullFormatter
@@ -69,14 +68,13 @@ HALO = [withStroke(linewidth=2.2, foreground="white")]
 
 
 # A quantity has the same colour for the same value in every figure: a map, the part of it that is
-# seen on white, ends and their norm. That of left is stretched towards 0, where most levels are.
-Ends: TypeAlias = tuple[float, float]
-SCALES: dict[str, tuple[str, Ends, Ends, Callable[..., Normalize]]] = {
-    "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
-    "left": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
-    "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
-    "damping_ratio": ("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
-    "width": ("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
+# seen on white, and a norm. That of left is stretched towards 0, where most levels are.
+SCALES: dict[str, tuple[str, float, float, Normalize]] = {
+    "tau_0": ("plasma", 0.0, 0.73, Normalize(0.0, 1.0, clip=True)),
+    "left": ("YlGnBu_r", 0.0, 0.47, PowerNorm(2.0, -2.0, 0.0, clip=True)),
+    "gamma": ("cividis", 0.0, 0.66, LogNorm(1e-3, 1.0, clip=True)),
+    "damping_ratio": ("viridis", 0.0, 0.64, LogNorm(5e-3, 5.0, clip=True)),
+    "width": ("copper_r", 0.36, 1.0, LogNorm(0.5, 16.0, clip=True)),
 }
 # Each run has the colour of its level.
 LEVEL = {"displacement": "tau_0", "stress": "left"}
@@ -150,9 +148,9 @@ def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
 
 def colour_scale(quantity: str) -> ScalarMappable:
     """Colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar all."""
-    name, part, ends, norm = SCALES[quantity]
-    colours = matplotlib.colormaps[name](np.linspace(*part, 256))
-    return ScalarMappable(norm(*ends, clip=True), ListedColormap(colours))
+    name, first, last, norm = SCALES[quantity]
+    colours = matplotlib.colormaps[name](np.linspace(first, last, 256))
+    return ScalarMappable(norm, ListedColormap(colours))
 
 
 def colour(quantity: str, value: float | np.ndarray | pd.Series) -> np.ndarray:
@@ -162,7 +160,7 @@ def colour(quantity: str, value: float | np.ndarray | pd.Series) -> np.ndarray:
 
 def panel_letter(axes: Axes, letter: str) -> None:
     """Mark a panel by (a), (b), ... above its upper left corner."""
-    axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9.0)
+    axes.set_title(f"({letter})", loc="left", fontweight="bold")
 
 
 def entry(label: str, **look: Any) -> Line2D:
@@ -187,8 +185,7 @@ def by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
 def draw_first_order(axes: Axes, spacings: pd.Series, slope: float, colour: str) -> None:
     """Draw an error in proportion to the spacing, on logarithmic axes."""
     ends = spacings.agg(["min", "max"]).to_numpy()
-    look: Look = {"color": colour, "linestyle": ":", "linewidth": 0.8, "label": "first order"}
-    axes.plot(ends, slope * ends, **look)
+    axes.plot(ends, slope * ends, ":", color=colour, linewidth=0.8, label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
 
 
@@ -219,9 +216,7 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
         added = NOTE_GAP + NOTE_LINE * (1 + text.count("\n"))
         figure.set_size_inches(width, height + added)
         bottom = added / (height + added)
-        engine = figure.get_layout_engine()
-        if isinstance(engine, ConstrainedLayoutEngine):
-            engine.set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
+        figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
         look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
         figure.text(0.995, 0.005, text, **look).set_in_layout(False)
     # A spine ends where its axes do, and the layout asks the axes.
@@ -242,13 +237,6 @@ def _save_png(canvas: FigureCanvasAgg, path: Path, made_by: str | None) -> None:
     text, dpi = PngInfo(), canvas.figure.dpi
     if made_by:
         text.add_text("Comment", made_by)
-    # A pixel is one number. Most are white, which is colour 0 without a search.
-    pixels = np.asarray(canvas.buffer_rgba()).view(np.uint32)[..., 0]
-    ink = pixels != 0xFFFFFFFF
-    drawn = Image.fromarray(pixels[ink].view(np.uint8).reshape(1, -1, 4)).convert("RGB")
-    few = drawn.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    colours = np.zeros(pixels.shape, np.uint8)
-    colours[ink] = np.asarray(few)[0] + 1
-    picture = Image.fromarray(colours, "P")
-    picture.putpalette([255, 255, 255, *(few.getpalette() or ())])
-    picture.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
+    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+    few = picture.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    few.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
