@@ -34,7 +34,7 @@ LOOKS = {
     "pulse, one-way, decaying": (style.GREEN, "decaying pulse"),
 }
 NUMBERS = "①②③④"
-MARK: Look = {"color": BLACK, "markersize": 4.0, "markeredgewidth": 0.6}
+MARK: Look = {"color": BLACK, "markersize": 4.0}
 # The number of levels of each side that is drawn of a sweep.
 DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regimes_stress": 5}
 
@@ -74,7 +74,7 @@ def draw(table: pd.DataFrame) -> Figure:
             colour, text = LOOKS[regime]
             line.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
             look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
-            line.annotate(text.replace("\n", " "), (level, 1.02), fontsize=8.0, **look)
+            line.annotate(text.replace("\n", " "), (level, 1.02), **look)
         draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
         draw_plane(plane, rows[rows["role"].isin(["area", "line"])], texts[boundary])
         draw_runs(plane, rows[rows["role"] == "run"], "right")
@@ -101,8 +101,7 @@ def tint(colour: str) -> tuple[float, ...]:
 
 def draw_plane(axes: Axes, rows: pd.DataFrame, texts: dict[str, str]) -> None:
     """Draw the regimes as areas, and as lines where one level is 0, each with one label."""
-    look: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0}
-    look["linespacing"] = 1.0
+    look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
     texts = {regime: text for regime, (_, text) in LOOKS.items()} | texts
     for (role, _), part in rows.groupby(["role", "series"], sort=False):
         regime, corners = part["regime"].iloc[0], part[["left", "right"]].to_numpy()
@@ -148,7 +147,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         axes.plot(rows["x"], shape, color=colour)
         gamma = int(rows["boundary"].iloc[0] == "displacement")
         label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(map(setting, levels))}"
-        axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top", fontsize=8.0)
+        axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
         axes.set(yticks=[], ylim=(0.0, 2.6))
         axes.spines[["left", "right", "top"]].set_visible(False)
         inset = axes.inset_axes((0.0, 0.47, 1.0, 0.3), sharex=axes)
@@ -157,6 +156,6 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         inset.set(yticks=[0, 1], ylim=(-0.7, 1.1))
         inset.tick_params("x", length=0.0, labelbottom=False)
         inset.tick_params("y", labelsize=7.0, length=1.5, pad=1.5)
-        inset.set_ylabel(r"$\tau$", fontsize=8.0, rotation=0, labelpad=6.0, va="center")
+        inset.set_ylabel(r"$\tau$", rotation=0, labelpad=6.0, va="center")
         inset.spines[["right", "top", "bottom"]].set_visible(False)
     axes.set(xlabel="position $x$", xlim=(-end, end))

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.pulses import draw_prestress, draw_pulses, handles, pulse_table, styled_runs, title
-from .style import PAGE, Look, new_panels
+from .style import PAGE, new_panels
 
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
@@ -27,6 +27,6 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), widths)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
-        look: Look = {"ncols": 3, "columnspacing": 1.0}
-        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.5, -0.17), **look)
+        below = (0.5, -0.17)
+        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below, ncols=3)
     return figure

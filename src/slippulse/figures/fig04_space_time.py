@@ -5,7 +5,6 @@ import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from ..data.point import point
 from ..measurement.fronts import position_at
@@ -56,37 +55,26 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the figure; a legend entry that is in one panel alone names the panel."""
+    """Draw the figure; the legend has what is drawn in either panel."""
     figure = Figure(figsize=(PAGE, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
-    handles: dict[str, Artist] = {}
-    # Letters of the panels that have a label.
-    shown_in: dict[str, str] = {}
+    handles: dict[object, Artist] = {}
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
         roles = style.by_role(table[table["panel"] == panel])
         space_time.draw_profile(profile, roles["prestress"])
-        image = space_time.draw_map(axes, roles)
+        space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
-        bar = side.colorbar(image, ax=axes, pad=0.02, aspect=22)
-        bar.set_label(rf"slip velocity $\dot u$ (largest {roles['largest']['value'].iloc[0]:#.3g})")
         style.panel_letter(profile, letter)
         when = "first stick"
         if "fraction" in roles:
             percent = 100.0 * roles["fraction"]["value"].iloc[0]
             when = rf"left front at {percent:g} % of its way to $x_-$"
         title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
-        side.suptitle(title, fontsize=9.0)
-        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            handles[label] = handle
-            shown_in[label] = shown_in.get(label, "") + letter
-    for label, colour in (("not yet slipped", "white"), ("stuck again", space_time.STUCK)):
-        handles[label] = Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5)
-    # The stuck part is grey behind a trailing edge.
-    shown_in |= {"not yet slipped": "ab", "stuck again": shown_in.get("trailing edge", "a")}
-    for label, handle in handles.items():
-        handle.set_label(label if shown_in[label] == "ab" else f"{label} ({shown_in[label]})")
+        side.suptitle(title)
+        drawn = axes.get_legend_handles_labels()[0]
+        handles |= {artist.get_label(): artist for artist in drawn}
     style.legend_below(figure, list(handles.values()), len(handles))
     return figure
 
@@ -109,7 +97,7 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
         axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
         for start, stop in (((0.0, low), (time, low)), ((time, left), (time, left + length))):
             axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-        look = {"textcoords": "offset points", "fontsize": 8.5, "path_effects": HALO}
+        look = {"textcoords": "offset points", "path_effects": HALO}
         # The label of T_trans stands above its arrow, clear of the ticks of the axis.
         named = rf"$T_\text{{trans}} = {time:#.3g}$"
         axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
@@ -123,7 +111,6 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
         limit = -float(paper["time"].iloc[0])
         axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
         # The label stands beside the ticks of the axis.
-        beside: Look = {"xytext": (6, 1), "textcoords": "offset points", "fontsize": 8.5}
-        axes.annotate("$x_-$", (0.0, limit), va="bottom", zorder=4.0, **beside)
+        axes.annotate("$x_-$", (0.0, limit), (6, 1), textcoords="offset points", zorder=4.0)
         left = roles["last_release"].iloc[:1]
         axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)

@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 
 from .shared import scaling
 from .shared.pulses import draw_prestress
-from .shared.scaling import DRAWN, OTHER, QUANTITIES, run_colours, transition_table
+from .shared.scaling import DRAWN, OTHER, QUANTITIES, transition_table
 from .shared.selection import spread_values
-from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, colour_scale, new_panels
+from .style import LEVEL, PAGE, SYMBOLS, Look, colour, colour_scale, new_panels
 
 NEEDS = {"measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]}}
 table = transition_table
@@ -18,20 +18,21 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw the collapse, a row a quantity and a column a boundary; insets have the ratio."""
     figure, panels = new_panels(PAGE, 5.6, "ab;cd")
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):
-        runs, other = table[table["boundary"] == boundary], OTHER[boundary]
+        level, other = LEVEL[boundary], OTHER[boundary]
+        runs = table[table["boundary"] == boundary]
+        runs = runs.assign(**{level: runs["left"]})
         few = runs[runs[other].isin(spread_values(runs[other], DRAWN))]
-        faces, rims = (run_colours(runs, name) for name in ("left", other))
+        faces, rims = (colour(name, runs[name]) for name in (level, other))
         for axes, quantity in zip(panels[column::2], QUANTITIES, strict=True):
             scaling.draw_collapse(axes, runs, quantity, {"c": faces, "edgecolors": rims})
             box = (0.1, 0.6, 0.34, 0.31)
-            inset = scaling.ratio_inset(axes, box, few, quantity, "left", other)
-            inset.set_xlabel(f"${SYMBOLS[LEVEL[boundary]]}$", fontsize=SMALL, labelpad=0.0)
+            scaling.ratio_inset(axes, box, few, quantity, level, other)
         levels = runs["left"].isin(spread_values(runs["left"], DRAWN))
         narrow = runs[levels & (runs["width"] == runs["width"].min())]
-        narrow = narrow.assign(colour=[*run_colours(narrow, "left")])
+        narrow = narrow.assign(colour=[*colour(level, narrow[level])])
         draw_prestress(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
         panels[column].set_title(title, loc="center")
-        for quantity in (LEVEL[boundary], other):
+        for quantity in (level, other):
             look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
             # The scale of left is stretched, and ticks at equal distances would overlap.
             look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "left" else None

@@ -156,7 +156,7 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
         look |= {"linewidth": np.where(framed, 1.8, 0.5), "zorder": 3}
         axes.bar(centre, HEIGHT, BLOCK, base, color=colours, **look)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
-        look = {"ha": "right", "va": "center", "fontsize": 8.0, "linespacing": 0.95}
+        look = {"ha": "right", "va": "center", "linespacing": 0.95}
         axes.text(low - 0.2, base + 0.5 * HEIGHT, text, **look)
     top = (PLATE if leaf else HEIGHT) + 0.08
     axes.set(xlim=(low, high), ylim=(-pitch * rows["row"].max() - 0.2, top), yticks=[])

@@ -28,7 +28,7 @@ def draw(table: pd.DataFrame) -> Figure:
         name = rf"$H_r/H = {thickness:g}$"
         x, y = curve["stiffness_ratio"], curve["stress_drop"]
         axes.plot(x, y, color=colour, label=name, gid="curve")
-        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "fontsize": 8.0}
+        look: Look = {"xytext": (3, 0), "textcoords": "offset points"}
         end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
         axes.annotate(name, end, color=colour, annotation_clip=False, va="center", **look)
     limit = r"$G \ll G_r$: imposed at $y = H$"

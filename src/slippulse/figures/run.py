@@ -67,8 +67,7 @@ def _draw(run: xr.Dataset) -> Picture:
     sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
     if sampled and (run["sample_velocity"] > 0.0).any():
         roles |= by_role(space_time.velocity_map(run))
-        image = space_time.draw_map(times, roles)
-        figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
+        space_time.draw_map(times, roles)
         if run.attrs.get("limit_reason"):
             # The exact run does not reach this part of the map.
             unknown = run["sample_velocity"].isnull().T

@@ -59,14 +59,11 @@ def draw(table: pd.DataFrame) -> Figure:
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     profile, axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     space_time.draw_profile(profile, roles["prestress"])
-    image = space_time.draw_map(axes, roles)
+    space_time.draw_map(axes, roles)
     axes.legend(loc="upper left")
-    upper.colorbar(image, ax=axes, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    spacing = roles["parameter"].set_index("series").loc["dx", "value"]
-    parameters = rf"{space_time.description(roles)}, $\Delta x = {spacing:g}$"
-    upper.suptitle(f"{title}\n{parameters}", fontsize=9.0)
+    upper.suptitle(f"{title}\n{space_time.description(roles)}")
     panels = zip(lower.subplots(1, 2), "bc", FIELDS.items(), strict=True)
     for axes, letter, (field, name) in panels:
         ends = roles["profile"][roles["profile"]["series"] == field]
@@ -87,5 +84,5 @@ def draw(table: pd.DataFrame) -> Figure:
         if math.isfinite(row.theory):
             line += f" (theory {number(row.theory, MOST)})"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
-        text.text(0.06 + 0.48 * (index % 2), height, line, va="center", fontsize=8.0)
+        text.text(0.06 + 0.48 * (index % 2), height, line, va="center")
     return figure

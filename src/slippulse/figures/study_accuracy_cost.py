@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, legend_above, new_panels
+from .style import BLACK, BLUE, GREY, HALO, OPEN, ORANGE, PAGE, Look, legend_above, new_panels
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
@@ -16,7 +16,6 @@ LOOKS: dict[str, Look] = {
     "best": {"color": GREY, "drawstyle": "steps-post", "label": BEST},
     "preset": {"color": ORANGE, "marker": "o", "linestyle": "none", "label": "presets"},
 }
-LOOKS["preset"]["markersize"] = 5.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -43,7 +42,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw three errors against the work, and the speed of the front against the step."""
     figure, (*trades, speeds) = new_panels(PAGE, 5.0, "ab;cd")
     # The names of the presets stand on the side that is empty.
-    name: Look = {"textcoords": "offset points", "fontsize": 8.0, "path_effects": HALO}
+    name: Look = {"textcoords": "offset points", "path_effects": HALO}
     for axes, (quantity, title) in zip(trades, PANELS.items(), strict=True):
         rows = table[table["quantity"] == quantity]
         for role, look in LOOKS.items():
@@ -69,11 +68,11 @@ def draw(table: pd.DataFrame) -> Figure:
         speeds.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
     speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
     speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
-    look = {"label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
+    look = {"label": "localised scheme"} | OPEN
     speeds.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     # The legend stands above the marks.
     speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
     speeds.set(ylabel="front speed", title=r"$\Gamma = 0$")
-    speeds.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)
-    legend_above(figure, trades[0], columnspacing=1.5)
+    speeds.legend(loc="upper center", ncols=2)
+    legend_above(figure, trades[0])
     return figure

@@ -86,8 +86,7 @@ def draw(table: pd.DataFrame) -> Figure:
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
     curve_axes.set_title(conditions(True, damping_ratio=largest))
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
-        look |= {"linewidth": 0.7, "markeredgewidth": 0.7} | OPEN
+        look = {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7} | OPEN
         scenes = rows.sort_values("dx").groupby(["tau0", "barrier", "gamma"])
         for _, line in scenes:
             convergence.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
@@ -112,14 +111,12 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
         for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
             depth = runs["measured"] * np.sqrt(gamma / GAMMA)
-            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, markersize=3.8, **OPEN)
+            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
-        look: Look = {"color": "0.3", "markersize": 3.8} | OPEN
-        axes.plot([], [], marker, label=rf"lattice, $\gamma = {gamma:g}$", **look)
-    axes.set(xscale="log", yscale="log", ylim=(0.33, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
+        axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
+    axes.set(xscale="log", yscale="log", ylim=(0.25, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
-    look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3}
-    axes.legend(loc="lower left", borderaxespad=0.2, fontsize=SMALL, **look)
+    axes.legend(loc="lower left", fontsize=SMALL, ncols=2, borderaxespad=0.2)

@@ -29,7 +29,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for height, half in ((0.05, "exact"), (0.91, "lattice")):
         map_axes.text(0.03, height, half, transform=map_axes.transAxes)
     map_axes.set_xlim(0.0, None)
-    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markeredgewidth": 0.6} | OPEN
+    look: Look = {"markersize": 2.2} | OPEN
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
         for role, front, trailing in (("exact", "-", "--"), ("lattice", "o", "s")):
@@ -42,7 +42,7 @@ def draw(table: pd.DataFrame) -> Figure:
     looks["o"] = rf"front, lattice, $\Delta x = {scenes['dx'].iloc[0]:g}$"
     looks["s"] = "trailing edge, lattice"
     for mark, label in looks.items():
-        edge_axes.plot([], [], mark, color=GREY, markersize=2.5, label=label, **OPEN)
+        edge_axes.plot([], [], mark, color=GREY, label=label, **OPEN)
     edge_axes.legend(loc="upper left", fontsize=SMALL)
     # Edges have time on the horizontal axis, as in every figure.
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
@@ -77,4 +77,4 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, last: Line2D) -> None:
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
-    axes.legend(loc="lower right", ncols=2, columnspacing=0.8)
+    axes.legend(loc="lower right", ncols=2)

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .shared import scaling
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look
+from .style import BLACK, BLUE, GREY, OPEN, ORANGE, PAGE, Look
 
 NEEDS = {
     "measured": {
@@ -52,8 +52,7 @@ def draw(table: pd.DataFrame) -> Figure:
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITIES.items():
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
-        look = {"markersize": 2.5, "markerfacecolor": "none", "markeredgewidth": 0.5}
-        refined.plot(spacing, error, marker, color=colour, **look)
+        refined.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN)
         largest, label = error.groupby(spacing).max(), f"${scaling.QUANTITIES[quantity]}$, largest"
         refined.plot(largest, marker=marker, color=colour, label=label)
     style.draw_first_order(refined, spacing, 0.4, BLACK)

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from . import style
-from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, REGIMES, SKY, Look, entry
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, REGIMES, SKY, entry
 
 NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
@@ -33,8 +33,7 @@ def draw(table: pd.DataFrame) -> Figure:
         for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
             resolution = points["d_c"] / dx
             speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            look: Look = {"color": colour, "markersize": 4.0} | OPEN
-            speeds.plot(resolution, points["speed"], marker, **look)
+            speeds.plot(resolution, points["speed"], marker, color=colour, **OPEN)
         speeds.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
     lines = speeds.get_legend_handles_labels()[0]
     for marker, dx in zip(MARKERS, sorted(fronts["dx"].unique()), strict=False):
@@ -46,7 +45,7 @@ def draw(table: pd.DataFrame) -> Figure:
     # The legend stands below the fast fronts, left of the slow ones.
     low, high = speeds.get_ylim()
     speeds.set_ylim(low - 0.15 * (high - low), high)
-    speeds.legend(handles=lines, loc="lower left", handlelength=1.4)
+    speeds.legend(handles=lines, loc="lower left")
     shown = {name: REGIMES[name] for name in REGIMES if (runs["regime"] == name).any()}
     handles = [entry(name, color=colour, marker=mark) for name, (colour, mark) in shown.items()]
     style.legend_below(figure, handles, len(handles))

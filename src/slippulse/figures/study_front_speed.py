@@ -115,7 +115,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
     limits = (limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")
     for value, dashes, name, side in limits:
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=dashes)
-        look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
+        look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side}
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))

@@ -20,8 +20,8 @@ LOOKS: dict[str, Look] = {
     "": {"color": GREY, "label": "none is open"},
 }
 MARKERS: dict[str, Look] = {
-    "exact": {"marker": "o", "markersize": 3.0},
-    "lattice": {"marker": "s", "markersize": 3.0} | OPEN,
+    "exact": {"marker": "o"},
+    "lattice": {"marker": "s"} | OPEN,
 }
 # Distance above its row at which a deviation is drawn, by release rule.
 APART = {"elastic": -0.17, "total": 0.17}
@@ -54,14 +54,14 @@ def draw(table: pd.DataFrame) -> Figure:
             height = position + rows["release"].map(APART).fillna(0.0)
             axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
         if table.loc[table["id"] == id, "over"].min() < LEAST:
-            bound: Look = {"va": "center", "fontsize": 8.0, "gid": "bound"}
+            bound: Look = {"va": "center", "gid": "bound"}
             # The line of the row does not strike the text through.
             bound["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
             axes.text(LEAST, position, rf"$\leq$ {LEAST:g}", **bound)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)
-    figure.supylabel("claim", fontsize=9.0)
+    figure.supylabel("claim")
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
     shown = [name for name in LOOKS if (table["choice"] == name).any()]
     handles = [entry(marker="o", **LOOKS[name]) for name in shown]

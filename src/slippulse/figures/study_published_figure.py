@@ -97,7 +97,7 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
     look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
     axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
-    axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
+    axes.legend(loc="upper left", borderaxespad=0.2)
 
 
 def _draw_region(axes: Axes, fits: Mapping, ours: pd.Series, name: str, label: str) -> None:

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from . import style
-from .style import CYCLE, GREY, MARKERS, OPEN, PAGE, SMALL, Look, conditions
+from .style import CYCLE, GREY, MARKERS, OPEN, PAGE, Look, conditions
 
 NEEDS = {
     "measured": {"pulse_damping": ["pulse"], "continuum_fixed_ratio": []},
@@ -54,7 +54,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
     grid[0].plot([], [], "o", color=GREY, label="simulation")
-    style.legend_above(figure, grid[0], columnspacing=1.0)
+    style.legend_above(figure, grid[0])
     rows = roles["refined"]
     for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
@@ -65,5 +65,5 @@ def draw(table: pd.DataFrame) -> Figure:
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
     scene = conditions(True, gamma=gamma, tau_0=left, damping_ratio=ratio)
     refined.set(ylabel=r"|simulation / limit $-$ 1|", ylim=(1e-6, None), title=scene)
-    refined.legend(loc="lower right", fontsize=SMALL, labelspacing=0.1)
+    refined.legend(loc="lower right")
     return figure

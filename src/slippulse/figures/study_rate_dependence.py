@@ -29,7 +29,7 @@ def draw(table: pd.DataFrame) -> Figure:
     sizes = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
     for column, (colour, marker, label) in sizes.items():
         pulses.plot(steady["over"], steady[column], color=colour, label=label)
-        pulses.plot(runs["over"], runs[column], marker, color=colour, markersize=4.0, **OPEN)
+        pulses.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
     pulses.set(xlabel=RATE, ylabel=f"{width}, {slip}", yscale="log")
     pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice")
     pulses.legend(loc="upper center")
@@ -43,7 +43,7 @@ def draw(table: pd.DataFrame) -> Figure:
     groups = rows.groupby("rate_strengthening")
     colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
     for colour, marker, (alpha, line) in zip(colours, MARKERS, groups, strict=False):
-        look: Look = OPEN | {"markersize": 3.0, "label": rf"$\alpha = {alpha:g}$"}
+        look: Look = OPEN | {"label": rf"$\alpha = {alpha:g}$"}
         arrest.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
     theory = roles["asymptote"]
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
@@ -64,13 +64,10 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     style.draw_regimes(axes, runs[flags], "over", **OPEN)
     for regime, (colour, marker) in REGIMES.items():
         if (runs["regime"] == regime).any():
-            look = {"color": colour, "marker": marker, "markersize": 4.0}
-            handles.append(entry(f"{regime}, lattice", **look))
+            handles.append(entry(f"{regime}, lattice", color=colour, marker=marker))
     if flags.any():
-        look = {"color": GREY, "marker": "o", "markersize": 4.0} | OPEN
-        handles.append(entry("open: would slide back", **look))
+        handles.append(entry("open: would slide back", color=GREY, marker="o", **OPEN))
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$")
-    look = {"ncols": 2, "columnspacing": 0.8, "handletextpad": 0.4}
-    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.09), **look)
+    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2)

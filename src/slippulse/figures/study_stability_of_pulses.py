@@ -59,19 +59,19 @@ def draw(table: pd.DataFrame) -> Figure:
         slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
         marks = lattice.iloc[::MARKED]
         look: Look = {"color": colour} | OPEN
-        slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
+        slip_axes.plot(marks["x"], marks["slip"], "o", markersize=2.2, **look)
         slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
         # The exact distance is 0 beyond the memory.
         ahead = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
-        look |= {"linewidth": 1.0, "markersize": 2.2, "markeredgewidth": 0.6}
+        look |= {"markersize": 2.2}
         for part, line in ((exact[ahead], "-"), (marks, "o")):
             part = part[part["x"] > 0.0]
             rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
             rest_axes.plot(part["x"] / memory, rest, line, **look)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
-    look = {"color": GREY, "marker": "o", "markersize": 2.5} | OPEN
-    handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **look))
+    lattice = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
+    handles.append(entry(lattice, color=GREY, marker="o", **OPEN))
     handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
@@ -79,7 +79,7 @@ def draw(table: pd.DataFrame) -> Figure:
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     # A distance of exactly 0 is drawn at ROUNDING.
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
-    rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
+    rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center")
     rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
     rest_axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", title=r"$\Gamma = 1$")
     rest_axes.set_ylabel("|slip / new steady slip $-$ 1|")
@@ -107,5 +107,4 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set_xlim(None, 1.28 * rows["time"].max())
     axes.set_ylim(LEAST, 2.5 * rows["largest_velocity"].max())
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before")
-    look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 8.0}
-    axes.text(0.97, 0.96, r"$\tau$ beyond", **look)
+    axes.text(0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top")

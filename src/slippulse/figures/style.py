@@ -84,15 +84,20 @@ NOTE_DENSITY = 22
 # The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"
 RC: dict[Any, Any] = {
-    "font.size": 9.0,
+    "font.size": 8.0,
+    "axes.labelsize": 9.0,
     "axes.titlesize": 9.0,
-    "xtick.labelsize": 8.0,
-    "ytick.labelsize": 8.0,
-    "legend.fontsize": 8.0,
+    "figure.titlesize": 9.0,
+    "figure.labelsize": 9.0,
     "legend.frameon": False,
     "legend.labelspacing": 0.2,
-    "lines.linewidth": 1.1,
+    "legend.columnspacing": 1.0,
+    "legend.handlelength": 1.6,
+    "legend.handletextpad": 0.6,
+    "image.cmap": VELOCITY_MAP,
+    "lines.linewidth": 1.0,
     "lines.markersize": 3.5,
+    "lines.markeredgewidth": 0.7,
     "axes.linewidth": 0.6,
     "xtick.direction": "in",
     "ytick.direction": "in",
@@ -193,7 +198,7 @@ def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
     """Mark the regime of each run over a column and the level."""
     for regime, rows in runs.groupby("regime"):
         colour, marker = REGIMES[str(regime)]
-        axes.plot(rows[x], rows["level"], marker, color=colour, **{"markersize": 4.0} | look)
+        axes.plot(rows[x], rows["level"], marker, color=colour, **look)
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
@@ -204,8 +209,7 @@ def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
     """Place one legend below all panels."""
-    look: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = "") -> None:
@@ -217,7 +221,7 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
         figure.set_size_inches(width, height + added)
         bottom = added / (height + added)
         figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
-        look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
+        look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL, "color": ORANGE}
         figure.text(0.995, 0.005, text, **look).set_in_layout(False)
     # A spine ends where its axes do, and the layout asks the axes.
     for axes in figure.axes:

@@ -72,7 +72,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in panels[len(quantities) :]:
         axes.set_visible(False)
-    figure.suptitle(table["fixed"].iloc[0], fontsize=9.0)
+    figure.suptitle(table["fixed"].iloc[0])
     handles = [entry("simulation", marker="o", color=GREY)]
     handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():

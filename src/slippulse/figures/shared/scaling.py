@@ -20,8 +20,6 @@ OTHER = {"displacement": "gamma", "stress": "width"}
 DRAWN = 3
 # Place of an inset below the line of equality.
 BELOW: Box = (0.52, 0.12, 0.26, 0.29)
-# Ticks of an axis that has less than this ratio of its ends are more than the powers of ten.
-SHORT = 40.0
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -34,45 +32,36 @@ def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
 
 
-def run_colours(runs: pd.DataFrame, column: str) -> np.ndarray:
-    """The colour of each run by its level (column left), gamma, width or damping ratio."""
-    return style.colour(coloured(runs["boundary"].iloc[0], column), runs[column])
-
-
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
     """Draw measured against predicted; ``colours`` of the runs are c (face) and edgecolors."""
     x, y = runs[f"paper_{quantity}"], runs[quantity]
-    width = 1.0 if len(np.unique(colours["edgecolors"], axis=0)) > 1 else 0.3
+    width = 1.0 if "edgecolors" in colours else 0.3
     _scatter(axes, runs, x, y, colours, s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
     symbol = QUANTITIES[quantity]
     axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
-    subs = (1.0, 2.0, 5.0) if ends[1] < SHORT * ends[0] else (1.0,)
     for axis in (axes.xaxis, axes.yaxis):
-        ticks: Look = {"major_locator": LogLocator(subs=subs), "major_formatter": "{x:g}"}
-        axis.set(minor_formatter=NullFormatter(), **ticks)
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set(major_formatter="{x:g}", minor_formatter=NullFormatter())
 
 
 def ratio_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, across: str, line: str
 ) -> Axes:
     """Draw measured over predicted in a box over ``across``: runs, and exact lines by ``line``."""
-    inset, boundary = style.small_inset(axes, box, "measured / formula"), runs["boundary"].iloc[0]
+    inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
+    inset.set_xlabel(f"${SYMBOLS[across]}$", fontsize=SMALL, labelpad=0.0)
     inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
-    for style_of_line, (value, group) in zip(("-", "--", ":"), runs.groupby(line), strict=False):
+    for value, group in runs.groupby(line):
         group = group.sort_values(across)
         exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
-        look: Look = {"color": run_colours(group, line)[0]}
-        if across == "damping_ratio":
-            look = {"color": BLACK, "linestyle": style_of_line}
-        name = f"${SYMBOLS[coloured(boundary, line)]}$ = {setting(value)}"
-        inset.plot(group[across], exact, linewidth=0.8, label=name, gid="exact", **look)
+        look: Look = {"color": style.colour(line, value), "linewidth": 0.8, "gid": "exact"}
+        inset.plot(group[across], exact, label=f"${SYMBOLS[line]}$ = {setting(value)}", **look)
     ratio = runs[quantity] / runs[f"paper_{quantity}"]
-    column = across if across == "damping_ratio" else line
-    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, column)})
+    _scatter(inset, runs, runs[across], ratio, {"c": style.colour(line, runs[line])})
     look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3, "borderaxespad": 0.3}
     inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
     return inset
@@ -82,7 +71,7 @@ def _scatter(
     axes: Axes, runs: pd.DataFrame, x: pd.Series, y: pd.Series, colours: Look, **sizes: Any
 ) -> None:
     """Draw a marker a run: in its colours, or open and grey where the run is flagged."""
-    look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "none", "zorder": 3} | sizes
+    look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "white", "zorder": 3} | sizes
     flagged = runs["run_flags"].notna()
     grey: Look = {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
     axes.scatter(x[flagged], y[flagged], **look | grey)
@@ -90,32 +79,26 @@ def _scatter(
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **look | shown)
 
 
-def coloured(boundary: str, column: str) -> str:
-    """Quantity of `style.SCALES` of a column: that of the level for column left."""
-    return LEVEL[boundary] if column == "left" else column
-
-
 def damping_figure(table: pd.DataFrame) -> Figure:
     """Draw figures 10 and 11: the collapse in colours of b, and in insets the ratio against b."""
     boundary, ratios = table["boundary"].iloc[0], np.sort(table["damping_ratio"].unique())
-    other = OTHER[boundary]
+    level, other = LEVEL[boundary], OTHER[boundary]
     middle = spread_values(table[other], DRAWN)[1]
+    table = table.assign(**{level: table["left"]}).sort_values("damping_ratio")
     few = table[(table[other] == middle) & table["left"].isin(spread_values(table["left"], DRAWN))]
-    runs = table.sort_values("damping_ratio")
-    colours = {"c": run_colours(runs, "damping_ratio"), "edgecolors": np.ones((len(runs), 4))}
-    spacing = runs["dx"] / runs["width"]
+    colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
+    spacing = table["dx"] / table["width"]
     spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
     figure, panels = style.new_panels(PAGE, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
-        draw_collapse(axes, runs, quantity, colours)
+        draw_collapse(axes, table, quantity, colours)
         axes.set_title(f"{style.conditions(boundary == 'displacement')}, {spacings}", loc="center")
         # The runs lie above equality, so that the corner below it is free.
-        inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", "left")
+        inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", level)
         # The axis of the damping ratio has 0.
         inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         style.few_ticks(inset.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
         inset.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
-        inset.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
     looks = zip(ratios, style.colour("damping_ratio", ratios), strict=True)
     handles = [entry(f"$b = {ratio:g}$", marker="o", color=colour) for ratio, colour in looks]
     name = f"exact, ${SYMBOLS[other]}$ = {middle:g} (insets)"

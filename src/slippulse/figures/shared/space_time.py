@@ -1,17 +1,14 @@
 """A run over time and position: slip velocity, front and trailing edge; their table and drawing."""
 
-from itertools import pairwise
-
 import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.image import AxesImage
+from matplotlib.ticker import MaxNLocator
 
-from ...data.numerals import setting
 from ...model.prestress import prestress_from
 from ...model.recorded_law import law_of
-from ..style import BLACK, DASHES, GREY, VELOCITY_MAP, Look, conditions
+from ..style import BLACK, DASHES, GREY, Look, conditions
 from .selection import spaced_indices
 
 # Samples kept along each axis of a map, and blocks along each front.
@@ -19,8 +16,7 @@ MAP_SAMPLES, FRONT_POINTS = 121, 400
 # The panel is wider than the slipped part by this fraction of it on each side, for an arrow.
 MARGIN = 0.12
 STUCK = "#cfcfcf"
-# Width of a label on the axis of the narrow pre-stress panel, as a fraction of the axis.
-LABEL = 0.5
+MAP: Look = {"rasterized": True, "vmin": 0.0}
 PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
@@ -40,7 +36,7 @@ def description(roles: dict[str, pd.DataFrame]) -> str:
     value = roles["parameter"].set_index("series")["value"]
     value["tau_0"], held = value["left"], value["gamma"] > 0.0
     levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
-    names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio"]
+    names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio", "dx"]
     title = conditions(held, **value[names])
     if "friction" in roles:
         title += f", {roles['friction']['series'].iloc[0]}"
@@ -105,40 +101,25 @@ def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the pre-stress to the right and the position upwards."""
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
-    lower, upper = min(0.0, rows["value"].min()), rows["value"].max()
-    # Ticks stand at 0, at the peak and at both levels; the right one only where it has room.
-    left, right = rows["value"].iloc[[0, -1]]
-    room = LABEL * (upper - lower)
-    shown = [0.0, upper, left] if abs(right - left) < room else [0.0, upper, left, right]
-    ticks = sorted({round(float(value), 2) for value in shown})
-    axes.set_xticks(ticks, [setting(value) for value in ticks])
-    # Two ticks that are near each other have their labels on their outer sides.
-    near = [higher - lower < room for lower, higher in pairwise(ticks)]
-    labels = axes.get_xticklabels()
-    for label, near_next, near_last in zip(labels, [*near, False], [False, *near], strict=True):
-        if near_next != near_last:
-            label.set_horizontalalignment("right" if near_next else "left")
-    axes.set(xlabel=r"$\tau$", xlim=(lower - 0.15, upper + 0.15))
-    axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
+    axes.margins(x=0.12)
+    axes.xaxis.set_major_locator(MaxNLocator(2, integer=True))
+    axes.set(xlabel=r"$\tau$", ylabel=r"position $x$")
+    axes.set_ylim(rows["position"].min(), rows["position"].max())
 
 
-def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
-    """Draw the slip velocity in colour, cut along both edges, and return the image."""
+def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
+    """Draw the slip velocity in colour, cut along both edges."""
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
-    times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
-    dt, dx = np.diff(times)[0], np.diff(positions)[0]
-    extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
-    look: Look = {"origin": "lower", "interpolation": "bilinear", "aspect": "auto"}
-    look |= {"extent": extent, "vmin": 0.0, "vmax": roles["largest"]["value"].iloc[0]}
-    image = axes.imshow(grid, VELOCITY_MAP, **look)
-    draw_edges(axes, roles, times[-1])
-    return image
+    look = MAP | {"shading": "gouraud", "vmax": roles["largest"]["value"].iloc[0]}
+    image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
+    draw_edges(axes, roles, grid.columns[-1])
+    label = rf"slip velocity $\dot u$ (largest {look['vmax']:#.3g})"
+    axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
 def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw two maps, one above x = 0 and one below, of the values of a column."""
-    look: Look = {"cmap": VELOCITY_MAP, "shading": "nearest", "rasterized": True}
-    look |= {"vmin": 0.0, "vmax": rows["slip_velocity"].max()}
+    look = MAP | {"shading": "nearest", "vmax": rows["slip_velocity"].max()}
     for _, part in rows.groupby(half):
         # Positions that do not slide stay white.
         grid = part.pivot(index="position", columns="time", values="slip_velocity")
@@ -152,22 +133,17 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """Draw both edges, and hide what the map has before the release and after the stick."""
     front = roles["front"].sort_values("position")
     trailing = roles["trailing"].sort_values("position")
-    x, release = front["position"].to_numpy(), front["time"].to_numpy()
     axes.set(xlim=(0.0, end), xlabel=r"time $t$")
     axes.tick_params(labelleft=False)
-    if not x.size:
+    if front.empty:
         return
     drawn = roles["prestress"]["position"]
-    positions = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
-    before = np.concatenate([[end, end], release, [end, end]])
-    # The areas reach over the borders of the map, whose outer samples stand for half a cell more.
-    overhang, margin = 0.01 * end, 0.1 * np.ptp(drawn)
-    positions = np.clip(positions, drawn.min() - margin, drawn.max() + margin)
-    axes.fill_betweenx(positions, -overhang, before, color="white", linewidth=0.0, zorder=1.5)
-    axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
+    release = np.interp(drawn, front["position"], front["time"], left=end, right=end)
+    axes.fill_betweenx(drawn, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
+    axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
-        axes.fill_betweenx(x, stick, end + overhang, color=STUCK, linewidth=0.0, zorder=1.4)
+        axes.fill_betweenx(x, stick, end, color=STUCK, linewidth=0.0, label="stuck again")
         look: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": DASHES}
         axes.plot(stick, x, label="trailing edge", **look)
