@@ -68,8 +68,8 @@ def draw(table: pd.DataFrame) -> Figure:
         speeds.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
     speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
     speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
-    look = {"label": "localised scheme"} | OPEN
-    speeds.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
+    look = OPEN | {"color": BLUE, "label": "localised scheme"}
+    speeds.plot(local["step"], local["front_speed"], "o", **look)
     # The legend stands above the marks.
     speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
     speeds.set(ylabel="front speed", title=r"$\Gamma = 0$")

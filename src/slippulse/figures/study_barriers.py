@@ -86,7 +86,7 @@ def draw(table: pd.DataFrame) -> Figure:
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
     curve_axes.set_title(conditions(True, damping_ratio=largest))
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look = {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7} | OPEN
+        look = OPEN | {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7}
         scenes = rows.sort_values("dx").groupby(["tau0", "barrier", "gamma"])
         for _, line in scenes:
             convergence.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)

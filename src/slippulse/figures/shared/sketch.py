@@ -21,4 +21,5 @@ def arrow(axes: Axes, start: Point, end: Point, colour: str, **look: Any) -> Non
 
 def label(axes: Axes, x: float, y: float, text: str, colour: str = BLACK, **look: Any) -> None:
     """Write a text, centred unless ``look`` says otherwise."""
-    axes.text(x, y, text, color=colour, **{"ha": "center", "va": "center", "fontsize": 9.0} | look)
+    centred: Look = {"ha": "center", "va": "center", "fontsize": 9.0}
+    axes.text(x, y, text, color=colour, **centred | look)
