@@ -70,12 +70,15 @@ def drawn(draw):
     """Runs, their table, and blocks and pre-stress of each panel."""
     made = draw("fig06_burridge_knopoff")
     axes = made.figure.axes
-    return made.data, made.table, dict(zip(figure.PITCH, (axes[:2], axes[2:4]), strict=True))
+    return (
+        made.data,
+        made.table,
+        dict(zip(figure.PITCH, (axes[:2][::-1], axes[2:][::-1]), strict=True)),
+    )
 
 
 def segments(axes, name):
-    groups = [group for group in axes.collections if group.get_gid() == name]
-    return [segment for group in groups for segment in group.get_segments()]
+    return [line.get_xydata() for line in named(axes, name)]
 
 
 @pytest.mark.parametrize("name", figure.PITCH)

@@ -11,7 +11,7 @@ from ..data.numerals import setting
 from ..model.prestress import Prestress
 from . import style
 from .shared.selection import spread_values
-from .style import BLACK, GREY, PAGE, Look, entry, legend_below, panel_letter
+from .style import BLACK, GREY, PAGE, SMALL, Look, entry, legend_below, panel_letter
 
 NEEDS = {
     "measured": {
@@ -148,14 +148,11 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         gamma = int(rows["boundary"].iloc[0] == "displacement")
         label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(map(setting, levels))}"
         axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
-        axes.set(yticks=[], ylim=(0.0, 2.6))
+        # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
+        axes.axhline(1.5, color=GREY, linewidth=0.6, linestyle=":")
+        axes.plot(x, 1.5 + 0.4 * Prestress(*levels)(x), color=BLACK, linewidth=0.8, gid="prestress")
+        axes.set_yticks([1.5, 1.9], ["0", "1"], fontsize=SMALL)
+        axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
+        axes.set_ylim(0.0, 2.6)
         axes.spines[["left", "right", "top"]].set_visible(False)
-        inset = axes.inset_axes((0.0, 0.47, 1.0, 0.3), sharex=axes)
-        inset.axhline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-        inset.plot(x, Prestress(*levels)(x), color=BLACK, linewidth=0.8)
-        inset.set(yticks=[0, 1], ylim=(-0.7, 1.1))
-        inset.tick_params("x", length=0.0, labelbottom=False)
-        inset.tick_params("y", labelsize=7.0, length=1.5, pad=1.5)
-        inset.set_ylabel(r"$\tau$", rotation=0, labelpad=6.0, va="center")
-        inset.spines[["right", "top", "bottom"]].set_visible(False)
     axes.set(xlabel="position $x$", xlim=(-end, end))

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -58,7 +57,6 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure; the legend has what is drawn in either panel."""
     figure = Figure(figsize=(PAGE, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
-    handles: dict[object, Artist] = {}
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
@@ -73,9 +71,8 @@ def draw(table: pd.DataFrame) -> Figure:
             when = rf"left front at {percent:g} % of its way to $x_-$"
         title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
         side.suptitle(title)
-        drawn = axes.get_legend_handles_labels()[0]
-        handles |= {artist.get_label(): artist for artist in drawn}
-    style.legend_below(figure, list(handles.values()), len(handles))
+    handles = style.labelled(figure.axes)
+    style.legend_below(figure, handles, len(handles))
     return figure
 
 

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
@@ -104,12 +103,12 @@ def draw(table: pd.DataFrame) -> Figure:
     for name, pitch in PITCH.items():
         ratios += [STRIP, UNIT * (pitch * counts[name] + 0.12)]
     figure = Figure(figsize=(WIDTH, sum(ratios) + 1.75), layout="constrained")
-    grid = figure.add_gridspec(4, 1, height_ratios=ratios)
-    for index, (name, letter) in enumerate(zip(PITCH, "ab", strict=True)):
+    panels = figure.subplots(4, 1, height_ratios=ratios)
+    for name, letter, strip, axes in zip(PITCH, "ab", panels[::2], panels[1::2], strict=True):
         rows = table[table["panel"] == name]
-        axes = figure.add_subplot(grid[2 * index + 1])
         draw_rows(axes, rows, name)
-        strip, first = figure.add_subplot(grid[2 * index], sharex=axes), rows[rows["row"] == 0]
+        first = rows[rows["row"] == 0]
+        strip.sharex(axes)
         strip.axhline(0.0, color=BLACK, linewidth=0.6)
         strip.bar(first["x"], first["prestress"], width=BLOCK, color=GREY)
         strip.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
@@ -137,9 +136,8 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
         base, rest = -pitch * row, state["x"].to_numpy()
         centre = rest + (state["scale"] * state["slip"]).to_numpy()
         x = np.linspace(centre[:-1] + 0.5 * BLOCK, centre[1:] - 0.5 * BLOCK, COIL.size, axis=1)
-        coils = [*np.stack(np.broadcast_arrays(x, base + 0.5 * HEIGHT + COIL), axis=-1)]
-        look: Look = {"colors": "0.35", "linewidths": 0.6, "gid": "coil springs"}
-        axes.add_collection(LineCollection(coils, **look))
+        y = base + 0.5 * HEIGHT + COIL
+        axes.plot(x.T, y, color="0.35", linewidth=0.6, gid="coil springs")
         axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
         axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
@@ -148,11 +146,9 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
             along, plate = np.linspace(0.0, 1.0, 15), base + PLATE
             x = rest[:, None] + (centre - rest)[:, None] * along**2 * (3.0 - 2.0 * along)
             y = plate + (base + HEIGHT - plate) * along
-            leaves = [*np.stack(np.broadcast_arrays(x, y), axis=-1)]
-            look = {"colors": BLUE, "linewidths": 0.9, "gid": "leaf springs"}
-            axes.add_collection(LineCollection(leaves, **look))
+            axes.plot(x.T, y, color=BLUE, linewidth=0.9, gid="leaf springs")
         framed, colours = state["arresting_block"], state["state"].map(COLOURS)
-        look = {"edgecolor": np.where(framed, BLACK, "0.2")}
+        look: Look = {"edgecolor": np.where(framed, BLACK, "0.2")}
         look |= {"linewidth": np.where(framed, 1.8, 0.5), "zorder": 3}
         axes.bar(centre, HEIGHT, BLOCK, base, color=colours, **look)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]

@@ -47,11 +47,10 @@ def draw(table: pd.DataFrame) -> Figure:
         rows = table[table["quantity"] == quantity]
         for role, look in LOOKS.items():
             part = rows[rows["role"] == role].sort_values("work")
-            work, error = part["work"].to_list(), part["error"].to_list()
             if role == "best":
                 # More work need not have a larger error.
-                work, error = [*work, rows["work"].max()], [*error, error[-1]]
-            axes.plot(work, error, gid=role, **look)
+                part = pd.concat([part, part.tail(1).assign(work=rows["work"].max())])
+            axes.plot(part["work"], part["error"], gid=role, **look)
         for preset in rows[rows["role"] == "preset"].itertuples():
             axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
         axes.set(xscale="log", yscale="log", xlabel="stencil passes over a block")
@@ -61,11 +60,10 @@ def draw(table: pd.DataFrame) -> Figure:
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
-    for n in range(1, 12):
-        locked = 1.0 / (n * steps)
-        shown = np.where((locked > low) & (locked < high), locked, np.nan)
-        label = r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$" if n == 1 else None
-        speeds.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
+    locked = 1.0 / np.outer(steps, np.arange(1, 12))
+    shown = np.where((locked > low) & (locked < high), locked, np.nan)
+    lines = speeds.plot(steps, shown, color="0.75", linewidth=0.8)
+    lines[0].set_label(r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$")
     speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
     speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
     look = OPEN | {"color": BLUE, "label": "localised scheme"}

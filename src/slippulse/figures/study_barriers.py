@@ -1,7 +1,5 @@
 """Depth to which a steady pulse enters negative pre-stress: exact, on lattices, by an estimate."""
 
-from collections.abc import Iterable
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -14,12 +12,9 @@ from .style import BLACK, MARKERS, OPEN, PAGE, SMALL, Look, conditions, few_tick
 
 NEEDS = {"studies": ["barriers"]}
 
-MAP = "cividis"
 # Points of the interpolated map along each axis, its bands of colour, and contour lines on it.
 FINE, BANDS = 41, 33
 CONTOURS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
-# Above this depth the map is light, and lines and labels on it are dark.
-LIGHT = 3.5
 # Curves have this gamma, for which the estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
 LEVELS = (0.2, 0.5, 0.8)
@@ -62,18 +57,19 @@ def draw(table: pd.DataFrame) -> Figure:
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
     ratios = np.sort(runs["damping_ratio"].unique())
-    shades: Look = {"norm": LogNorm(*ends), "cmap": MAP}
+    # The light part of the map, on which dark lines are seen.
+    shades: Look = {"norm": LogNorm(ends[0], 3.0 * ends[1]), "cmap": "GnBu"}
     filled = shades | {"levels": np.geomspace(*ends, BANDS), "extend": "both"}
     for axes, ratio in zip(maps, ratios, strict=True):
         drawn, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
         grid = drawn.pivot(index="barrier", columns="tau0", values="exact").sort_index()
         image = axes.contourf(grid.columns, -grid.index, grid, **filled)
-        look: Look = {"levels": CONTOURS, "colors": _ink(CONTOURS), "linewidths": 0.5}
+        look: Look = {"levels": CONTOURS, "colors": BLACK, "linewidths": 0.5}
         lines = axes.contour(grid.columns, -grid.index, grid, **look)
         axes.clabel(lines, fmt="%g", fontsize=SMALL, zorder=2.5)
         for marker, (gamma, group) in zip(MARKERS, marked.groupby("gamma"), strict=False):
             depth = group["measured"] * np.sqrt(gamma)
-            look = {"c": depth, "edgecolors": _ink(depth), "s": 26.0, "linewidths": 0.9} | shades
+            look = {"c": depth, "edgecolors": BLACK, "s": 26.0, "linewidths": 0.9} | shades
             axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
         axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$")
         axes.set(ylabel=r"barrier $-\tau_\text{b}$", title=conditions(True, damping_ratio=ratio))
@@ -96,10 +92,6 @@ def draw(table: pd.DataFrame) -> Figure:
     convergence.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio")
     convergence.legend(loc="upper left")
     return figure
-
-
-def _ink(depths: Iterable[float]) -> list[str]:
-    return np.where(np.asarray(depths) > LIGHT, BLACK, "white").tolist()
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:

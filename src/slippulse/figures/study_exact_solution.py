@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ..data.numerals import setting
 from . import style
@@ -53,26 +52,19 @@ def draw(table: pd.DataFrame) -> Figure:
         levels = ", ".join(dict.fromkeys([setting(row.left), setting(row.right)]))
         names[row.scene] = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
     lines = [style.entry(names[scene], color=colour) for scene, colour in SCENES.items()]
-    # The last scene is in the panel of the differences alone.
-    figure.legend(handles=lines[:-1], loc="outside upper center", ncols=3)
-    _draw_differences(difference_axes, table[table["role"] == "difference"], lines[-1])
+    figure.legend(handles=lines, loc="outside upper center", ncols=3)
+    _draw_differences(difference_axes, table[table["role"] == "difference"].sort_values("dx"))
     return figure
 
 
-def _draw_differences(axes: Axes, rows: pd.DataFrame, last: Line2D) -> None:
-    """Draw the largest and the smallest difference of each scene; ``last`` names the last one."""
-    drawn = []
-    for scene, colour in SCENES.items():
-        scene_rows = rows[rows["scene"] == scene]
-        lines = scene_rows.pivot(index="dx", columns="quantity", values="difference")
-        finest = lines.iloc[0].dropna().sort_values()
-        for quantity in finest.index[[0, -1]]:
-            axes.plot(lines[quantity], MARKERS[quantity] + "-", color=colour, linewidth=0.7)
-            drawn.append(quantity)
-    for quantity in dict.fromkeys(drawn):
+def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the difference of each quantity of each scene over the spacing."""
+    for quantity, marker in MARKERS.items():
+        for scene, line in rows[rows["quantity"] == quantity].groupby("scene"):
+            look: Look = {"color": SCENES[str(scene)], "linewidth": 0.7}
+            axes.plot(line["dx"], line["difference"], marker + "-", **look)
         label = "slip velocity" if quantity == "velocity" else quantity
-        axes.plot([], [], MARKERS[quantity], color=GREY, label=label)
-    axes.add_line(last)
+        axes.plot([], [], marker, color=GREY, label=label)
     style.draw_first_order(axes, rows["dx"], 1.5, GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))

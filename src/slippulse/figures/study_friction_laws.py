@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from . import style
-from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, REGIMES, SKY, entry
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, SKY, entry
 
 NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
@@ -46,7 +46,6 @@ def draw(table: pd.DataFrame) -> Figure:
     low, high = speeds.get_ylim()
     speeds.set_ylim(low - 0.15 * (high - low), high)
     speeds.legend(handles=lines, loc="lower left")
-    shown = {name: REGIMES[name] for name in REGIMES if (runs["regime"] == name).any()}
-    handles = [entry(name, color=colour, marker=mark) for name, (colour, mark) in shown.items()]
+    handles = style.labelled(planes)
     style.legend_below(figure, handles, len(handles))
     return figure

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .shared.space_time import draw_halves
-from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, REGIMES, Look, entry
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, Look
 
 NEEDS = {"studies": ["rate_dependence"]}
 table = style.as_given
@@ -57,17 +57,14 @@ def draw(table: pd.DataFrame) -> Figure:
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     look: Look = {"color": BLUE, "alpha": 0.12, "linewidth": 0.0}
     axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], **look)
-    handles = axes.plot(limit["over"], limit["level"], label="exact", **LINES)
+    axes.plot(limit["over"], limit["level"], label="exact", **LINES)
     axes.plot(-limit["over"], limit["level"], **LINES)
     flags = runs["run_flags"].astype(str).str.contains("reverse_sliding")
     style.draw_regimes(axes, runs[~flags], "over")
-    style.draw_regimes(axes, runs[flags], "over", **OPEN)
-    for regime, (colour, marker) in REGIMES.items():
-        if (runs["regime"] == regime).any():
-            handles.append(entry(f"{regime}, lattice", color=colour, marker=marker))
+    style.draw_regimes(axes, runs[flags], "over", label=None, **OPEN)
     if flags.any():
-        handles.append(entry("open: would slide back", color=GREY, marker="o", **OPEN))
+        axes.plot([], [], "o", color=GREY, label="open: would slide back", **OPEN)
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$")
-    axes.legend(handles=handles, loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2)

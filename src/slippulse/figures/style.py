@@ -198,7 +198,13 @@ def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
     """Mark the regime of each run over a column and the level."""
     for regime, rows in runs.groupby("regime"):
         colour, marker = REGIMES[str(regime)]
-        axes.plot(rows[x], rows["level"], marker, color=colour, **look)
+        axes.plot(rows[x], rows["level"], marker, **{"color": colour, "label": regime} | look)
+
+
+def labelled(panels: Sequence[Axes]) -> list[Artist]:
+    """Artists that have a label in any of some panels, one a label."""
+    artists = [artist for axes in panels for artist in axes.get_legend_handles_labels()[0]]
+    return list({artist.get_label(): artist for artist in artists}.values())
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
