@@ -69,12 +69,9 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(draw, shipped):
 def drawn(draw):
     """Runs, their table, and blocks and pre-stress of each panel."""
     made = draw("fig06_burridge_knopoff")
-    axes = made.figure.axes
-    return (
-        made.data,
-        made.table,
-        dict(zip(figure.PITCH, (axes[:2][::-1], axes[2:][::-1]), strict=True)),
-    )
+    first_strip, first, second_strip, second = made.figure.axes
+    panels = (first, first_strip), (second, second_strip)
+    return made.data, made.table, dict(zip(figure.PITCH, panels, strict=True))
 
 
 def segments(axes, name):

@@ -70,8 +70,8 @@ def draw(table: pd.DataFrame) -> Figure:
             label(axes, REST + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$", BLUE, ha="left")
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
-        look: Look = {"color": BLUE, "linewidth": 1.5, "gid": "displacement"}
-        axes.plot(REST + rows["displacement"], rows["y"], **look)
+        x = REST + rows["displacement"]
+        axes.plot(x, rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
         axes.set_title(TITLES[panel], loc="center")
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()

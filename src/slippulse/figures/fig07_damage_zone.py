@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import BOTH, MUTED, arrow, label
-from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, as_given, new_panels
+from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, as_given, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
 table = as_given
@@ -28,9 +28,7 @@ def draw(table: pd.DataFrame) -> Figure:
         name = rf"$H_r/H = {thickness:g}$"
         x, y = curve["stiffness_ratio"], curve["stress_drop"]
         axes.plot(x, y, color=colour, label=name, gid="curve")
-        look: Look = {"xytext": (3, 0), "textcoords": "offset points"}
-        end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
-        axes.annotate(name, end, color=colour, annotation_clip=False, va="center", **look)
+        axes.text(1.1 * x.iloc[-1], y.iloc[-1], name, color=colour, va="center")
     limit = r"$G \ll G_r$: imposed at $y = H$"
     line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
     ends = curves["stiffness_ratio"].agg(["min", "max"])

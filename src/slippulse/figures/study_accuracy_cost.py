@@ -50,7 +50,7 @@ def draw(table: pd.DataFrame) -> Figure:
             if role == "best":
                 # More work need not have a larger error.
                 part = pd.concat([part, part.tail(1).assign(work=rows["work"].max())])
-            axes.plot(part["work"], part["error"], gid=role, **look)
+            axes.plot(part["work"], part["error"], **look)
         for preset in rows[rows["role"] == "preset"].itertuples():
             axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
         axes.set(xscale="log", yscale="log", xlabel="stencil passes over a block")

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from ..data.point import point
@@ -46,16 +45,15 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, "ab")
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
-    handles: list[Artist] = []
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The scale of colours is logarithmic, and has none for 0.
         look: Look = {"color": style.colour("damping_ratio", ratio) if ratio else ORANGE}
-        handles.append(entry(f"$b$ = {ratio:g}", marker=marker, **look))
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
         path_axes.plot(simulated["time"], simulated["to_go"], **PALE | look)
         path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
-        path_axes.plot(simulated["time"].iloc[-1:], simulated["to_go"].iloc[-1:], marker, **look)
+        last, label = simulated.iloc[-1], f"$b$ = {ratio:g}"
+        path_axes.plot(last["time"], last["to_go"], marker, label=label, **look)
         runs = rows[rows["role"] == "run"].sort_values("dx")
         spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
         spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN | look)
@@ -63,8 +61,8 @@ def draw(table: pd.DataFrame) -> Figure:
     fraction_label = f"{100.0 * table['fraction'].max():g} % of the way"
     looks = {"simulation": PALE, "exact": {"linewidth": 0.9}, "last release": {"marker": "o"}}
     looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
-    handles += [entry(label, color=GREY, **look) for label, look in looks.items()]
-    style.legend_below(figure, handles, 5)
+    handles = [entry(label, color=GREY, **look) for label, look in looks.items()]
+    style.legend_below(figure, [*style.labelled([path_axes]), *handles], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     levels = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
     scene = style.conditions(False, **levels)
@@ -75,6 +73,6 @@ def draw(table: pd.DataFrame) -> Figure:
     look = {"transform": spacing_axes.transAxes, "ha": "right"}
     spacing_axes.text(0.98, 0.98, "last release: does not converge", va="top", **look)
     words = f"{fraction_label}: converges to the exact time"
-    spacing_axes.text(0.98, 0.02, words, va="bottom", **look)
+    spacing_axes.text(0.98, 0.04, words, **look)
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .shared import scaling
-from .style import BLACK, BLUE, GREY, OPEN, ORANGE, PAGE, Look
+from .style import BLACK, BLUE, GREY, OPEN, ORANGE, PAGE
 
 NEEDS = {
     "measured": {
@@ -43,9 +43,8 @@ def draw(table: pd.DataFrame) -> Figure:
             sound = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
             for reference, (name, line) in REFERENCES.items():
                 predicted = sound[f"{reference}_transition_{quantity}"]
-                ratio = (sound[f"transition_{quantity}"] / predicted).dropna()
-                look: Look = {"color": colour, "linestyle": line, "gid": f"{boundary} {reference}"}
-                axes.ecdf(np.abs(ratio - 1.0), label=f"{boundary_name}, {name}", **look)
+                error = (sound[f"transition_{quantity}"] / predicted - 1.0).dropna().abs()
+                axes.ecdf(error, color=colour, linestyle=line, label=f"{boundary_name}, {name}")
         symbol = scaling.QUANTITIES[quantity]
         axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
         axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs that are nearer")
@@ -66,8 +65,8 @@ def draw(table: pd.DataFrame) -> Figure:
     gaussian.axhline(1.0, color=BLACK, linewidth=0.6)
     gaussian.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")
     for gamma, rows in study.groupby("gamma"):
-        look = {"color": style.colour("gamma", gamma), "label": rf"$\gamma = {gamma:g}$"}
-        gaussian.plot(rows["left"], rows["over_paper"], **look)
+        shade, label = style.colour("gamma", gamma), rf"$\gamma = {gamma:g}$"
+        gaussian.plot(rows["left"], rows["over_paper"], color=shade, label=label)
     gaussian.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
     title = r"$\Gamma = 1$, $b = 0$, exact"
     gaussian.set(ylabel=r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$", title=title)

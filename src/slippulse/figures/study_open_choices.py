@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from ..claims.ledger import BAND
 from . import style
-from .style import BLACK, BLUE, COLUMN, GREEN, GREY, OPEN, ORANGE, PURPLE, Look, entry
+from .style import BLACK, BLUE, COLUMN, GREEN, GREY, HALO, OPEN, ORANGE, PURPLE, Look, entry
 
 NEEDS = {"lists": ["results/claims.json"]}
 
@@ -54,10 +54,8 @@ def draw(table: pd.DataFrame) -> Figure:
             height = position + rows["release"].map(APART).fillna(0.0)
             axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
         if table.loc[table["id"] == id, "over"].min() < LEAST:
-            bound: Look = {"va": "center", "gid": "bound"}
-            # The line of the row does not strike the text through.
-            bound["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
-            axes.text(LEAST, position, rf"$\leq$ {LEAST:g}", **bound)
+            bound = rf"$\leq$ {LEAST:g}"
+            axes.text(LEAST, position, bound, va="center", path_effects=HALO)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)

@@ -87,15 +87,14 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
         axes.fill_between(inside["damping_ratio"], inside["chi2"], **look)
         label = rf"{label}: $\chi^2 = {best_fit['chi2']:.1f}$"
         axes.plot(best_fit["damping_ratio"], best_fit["chi2"], marker, color=colour, label=label)
-    top = 1.75 * accepted
+    top = 1.9 * accepted
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
-    look = {"color": LOOKS["total"][0], "markersize": 4.5, "clip_on": False}
     # The value is far above the axes; the marker points to it.
-    axes.plot(notebook["damping_ratio"].iloc[0], top, "^", label=label, **look)
-    axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
-    look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
-    axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
+    ratio = notebook["damping_ratio"].iloc[0]
+    axes.plot(ratio, top, "^", color=LOOKS["total"][0], label=label, clip_on=False)
+    label = f"5 % at {dof} degrees of freedom"
+    axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":", label=label)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
     axes.legend(loc="upper left", borderaxespad=0.2)
 
@@ -111,7 +110,7 @@ def _draw_region(axes: Axes, fits: Mapping, ours: pd.Series, name: str, label: s
             look: Look = {"color": colour, "alpha": alpha, "gid": f"{release} {level:g}"}
             low, high = inside[name] - half, inside[name] + half
             axes.fill_between(inside["damping_ratio"], low, high, linewidth=0.0, **look)
-        look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
-        axes.plot(best["damping_ratio"], best[name], marker, **look)
+        x, y = best[["damping_ratio", name]]
+        axes.plot(x, y, marker, color=colour, markeredgecolor="white", markersize=4.5)
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     axes.set(xlim=(0.045, 0.3), ylabel=label)

@@ -1,6 +1,5 @@
 """A user-defined sweep: main numbers against what varies, with exact theory where there is any."""
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -27,22 +26,17 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         series = ", ".join(f"{_name(name)} = {_text(run[name])}" for name in others)
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
+    rows = pd.concat(parts).set_index("quantity")
     # A quantity that equals another one in every run is left out.
-    different: list[pd.DataFrame] = []
-    for _, group in pd.concat(parts).groupby("quantity", sort=False):
-        if not any(np.array_equal(group["value"], other["value"]) for other in different):
-            different.append(group)
-    return pd.concat(different, ignore_index=True).assign(fixed=fixed)
+    different = rows.groupby("quantity", sort=False)["value"].agg(tuple).drop_duplicates()
+    return rows.loc[different.index].reset_index().assign(fixed=fixed)
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
     """Columns of VARYING that do: numbers before texts, the one with most values first."""
-    varying: list[str] = []
-    for name in VARYING:
-        # A level that follows another one is no axis of its own.
-        follows = any((runs[name] == runs[other]).all() for other in varying)
-        if runs[name].nunique() > 1 and not follows:
-            varying.append(name)
+    # A level that follows another one is no axis of its own.
+    different = runs[[*VARYING]].T.drop_duplicates().index
+    varying = [name for name in different if runs[name].nunique() > 1]
     return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
 
 

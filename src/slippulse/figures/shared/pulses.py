@@ -97,10 +97,9 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
     for run in styled_runs(table).itertuples():
         rows = table[table["run"] == run.run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
-        look: Look = {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
-        axes.plot(simulated["x"], simulated[field], gid=f"simulation {run.run}", **PALE | look)
-        look = {"color": run.colour, "linestyle": run.dashes, "linewidth": 0.8}
-        axes.plot(exact["x"], exact[field], gid=f"exact {run.run}", **look)
+        pale = PALE | {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
+        axes.plot(simulated["x"], simulated[field], gid=f"simulation {run.run}", **pale)
+        axes.plot(exact["x"], exact[field], run.dashes, color=run.colour, gid=f"exact {run.run}")
     boundary = table["panel"].iloc[0]
     axes.set(xlabel=DISTANCE[boundary], ylabel=FIELDS[field][boundary])
 
@@ -132,7 +131,7 @@ def handles(table: pd.DataFrame) -> list[Line2D]:
         entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
     for _, run in runs.drop_duplicates(styled).sort_values(styled).iterrows():
         name = f"exact, ${SYMBOLS[styled]} = {run[styled]:g}$"
-        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=run["dashes"]))
+        entries.append(entry(name, color=BLACK, linestyle=run["dashes"]))
     return [*entries, entry("simulation", color=BLACK, **PALE)]
 
 
