@@ -60,10 +60,9 @@ def draw(table: pd.DataFrame) -> Figure:
     above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
     symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
-    texts: dict[str, dict[str, str]] = {boundary: {} for boundary in BOUNDARIES}
+    numbers = {}
     for number, rows in zip(NUMBERS, profiles, strict=False):
-        boundary, regime = rows[["boundary", "regime"]].iloc[0]
-        texts[boundary][regime] = f"{number} {LOOKS[regime][1]}"
+        numbers[tuple(rows[["boundary", "regime"]].iloc[0])] = f"{number} "
     panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
     for line, plane, letter, (boundary, title) in panels:
         rows = table[table["boundary"] == boundary]
@@ -76,7 +75,7 @@ def draw(table: pd.DataFrame) -> Figure:
             look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
             line.annotate(text.replace("\n", " "), (level, 1.02), **look)
         draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
-        draw_plane(plane, rows[rows["role"].isin(["area", "line"])], texts[boundary])
+        draw_plane(plane, rows[rows["role"].isin(["area", "line"])], numbers)
         draw_runs(plane, rows[rows["role"] == "run"], "right")
         plane.set_title(title, loc="center")
         panel_letter(plane, letter)
@@ -99,24 +98,25 @@ def tint(colour: str) -> tuple[float, ...]:
     return tuple(1.0 - 0.35 * (1.0 - part) for part in to_rgb(colour))
 
 
-def draw_plane(axes: Axes, rows: pd.DataFrame, texts: dict[str, str]) -> None:
+def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> None:
     """Draw the regimes as areas, and as lines where one level is 0, each with one label."""
     look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
-    texts = {regime: text for regime, (_, text) in LOOKS.items()} | texts
     for (role, _), part in rows.groupby(["role", "series"], sort=False):
-        regime, corners = part["regime"].iloc[0], part[["left", "right"]].to_numpy()
-        (left, right), colour = corners.mean(axis=0), LOOKS[regime][0]
+        boundary, regime = part[["boundary", "regime"]].iloc[0]
+        corners = part[["left", "right"]].to_numpy()
+        (left, right), (colour, text) = corners.mean(axis=0), LOOKS[regime]
+        text = numbers.get((boundary, regime), "") + text
         if role == "line":
             axes.plot(*corners.T, color=colour, linewidth=3.0, solid_capstyle="butt", gid=regime)
             if left < right:
-                axes.text(left, -0.1, texts[regime], **look)
+                axes.text(left, -0.1, text, **look)
             continue
         axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
         if len(corners) == 4:
-            axes.text(left, right + 0.1 if right > 0.0 else right, texts[regime], **look)
+            axes.text(left, right + 0.1 if right > 0.0 else right, text, **look)
         elif left < right:
             line = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
-            axes.annotate(texts[regime], (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **look)
+            axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **look)
     ticks = (-1, 0, 1)
     axes.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=ticks, yticks=ticks)
     axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")

@@ -58,8 +58,9 @@ def draw(table: pd.DataFrame) -> Figure:
         spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
         spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN | look)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
-    fraction_label = f"{100.0 * table['fraction'].max():g} % of the way"
-    looks = {"simulation": PALE, "exact": {"linewidth": 0.9}, "last release": {"marker": "o"}}
+    looks = {"simulation": PALE, "exact": {"linewidth": 0.9}}
+    looks["last release (does not converge)"] = {"marker": "o"}
+    fraction_label = f"{100.0 * table['fraction'].max():g} % of the way (converges)"
     looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
     handles = [entry(label, color=GREY, **look) for label, look in looks.items()]
     style.legend_below(figure, [*style.labelled([path_axes]), *handles], 5)
@@ -68,11 +69,5 @@ def draw(table: pd.DataFrame) -> Figure:
     scene = style.conditions(False, **levels)
     path_axes.set(ylabel=r"still to go, $1-|x|/|x_{-}|$", title=scene)
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
-    # Room for the words above and below.
-    spacing_axes.margins(y=0.16)
-    look = {"transform": spacing_axes.transAxes, "ha": "right"}
-    spacing_axes.text(0.98, 0.98, "last release: does not converge", va="top", **look)
-    words = f"{fraction_label}: converges to the exact time"
-    spacing_axes.text(0.98, 0.04, words, **look)
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure

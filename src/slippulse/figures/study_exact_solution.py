@@ -46,12 +46,12 @@ def draw(table: pd.DataFrame) -> Figure:
     # Edges have time on the horizontal axis, as in every figure.
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
-    names = {}
+    lines = []
     for row in scenes.itertuples():
         gamma = {"gamma": row.gamma} if row.gamma > 0.0 else {}
         levels = ", ".join(dict.fromkeys([setting(row.left), setting(row.right)]))
-        names[row.scene] = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
-    lines = [style.entry(names[scene], color=colour) for scene, colour in SCENES.items()]
+        name = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
+        lines.append(style.entry(name, color=SCENES[str(row.scene)]))
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     _draw_differences(difference_axes, table[table["role"] == "difference"].sort_values("dx"))
     return figure

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from . import style
-from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, SKY, entry
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, SKY
 
 NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
@@ -35,17 +35,15 @@ def draw(table: pd.DataFrame) -> Figure:
             speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
             speeds.plot(resolution, points["speed"], marker, color=colour, **OPEN)
         speeds.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
-    lines = speeds.get_legend_handles_labels()[0]
     for marker, dx in zip(MARKERS, sorted(fronts["dx"].unique()), strict=False):
-        lines.append(entry(rf"lattice, $\Delta x = {dx:g}$", marker=marker, color=GREY, **OPEN))
+        speeds.plot([], [], marker, color=GREY, label=rf"lattice, $\Delta x = {dx:g}$", **OPEN)
     speeds.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(speeds.xaxis, (1, 2, 4, 8))
     speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$")
     # The legend stands below the fast fronts, left of the slow ones.
-    low, high = speeds.get_ylim()
-    speeds.set_ylim(low - 0.15 * (high - low), high)
-    speeds.legend(handles=lines, loc="lower left")
+    speeds.set_ylim(0.7, None)
+    speeds.legend(loc="lower left")
     handles = style.labelled(planes)
     style.legend_below(figure, handles, len(handles))
     return figure

@@ -83,10 +83,8 @@ def draw(table: pd.DataFrame) -> Figure:
         line = group[group["role"] == "theory"].sort_values("springs")
         dashes, marker = looks[level]
         springs.plot(line["springs"], line["speed"], dashes, color=colour("damping_ratio", ratio))
-        known = line.dropna(subset="speed")
-        if len(known) < len(line):
-            last = known.iloc[-1:]
-            springs.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
+        last = line[line["speed"].notna() & line["speed"].isna().shift(-1, fill_value=False)]
+        springs.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
         _points(springs, group, "springs", "speed", marker)
     for level, (dashes, marker) in looks.items():
         springs.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")

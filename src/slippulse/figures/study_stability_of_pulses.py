@@ -58,12 +58,11 @@ def draw(table: pd.DataFrame) -> Figure:
         steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
         slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
         marks = lattice.iloc[::MARKED]
-        look: Look = {"color": colour} | OPEN
-        slip_axes.plot(marks["x"], marks["slip"], "o", markersize=2.2, **look)
+        look: Look = {"color": colour, "markersize": 2.2} | OPEN
+        slip_axes.plot(marks["x"], marks["slip"], "o", **look)
         slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
         # The exact distance is 0 beyond the memory.
         ahead = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
-        look |= {"markersize": 2.2}
         for part, line in ((exact[ahead], "-"), (marks, "o")):
             part = part[part["x"] > 0.0]
             rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)

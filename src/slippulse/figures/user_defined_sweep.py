@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
-from .style import CYCLE, GREY, PAGE, SYMBOLS, conditions, entry, legend_below, new_panels
+from .style import CYCLE, GREY, OPEN, PAGE, SYMBOLS, conditions, entry, legend_below, new_panels
 
 # Columns that may vary in a sweep, and the names of those without a symbol.
 VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
@@ -60,9 +60,9 @@ def draw(table: pd.DataFrame) -> Figure:
             group = group.sort_values("x")
             flagged = group["run_flags"].notna()
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-            sound, hollow = group[~flagged], group[flagged]
-            axes.plot(sound["x"], sound["value"], "o", color=colour, label=series or None)
-            axes.plot(hollow["x"], hollow["value"], "o", color=colour, markerfacecolor="none")
+            sound, hollow = group["value"].mask(flagged), group["value"].where(flagged)
+            axes.plot(group["x"], sound, "o", color=colour, label=series or None)
+            axes.plot(group["x"], hollow, "o", color=colour, **OPEN)
         axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in panels[len(quantities) :]:
         axes.set_visible(False)
@@ -70,6 +70,6 @@ def draw(table: pd.DataFrame) -> Figure:
     handles = [entry("simulation", marker="o", color=GREY)]
     handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
-        handles.append(entry("flagged", marker="o", color=GREY, markerfacecolor="none"))
+        handles.append(entry("flagged", marker="o", color=GREY, **OPEN))
     legend_below(figure, [*panels[0].get_legend_handles_labels()[0], *handles], 5)
     return figure
