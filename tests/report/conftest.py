@@ -42,9 +42,7 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
         claim = Approximate(tolerance=entry["tolerance"], **numbers, further=further)
         if entry["kind"] == "qualitative":
             claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, further=further)
-        statement = (
-            rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$"
-        )
+        statement = rf"{id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$"
         claims.append(written(id, claim, entry | shown | {"statement": statement}, "III A"))
     return claims
 

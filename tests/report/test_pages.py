@@ -3,7 +3,7 @@
 import json
 import re
 from html.parser import HTMLParser
-from itertools import pairwise
+from itertools import pairwise, product
 
 import pytest
 import yaml
@@ -60,13 +60,11 @@ class Outline(HTMLParser):
 def results(project, shipped, tmp_path_factory):
     """The folder of a small run with another preset; the texts of its page are next to it."""
     results = tmp_path_factory.mktemp("page") / "results"
-    for folder in ("figures", "scenes", *{path.partition("/")[0] for path in TABLES}):
-        (results / folder).mkdir(parents=True, exist_ok=True)
-    for path in [*TABLES, "scenes/made.html"]:
+    figures = [f"figures/{name}{ending}" for name, ending in product(NAMES, (".pdf", ".csv"))]
+    for path in [*TABLES, "scenes/made.html", *figures]:
+        (results / path).parent.mkdir(parents=True, exist_ok=True)
         (results / path).touch()
     for name in NAMES:
-        for ending in ("pdf", "csv"):
-            (results / f"figures/{name}.{ending}").touch()
         Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
     (results / "claims.html").write_text(claims_page(CLAIMS, (), (), TABLES), encoding="utf-8")
     facts = provenance(project, shipped | {"preset": "draft"}, shipped, results)

@@ -237,9 +237,7 @@ def test_every_derivation_says_where_it_starts_and_is_checked(source, project):
 def test_the_table_of_stick_times():
     values = {"release_time": (0.0, None), "stick_time": (3.93122803, None)}
     values |= {"final_slip": (1.94166, 0.0)}
-    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x"))
-    table = table.rename_axis(columns="quantity").stack(future_stack=True)
-    table = table.rename("value").reset_index()
+    table = pd.DataFrame({"x": [0.0, 9.0]} | values).melt("x", var_name="quantity")
     assert sticking(table).splitlines()[2:] == [
         "| 0 | 0 | 3.9312 | 1.9417 |",
         "| 9 | not measured | not measured | 0 |",

@@ -148,7 +148,6 @@ def test_another_configuration_runs_only_its_chain(imitated, change):
 
 
 SKETCHES = {"fig01_system_sketch", FIGURE, "study_barriers", "compile_kernels"}
-DATA = {"simulate", "animate_scene", "fig06_burridge_knopoff"}
 DAMPED, HELD = "fig10_damping_displacement", "fig08_steady_state_displacement"
 # They stand for all studies, which take what they read in one rule. The first two read other parts
 # of `measure`, one of them the model too, and the last reads nothing.
@@ -158,7 +157,7 @@ SHARES = {
     "share": (
         "measure: {share: 0.9}",
         {"measure", "study_grid", "draw_scene", "write_claims", "fig05_scaling"},
-        SKETCHES | DATA | STUDIES | {HELD, DAMPED},
+        SKETCHES | STUDIES | {"simulate", "animate_scene", "fig06_burridge_knopoff", HELD, DAMPED},
     ),
     "damping ratio": (
         "model: {damping_ratio: 0.2}",

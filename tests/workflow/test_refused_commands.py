@@ -52,8 +52,8 @@ def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal)
 def test_what_snakemake_itself_refuses_is_one_line_by_the_profile(
     folder, arguments, caches, refusal
 ):
-    how = {"environment": {"XDG_CACHE_HOME": caches}, "command": BY_PROFILE}
-    text = refused(folder, *arguments.split(), **how)
+    environment = {"XDG_CACHE_HOME": caches}
+    text = refused(folder, *arguments.split(), environment=environment, command=BY_PROFILE)
     # Snakemake also names the profile that it uses.
     (line,) = (line for line in text.splitlines() if not line.startswith("Using "))
     assert refusal in line and caches in line

@@ -33,22 +33,14 @@ def verify(folder: Path) -> dict[str, str]:
     return reasons
 
 
-@pytest.fixture(scope="module")
-def finished(imitated, tmp_path_factory) -> Path:
-    """The imitated results, another overlay, and beside results/ a copy of them."""
-    folder = tmp_path_factory.mktemp("results") / "first"
-    shutil.copytree(imitated, folder, symlinks=True)
+@pytest.fixture
+def folder(imitated, tmp_path) -> Path:
+    """A folder elsewhere with the imitated results, a copy beside them, and another overlay."""
+    folder = Path(shutil.copytree(imitated, tmp_path / "copied", symlinks=True))
+    shutil.copytree(folder / "results", folder / "overlay")
     other = OVERLAY | {"model": {"release": "elastic"}}
     (folder / "other.yaml").write_text(yaml.safe_dump(other), encoding="utf-8")
-    shutil.copytree(folder / "results", folder / "overlay")
     return folder
-
-
-@pytest.fixture
-def folder(finished, tmp_path) -> Path:
-    """A copy of this folder, which a test may change."""
-    shutil.copytree(finished, tmp_path / "copied", symlinks=True)
-    return Path(shutil.move(tmp_path / "copied", tmp_path / "moved"))
 
 
 # A function of the shell that edits a source or a text, as `rsync -a` and `cp -p` leave it.
