@@ -69,7 +69,9 @@ MOVES = {
         "measurements/damping_stress.csv": MISSING,
         "measurements/Damping_stress.csv": UNKNOWN,
     },
-    "ln -sf nowhere results/scenes/one.pdf": {"scenes/one.pdf": MISSING},
+    "ln -sf nowhere results/figures/fig02_phase_diagram.pdf": {
+        "figures/fig02_phase_diagram.pdf": MISSING,
+    },
     "ln -sf /dev/null results/scenes/barrier.pdf": {"scenes/barrier.pdf": MISSING},
     "echo mine > results/data/unknown.nc": {"data/unknown.nc": UNKNOWN},
     "echo {} > results/records/gone.csv.json": {"records/gone.csv.json": UNKNOWN},
