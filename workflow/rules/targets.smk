@@ -90,8 +90,10 @@ def end():
     """Write one line on results that this run leaves outdated, with the command to renew them."""
     names = [name for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.getenv(name)]
     given = [f"{name}={os.environ[name]}" for name in names]
-    how = ["--cores", str(workflow.cores)]
-    if not workflow.local_exec:
+    # Where jobs run elsewhere, the number of cores is not known.
+    if workflow.local_exec:
+        how = ["--cores", str(workflow.cores)]
+    else:
         how = ["--executor", workflow.executor_plugin.name, "--jobs", str(workflow.nodes)]
     renewal = ["snakemake", *how, *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:
