@@ -2,11 +2,8 @@
 
 import copy
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 
@@ -27,8 +24,6 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 # so that the workers end together, and those whose studies others read.
 FIRST = ("test_final_regime", "test_refused_commands", "test_refusals", "test_dependencies")
 FIRST += ("test_plans", "test_studies", "test_every_figure", "test_faults")
-# The variable that names the folder of what the workers share.
-SHARED = "SLIPPULSE_SHARED_BY_TESTS"
 COMPILE = "from slippulse.solver.compilation import compile_all; compile_all()"
 
 
@@ -36,8 +31,6 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     """Begin to compile the kernels, unless they are in the user's cache, before workers start."""
     config = session.config
     if getattr(config.option, "numprocesses", None) and not hasattr(config, "workerinput"):
-        os.environ[SHARED] = tempfile.mkdtemp(prefix="slippulse-tests-")
-        config.add_cleanup(partial(shutil.rmtree, os.environ[SHARED]))
         config.add_cleanup(subprocess.Popen([sys.executable, "-c", COMPILE]).wait)
 
 
@@ -69,10 +62,11 @@ def paper_accuracy(shipped: dict) -> dict:
 
 
 @pytest.fixture(scope="session")
-def shared(tmp_path_factory) -> Path:
+def shared(tmp_path_factory, worker_id) -> Path:
     """A folder in which workers read files that another has written."""
-    folder = os.environ.get(SHARED)
-    return Path(folder) if folder else tmp_path_factory.mktemp("shared")
+    folder = tmp_path_factory.getbasetemp()
+    # The folder of a worker is in that of the session.
+    return (folder if worker_id == "master" else folder.parent) / "shared"
 
 
 @pytest.fixture(scope="session")
