@@ -125,7 +125,7 @@ verify: $(READY)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)
-	@"$(BIN)/python" tests/faults.py --kills "$$KILLS"
+	@"$(BIN)/python" tests/faults.py "$$KILLS"
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
@@ -136,12 +136,17 @@ test-pages: $(READY)
 test-slow: $(READY)
 	@$(call CHECK_COUNT,KILLS)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow --ignore tests/browser
-	@"$(BIN)/python" tests/faults.py --kills "$$KILLS"
+	@"$(BIN)/python" tests/faults.py "$$KILLS"
 
 test-all: test test-pages test-slow slurm-test
 
+# Daemons are often not on the path.
 slurm-test: $(VENV)/.slurm
-	@"$(BIN)/python" tests/slurm_cluster.py
+	@test "$$(id -u)" = 0 || { echo "make slurm-test starts a Slurm cluster, for which it must be root" >&2; exit 1; }
+	@export PATH="$$PATH:/usr/sbin:/sbin" DEBIAN_FRONTEND=noninteractive; \
+	hash munged slurmctld slurmd sbatch 2>/dev/null || { apt-get -qq update && \
+	    apt-get -qq install -y --no-install-recommends munge slurmctld slurmd slurm-client >/dev/null; } && \
+	"$(BIN)/python" tests/slurm_cluster.py
 
 benchmark: $(READY)
 	@"$(BIN)/python" -m tests.benchmark

@@ -3,7 +3,7 @@
     make slurm-test
 
 Starts a cluster of one node on the loopback, with its configuration and key in a temporary folder,
-and stops it at the end, whatever happened. Installs missing packages with apt-get. It must be root.
+and stops it at the end, whatever happened. The make target installs Slurm. It must be root.
 """
 
 import os
@@ -15,18 +15,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
-from typing import NoReturn
 
 from faults import at_work, digests
 from pipeline_copy import SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
-# Programs, and the Debian packages that hold them.
-PROGRAMS = {"munged": "munge", "slurmctld": "slurmctld", "slurmd": "slurmd"}
-PROGRAMS |= {"sbatch": "slurm-client"}
 # proctrack/linuxproc and task/none need no control groups, which containers often lack. Cores and
 # memory are limited, as on clusters. Finished jobs stay visible to squeue, and in a log.
 SLURM_CONF = """\
@@ -56,40 +51,10 @@ ReturnToService=2
 NodeName=localhost NodeAddr=127.0.0.1 CPUs={cores} RealMemory={megabytes} State=UNKNOWN
 PartitionName=loopback Nodes=ALL Default=YES MaxTime=60 State=UP
 """
-last_line = lambda text: (text.strip().splitlines() or ["it said nothing"])[-1]
 
 
-def unable(reason: str) -> NoReturn:
-    """Exit because the machine cannot run a cluster, which is no failure of the project."""
-    sys.exit(f"slurm-test: not run: {reason}")
-
-
-def install() -> None:
-    """Install what is missing of Slurm and munge, from Debian."""
-    if os.geteuid() != 0:
-        unable("make slurm-test starts a Slurm cluster, for which it must be root")
-    missing = sorted({package for program, package in PROGRAMS.items() if not find(program)})
-    if not missing:
-        return
-    if not shutil.which("apt-get"):
-        unable(f"make slurm-test needs {', '.join(missing)}, and there is no apt-get for them")
-    quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
-    for arguments in (["update"], ["install", "-y", "--no-install-recommends", *missing]):
-        command = ["apt-get", "-qq", *arguments]
-        print(*command, flush=True)
-        done = subprocess.run(command, env=quiet, capture_output=True, text=True, check=False)
-        if done.returncode:
-            unable(f"apt-get {arguments[0]} failed: {last_line(done.stderr)}")
-
-
-def find(program: str) -> str | None:
-    """Find a program; daemons are often not on the path."""
-    return shutil.which(program, path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
-
-
-@contextmanager
-def cluster(folder: Path) -> Iterator[dict[str, str]]:
-    """Run a Slurm of one node, whose environment this yields, and end every process of it."""
+def start_cluster(folder: Path) -> dict[str, str]:
+    """Start a Slurm of one node; returns the environment of its users."""
     for name in ("state", "spool", "bin"):
         (folder / name).mkdir()
     megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
@@ -104,30 +69,15 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     key.chmod(0o400)
     # Within a job the plugin clears the variable that names the configuration, which on a real
     # cluster lies where srun looks by itself.
-    srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {find("srun")} "$@"\n', encoding="ascii")
+    srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {shutil.which("srun")} "$@"\n', "ascii")
     srun.chmod(0o755)
-    path = f"{folder}/bin:{Path(sys.executable).parent}:{os.environ.get('PATH', '')}"
+    path = f"{folder}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}"
     environment = os.environ | {"SLURM_CONF": str(conf), "PATH": path}
-
-    def daemon(name: str, *arguments: str) -> None:
-        pipes = {"stdin": subprocess.DEVNULL, "stderr": subprocess.STDOUT}
-        with open(folder / f"{name}.out", "wb") as said:
-            pipes["stdout"] = said
-            command = [find(name), *arguments]
-            subprocess.Popen(command, env=environment, start_new_session=True, **pipes)
-
-    try:
-        files = ("key-file", "socket", "pid-file", "log-file", "seed-file")
-        daemon("munged", "--foreground", *[f"--{file}={folder}/munged.{file}" for file in files])
-        wait_for((folder / "munged.socket").exists, "munged", folder)
-        daemon("slurmctld", "-D")
-        daemon("slurmd", "-D", "-N", "localhost")
-        state = ("sinfo", "--noheader", "--format=%T")
-        wait_for(lambda: answer(environment, *state) == "idle", "slurmd", folder)
-        yield environment
-    finally:
-        answer(environment, "scancel", "--user=root")
-        end_all(folder)
+    files = ("key-file", "socket", "pid-file", "log-file", "seed-file")
+    munged = ["munged", *[f"--{file}={folder}/munged.{file}" for file in files]]
+    for daemon in (munged, ["slurmctld"], ["slurmd", "-N", "localhost"]):
+        subprocess.run(daemon, env=environment, check=True)
+    return environment
 
 
 def end_all(folder: Path) -> None:
@@ -141,36 +91,15 @@ def end_all(folder: Path) -> None:
             time.sleep(0.1)
 
 
-def answer(environment: dict[str, str], *command: str) -> str:
-    """Answer of a command of Slurm; empty while there is no answer."""
-    with suppress(OSError, subprocess.TimeoutExpired):
-        how = {"env": environment, "stderr": subprocess.DEVNULL, "text": True, "timeout": 10}
-        return subprocess.check_output(command, **how).strip()
-    return ""
-
-
-def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
-    """Wait until a daemon is ready, or exit with its last words."""
-    until = time.monotonic() + seconds
-    while not ready():
-        if time.monotonic() > until:
-            paths = sorted(folder.glob(f"{name}.[ol]*"), reverse=True)
-            words = last_line("".join(path.read_text(errors="replace") for path in paths))
-            unable(f"{name} did not start within {seconds:g} s: {words}")
-        time.sleep(0.1)
-
-
 def draft(folder: Path, environment: dict[str, str], *options: str) -> dict[str, str]:
     """Make the draft replication in a folder; returns the digest of each file of data."""
-    began = time.monotonic()
     command = [*SNAKEMAKE, *options, "--config", "preset=draft", "--", "all"]
     how = {"capture_output": True, "text": True, "check": False}
     done = subprocess.run(command, cwd=folder, env=environment, **how)
     assert done.returncode == 0, (done.stdout + done.stderr)[-6000:]
     made = digests(folder).items()
     data = {name: digest for name, digest in made if name.endswith((".nc", ".csv"))}
-    seconds = time.monotonic() - began
-    print(f"{folder.name}: {len(data)} files of data in {seconds:.0f} s", flush=True)
+    print(f"{folder.name}: {len(data)} files of data", flush=True)
     return data
 
 
@@ -185,9 +114,13 @@ def compare(folder: Path) -> str:
     daemons.chmod(0o755)
     # There is no accounting here, and nobody else in the queue.
     through = ["--slurm-status-command=squeue", "--slurm-init-seconds-before-status-checks=1"]
-    with cluster(daemons) as environment:
-        expected = draft(local, dict(os.environ), f"--cores={len(os.sched_getaffinity(0))}")
-        data = draft(remote, environment, "--profile=workflow/profiles/slurm", *through)
+    environment = start_cluster(daemons)
+    expected = draft(local, dict(os.environ), f"--cores={len(os.sched_getaffinity(0))}")
+    # The daemons have had the time of a draft to find each other.
+    node = subprocess.check_output(["sinfo", "--noheader", "--format=%T"], env=environment)
+    assert node == b"idle\n", node
+    data = draft(remote, environment, "--profile=workflow/profiles/slurm", *through)
+    end_all(daemons)
     states = re.findall(r"\bJobState=(\S*)", (daemons / "finished.txt").read_text(encoding="utf-8"))
     left = at_work(daemons)
     assert not left, f"still running: {left}"
@@ -201,10 +134,9 @@ def compare(folder: Path) -> str:
 if __name__ == "__main__":
     # A run that is told to stop stops its cluster too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    install()
     with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
         try:
             print(compare(Path(folder)))
         finally:
-            # A run that was interrupted leaves jobs without Slurm too.
+            # A run that was interrupted leaves Slurm, and jobs without it.
             end_all(Path(folder))
