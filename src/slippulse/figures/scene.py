@@ -11,7 +11,7 @@ from ..data.numerals import MOST, number, with_uncertainty
 from .shared import space_time
 from .shared.numbers import with_symbols
 from .shared.selection import spaced_indices
-from .style import BLUE, DASHES, GREY, ORANGE, PAGE, Look, by_role, panel_letter
+from .style import BLUE, GREY, ORANGE, PAGE, Look, by_role, panel_letter
 
 # The number of blocks drawn of a profile.
 PROFILE_POINTS = 400
@@ -69,10 +69,9 @@ def draw(table: pd.DataFrame) -> Figure:
         ends = roles["profile"][roles["profile"]["series"] == field]
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         axes.plot(ends["position"], ends["value"], color=BLUE, label="simulated")
-        look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": DASHES, "gid": "steady"}
-        look["label"] = "steady pulse of this side, exact"
+        look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
         for pulse in steady[steady["series"] == field].itertuples():
-            axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
+            axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
         # The velocity is 0 in the middle; one entry of the legend stands for both sides and panels.
         if len(axes.lines) > 2 and field == "slip_velocity":
             axes.legend(handles=axes.lines[1:3], loc="center")

@@ -1,6 +1,5 @@
 """Friction linear in slip rate: which pulses stick, their sizes, maps of both kinds, Gamma = 0."""
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -8,7 +7,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .shared.space_time import draw_halves
-from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, Look
+from .style import BLACK, BLUE, CYCLE, GREY, MARKERS, OPEN, PAGE, Look
 
 NEEDS = {"studies": ["rate_dependence"]}
 table = style.as_given
@@ -41,8 +40,7 @@ def draw(table: pd.DataFrame) -> Figure:
     maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact")
     rows = roles["arrest"][roles["arrest"]["dx"] == roles["arrest"]["dx"].min()]
     groups = rows.groupby("rate_strengthening")
-    colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
-    for colour, marker, (alpha, line) in zip(colours, MARKERS, groups, strict=False):
+    for colour, marker, (alpha, line) in zip(CYCLE, MARKERS, groups, strict=False):
         look: Look = OPEN | {"label": rf"$\alpha = {alpha:g}$"}
         arrest.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
     theory = roles["asymptote"]

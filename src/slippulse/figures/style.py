@@ -52,9 +52,8 @@ SYMBOLS = {
     "dx": r"\Delta x",
     "time": "t",
 }
-# Open markers, dashes, and the size of the smallest text.
+# Open markers, and the size of the smallest text.
 OPEN: Look = {"markerfacecolor": "white"}
-DASHES = (0, (3, 1.5))
 SMALL = 7.0
 # Colour and marker of what a rupture under another friction turns into.
 REGIMES = {
@@ -229,9 +228,6 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
         figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
         look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL, "color": ORANGE}
         figure.text(0.995, 0.005, text, **look).set_in_layout(False)
-    # A spine ends where its axes do, and the layout asks the axes.
-    for axes in figure.axes:
-        axes.spines[:].set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     # The layout is that of the PNG: with an engine the PDF would be drawn twice.

@@ -18,8 +18,6 @@ QUANTITIES = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
 OTHER = {"displacement": "gamma", "stress": "width"}
 # An inset draws lines of this many levels, or values of gamma or W.
 DRAWN = 3
-# Place of an inset below the line of equality.
-BELOW: Box = (0.52, 0.12, 0.26, 0.29)
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -94,7 +92,8 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         draw_collapse(axes, table, quantity, colours)
         axes.set_title(f"{style.conditions(boundary == 'displacement')}, {spacings}", loc="center")
         # The runs lie above equality, so that the corner below it is free.
-        inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", level)
+        box = (0.52, 0.12, 0.26, 0.29)
+        inset = ratio_inset(axes, box, few, quantity, "damping_ratio", level)
         # The axis of the damping ratio has 0.
         inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         style.few_ticks(inset.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])

@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...model.prestress import prestress_from
 from ...model.recorded_law import law_of
-from ..style import BLACK, DASHES, GREY, Look, conditions
+from ..style import BLACK, GREY, Look, conditions
 from .selection import spaced_indices
 
 # Samples kept along each axis of a map, and blocks along each front.
@@ -145,5 +145,4 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(x, stick, end, color=STUCK, linewidth=0.0, label="stuck again")
-        look: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": DASHES}
-        axes.plot(stick, x, label="trailing edge", **look)
+        axes.plot(stick, x, "--", color=BLACK, linewidth=0.8, label="trailing edge")
