@@ -25,8 +25,7 @@ def draw(table: pd.DataFrame) -> Figure:
         faces, rims = (colour(name, runs[name]) for name in (level, other))
         for axes, quantity in zip(panels[column::2], QUANTITIES, strict=True):
             scaling.draw_collapse(axes, runs, quantity, {"c": faces, "edgecolors": rims})
-            box = (0.1, 0.6, 0.34, 0.31)
-            scaling.ratio_inset(axes, box, few, quantity, level, other)
+            scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few, quantity, level, other)
         levels = runs["left"].isin(spread_values(runs["left"], DRAWN))
         narrow = runs[levels & (runs["width"] == runs["width"].min())]
         narrow = narrow.assign(colour=[*colour(level, narrow[level])])

@@ -202,8 +202,10 @@ def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
 
 def labelled(panels: Sequence[Axes]) -> list[Artist]:
     """Artists that have a label in any of some panels, one a label."""
-    artists = [artist for axes in panels for artist in axes.get_legend_handles_labels()[0]]
-    return list({artist.get_label(): artist for artist in artists}.values())
+    handles: dict[object, Artist] = {}
+    for axes in panels:
+        handles |= {artist.get_label(): artist for artist in axes.get_legend_handles_labels()[0]}
+    return list(handles.values())
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
