@@ -92,8 +92,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         draw_collapse(axes, table, quantity, colours)
         axes.set_title(f"{style.conditions(boundary == 'displacement')}, {spacings}", loc="center")
         # The runs lie above equality, so that the corner below it is free.
-        box = (0.52, 0.12, 0.26, 0.29)
-        inset = ratio_inset(axes, box, few, quantity, "damping_ratio", level)
+        inset = ratio_inset(axes, (0.52, 0.12, 0.26, 0.29), few, quantity, "damping_ratio", level)
         # The axis of the damping ratio has 0.
         inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         style.few_ticks(inset.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
