@@ -73,9 +73,6 @@ def imports() -> grimp.ImportGraph:
                     graph.add_import(importer=user, imported=inside)
     for name in modules:
         graph.add_import(importer=name, imported=name.rpartition(".")[0])
-    # The textbook scheme compiles all laws of friction, by their names.
-    for law in graph.find_descendants("slippulse.model.friction_laws"):
-        graph.add_import(importer="slippulse.solver.fixed_step", imported=law)
     return graph
 
 

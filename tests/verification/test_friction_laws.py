@@ -27,7 +27,7 @@ def run(law, dx, level=0.5, duration=40.0, beta=BETA, step=0.1, **values):
     return sp.simulate(sp.Scene(*layer, duration, dx, GAMMA, friction=law, **values))
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [law.law for law in LAWS])
 @pytest.mark.parametrize("half", [True, False])
 def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
     friction = sp.friction(law, **EXAMPLES[law])

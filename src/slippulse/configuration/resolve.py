@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from ..model.recorded_law import law_of
+from ..model.friction import COULOMB, LinearRate
 from ..theory.front_speeds import LARGEST_RATIO, front_speed
 from .accuracy import ORDER, STEP
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
@@ -32,15 +32,19 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     given = Simulation.model_validate(simulation).plain()
     del given["chunks"]
     if "rate_strengthening" in given:
-        # A deprecated key, which older data files have too.
-        rates = given.pop("rate_strengthening")
-        given["friction"] = [law_of({"rate_strengthening": rate}) for rate in rates]
+        given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
     chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in kept and chosen:
         # A spacing that the simulation sets itself promises nothing.
         kept["promise"] = math.nan
     return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
+
+
+def _linear_law(alpha: float) -> Mapping:
+    """The law of a deprecated key."""
+    law = LinearRate(alpha) if alpha else COULOMB
+    return law.mapping()
 
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:

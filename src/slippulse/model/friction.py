@@ -2,23 +2,23 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
-from pkgutil import resolve_name
 from typing import Any
 
 from .checks import check_choice, short_repr
 from .friction_laws.law import Coulomb, Friction
+from .friction_laws.rate import BoundedRate, LinearRate, RateWeakening
+from .friction_laws.weakening import ExponentialWeakening, SlipWeakening
 
-# Module and class of each law, below `friction_laws`: an edit of a law re-runs only what uses it.
 # A new law is one more line here.
-LAWS = {
-    "coulomb": "law:Coulomb",
-    "linear_rate": "rate:LinearRate",
-    "bounded_rate": "rate:BoundedRate",
-    "rate_weakening": "rate:RateWeakening",
-    "slip_weakening": "weakening:SlipWeakening",
-    "exponential_weakening": "weakening:ExponentialWeakening",
-}
-NAMES = tuple(LAWS)
+LAWS: tuple[type[Friction], ...] = (
+    Coulomb,
+    LinearRate,
+    BoundedRate,
+    RateWeakening,
+    SlipWeakening,
+    ExponentialWeakening,
+)
+NAMES = tuple(law.law for law in LAWS)
 COULOMB = Coulomb()
 
 
@@ -55,7 +55,7 @@ def friction(law: str, **parameters: float) -> Friction:
     {'law': 'slip_weakening', 'd_c': 0.1, 'nucleation': 2.0}
     """
     check_choice("law", law, NAMES)
-    kind = resolve_name(f"{__package__}.friction_laws.{LAWS[law]}")
+    kind = LAWS[NAMES.index(law)]
     needed = [field.name for field in fields(kind)]
     for name in {*needed} ^ {*parameters}:
         value = f"{name}: {short_repr(parameters[name]) if name in parameters else 'missing'}"

@@ -5,12 +5,10 @@ It is of first order in the step, and its front speed locks to dx / (n dt) with 
 
 import math
 from collections.abc import Callable, Sequence
-from pkgutil import resolve_name
 
 import numpy as np
 from numba.extending import register_jitable
 
-from ..model import friction_laws
 from ..model.friction import LAWS
 from ..model.friction_laws.law import Friction
 from ..model.samples import Samples
@@ -42,7 +40,7 @@ def choose(laws: Sequence[type[Friction]]):
     return chosen
 
 
-law_of_friction = choose([resolve_name(f"{friction_laws.__name__}.{law}") for law in LAWS.values()])
+law_of_friction = choose(LAWS)
 
 
 @inner()

@@ -5,7 +5,7 @@ slip or slip rate of a block until that is at the bend, which is an event, as is
 Kernels are compiled anew for it: where ``bend`` is None, its functions are empty.
 """
 
-from ..model.friction import NAMES
+from ..model.friction import LAWS
 from ..model.friction_laws.law import Bend, Friction
 from .jit import inner
 from .stencils import blocks
@@ -17,7 +17,7 @@ def constants_of(
     """The constants alpha, law, first, second and bend of `Medium`."""
     if localised or "continuum" in friction.schemes:
         return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.bend
-    return 0.0, NAMES.index(friction.law), *friction.constants, None
+    return 0.0, LAWS.index(type(friction)), *friction.constants, None
 
 
 @inner()

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 from ..data.records import Origin, digest_of, file_digest, record_path
-from ..model.friction import LAWS
 from .reach import ROOT, sources
 
 RESULTS = Path("results")
@@ -73,8 +72,4 @@ def modules_of(step: str, settings: Mapping) -> list[str]:
     for key, room in (("figure", "figures."), ("study", "studies."), ("solver", "")):
         if key in settings:
             modules.append(room + settings[key].removeprefix("slippulse.").partition(":")[0])
-    swept = settings.get("values", settings)
-    for sweep in (swept.get("sweep", {}), *swept.get("sweeps", {}).values()):
-        laws = [LAWS[law["law"]] for law in sweep.get("friction", ())]
-        modules += [f"model.friction_laws.{law.partition(':')[0]}" for law in laws]
     return modules
