@@ -68,7 +68,8 @@ def riemanns_integral(rupture: Rupture, profile, gamma: float, x: float, time: f
     """Slip velocity, by adaptive quadrature between the characteristics that end at a point."""
     arrival = lambda z: float(rupture.release_time(z))
     meets = lambda z, side: time - arrival(z) - side * (z - x)
-    left = x if arrival(x) == time else brentq(meets, -3.4, x, args=(-1.0,), xtol=1e-13)
+    on_front = abs(time - arrival(x)) < 1e-12
+    left = x if on_front else brentq(meets, -3.4, x, args=(-1.0,), xtol=1e-13)
     right = brentq(meets, x + 0.05, 4.5, args=(1.0,), xtol=1e-13)
 
     def integrand(z: float) -> float:
