@@ -14,7 +14,8 @@ from scipy.special import j0
 
 from slippulse import Prestress, theory
 from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, paper_pulse
-from slippulse.theory.fronts import fast_fronts, slip_velocity
+from slippulse.theory.fronts import fast_fronts
+from slippulse.theory.part import Part
 
 # The algebra of the paper: each formula over the one derived from its equations, at random layers
 # of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
@@ -83,7 +84,8 @@ def test_uniform_pre_stress_in_closed_form(b, time):
     errors = []
     for width in (4e-3, 1e-3):
         fronts = fast_fronts(Prestress(tau, tau, width=width), b, "total", 8.0)
-        errors.append(abs(slip_velocity(fronts, gamma, 0.0, time) - printed))
+        velocity = Part(fronts, gamma, 8.0).velocity(np.zeros(1), np.array([time])).item()
+        errors.append(abs(velocity - printed))
     assert errors[1] < tolerances.NARROW_GAUSSIAN
     assert errors[1] < 0.3 * errors[0]
 

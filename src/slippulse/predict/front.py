@@ -7,7 +7,8 @@ import pandas as pd
 
 from ..model.release import RELEASES
 from ..model.run import Run
-from ..theory.front_speeds import front_speed, lattice_front_speed
+from ..theory.front_speeds import front_speed
+from ..theory.front_speeds_with_springs import lattice_front_speed
 from .numbers import SIDES, level, or_nan, ratio
 
 # Laws of friction that these numbers hold for: a term linear in slip rate leaves a front as it is.

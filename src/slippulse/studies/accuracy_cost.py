@@ -7,7 +7,7 @@ machine. The exact solution is sampled at the spacing of the textbook scheme.
 import math
 from functools import cache, partial
 from itertools import product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -20,9 +20,9 @@ from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
-from ..theory.closed_pulse import pulse_at_speed
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_speeds import front_speed, front_speed_undamped
+from ..theory.front_speeds import front_speed_undamped
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
@@ -51,7 +51,7 @@ QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 # These are the same for every setting.
 cached_transition = cache(exact_transition_displacement)
 cached_crack = cache(ArrestingCrack)
-cached_speed = cache(front_speed)
+cached_pulse = cache(steady_pulse)
 
 
 class Setting(NamedTuple):
@@ -66,13 +66,10 @@ class Setting(NamedTuple):
         """Simulate a scene, at a step that is cut where it would not be stable."""
         # The textbook scheme and the exact solution have no order to choose.
         order = max(self.order, 3)
-        bound = MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2)
+        step = min(self.step, MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2))
         boundary = "displacement" if gamma > 0.0 else "stress"
-        rules: dict[str, Any] = {"scheme": self.scheme, "order": order}
-        rules["max_step"] = min(self.step, bound)
-        return simulate(
-            Scene(boundary, profile, duration, self.dx, gamma, ratio * self.dx, **rules)
-        )
+        scene = partial(Scene, boundary, profile, duration, self.dx, gamma, ratio * self.dx)
+        return simulate(scene(scheme=self.scheme, max_step=step, order=order))
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -111,7 +108,7 @@ def errors(setting: Setting, window: float) -> dict[str, float]:
         pulse = leading_pulse(run, window)
         # At fixed beta/dx damping acts at the front alone in the continuum.
         beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
-        steady = pulse_at_speed(EVEN.left, GAMMA, beta, float(cached_speed(EVEN.left, ratio)))
+        steady = cached_pulse(EVEN.left, GAMMA, beta, damping_ratio=ratio)
         names = ("speed", "peak_velocity", "width", "slip")
         ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
         ratios.append(run.attrs["first_stick_time"] / cached_transition(EVEN, GAMMA, ratio).time)

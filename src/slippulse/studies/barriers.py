@@ -11,8 +11,8 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.solution import solve_on_lattice
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.closed_pulse import SteadyPulse, pulse_at_speed
-from ..theory.front_speeds import front_speed
+from ..theory.closed_pulse import SteadyPulse
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ()}
 
@@ -42,7 +42,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     pairs = product(enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS)
     for (line, tau0), (column, barrier), ratio in pairs:
         known = depths(tau0, barrier, GAMMAS[(line + column) % len(GAMMAS)], ratio)
-        pulse = pulse_at_speed(tau0, known["gamma"], 0.0, front_speed(tau0, ratio))
+        pulse = steady_pulse(tau0, known["gamma"], damping_ratio=ratio)
         for dx in SPACINGS:
             depth = depth_on_lattice(known, pulse, dx, (0.0, barrier))
             rows.append(known | {"part": "depth", "dx": dx, "measured": depth})

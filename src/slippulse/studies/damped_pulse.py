@@ -6,6 +6,7 @@ import pandas as pd
 from ..configuration.runs import runs
 from ..theory.closed_pulse import paper_pulse, pulse_at_speed
 from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
@@ -18,8 +19,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Roles curve (over the paper's formulas), and limit (dx -> 0 at fixed beta/dx: beta -> 0)."""
     swept, (refined, *_) = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
     left, ratio = refined.prestress.left, refined.damping_ratio
-    speed = front_speed(left, ratio, refined.release)
-    pulse = pulse_at_speed(left, refined.gamma, 0.0, speed)
+    pulse = steady_pulse(left, refined.gamma, damping_ratio=ratio, release=refined.release)
     limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in QUANTITIES]
     limits.append(("limit", left, ratio, "front_speed", pulse.speed))
     first, rows = swept[0], []

@@ -14,9 +14,9 @@ from ..model.release import RELEASES
 from ..predict.numbers import or_nan
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_motion import steady_front
 from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
 from .gaussian_transition import over_paper
 
@@ -47,7 +47,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
     # It is undamped, at the speed with damping.
-    pulse = cache(lambda: pulse_at_speed(level, gamma, 0.0, front_speed(level, ratio, release)))
+    pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
     fronts = [steady_front(*keys) for keys in product(*FOLLOWED, RELEASES)]
     # Each number is computed alone: it is NaN where theory refuses an altered configuration.
     numbers: dict[str, Callable[[], float]] = {

@@ -12,10 +12,10 @@ from ..model.stability import chosen_step
 from ..predict.numbers import or_nan
 from ..solver.solution import solve_on_lattice
 from ..theory.arrest import ArrestingCrack
-from ..theory.closed_pulse import pulse_at_speed
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_speeds import front_speed, lattice_front_speed
+from ..theory.front_speeds_with_springs import lattice_front_speed
 from ..theory.fronts import fast_fronts
+from ..theory.pulse import steady_pulse
 
 # A common rupture, of which one number at a time is extreme.
 LEVEL, GAMMA = 0.5, 0.65
@@ -80,10 +80,9 @@ class Case:
             return 0.0
         if self.family == "gamma":
             return or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
-        speed = float(front_speed(self.level, self.ratio, self.other.get("release", "total")))
-        if self.quantity == "front speed":
-            return speed
-        return pulse_at_speed(self.level, self.gamma, self.ratio * self.dx, speed).slip
+        law = {"damping_ratio": self.ratio, "release": self.other.get("release", "total")}
+        pulse = steady_pulse(self.level, self.gamma, self.ratio * self.dx, **law)
+        return pulse.speed if self.quantity == "front speed" else pulse.slip
 
     def scene(self) -> Scene:
         """The scene, with a stable step unless another is given."""

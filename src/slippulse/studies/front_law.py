@@ -5,7 +5,8 @@ import pandas as pd
 
 from ..configuration.runs import parameters
 from ..predict.numbers import or_nan
-from ..theory.front_speeds import continuum_front_speed, lattice_front_speed, prestress_for_speed
+from ..theory.front_speeds import prestress_for_speed
+from ..theory.front_speeds_with_springs import continuum_front_speed, lattice_front_speed
 
 NEEDS = {
     "sweeps": [

@@ -8,16 +8,16 @@ from ..model.prestress import Prestress
 from ..theory.arrest import ArrestingCrack
 from ..theory.closed_pulse import paper_transition_displacement
 from ..theory.front_speeds import front_speed
-from ..theory.fronts import fast_fronts, slip_velocity
-from ..theory.vector_roots import roots_between
+from ..theory.fronts import fast_fronts
+from ..theory.part import Part
 
 NEEDS = {
     "lists": ["manuscript/open_choices.yaml"],
     "sweeps": ["scaling_displacement", "scaling_stress"],
 }
 
-# The first stick, over pi/sqrt(gamma), lies between these; the error of its time.
-STICK, TIME = np.array([0.3, 1.7]), 1e-12
+# The first stick, over pi/sqrt(gamma), comes before this.
+LATEST = 1.7
 # A Gaussian is 0 to rounding beyond this number of its widths.
 FAR = 12.0
 # Nodes and weights of the time that a front takes across a tent.
@@ -46,15 +46,12 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
     parts = []
     for (left, width), rows in grid.groupby(["left", "width"]):
         gammas = rows["gamma"].to_numpy()
-        first, last = STICK[:, None] * np.pi / np.sqrt(gammas)
+        latest = LATEST * np.pi / np.sqrt(gammas)
         # The past of (0, t) begins at x + T(x) = t, so x < t.
-        reach = max(float(last.max()), 2.0 * FAR * width)
+        reach = max(float(latest.max()), 2.0 * FAR * width)
         fronts = fast_fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
-
-        def velocity(time, which=slice(None), fronts=fronts, gammas=gammas) -> np.ndarray:
-            return slip_velocity(fronts, gammas[which], 0.0, time)
-
-        times = roots_between(velocity, first, last, velocity(first), velocity(last), xtol=TIME)
+        both = zip(gammas, latest, strict=True)
+        times = np.array([float(Part(fronts, *one).search(np.zeros(1))[0]) for one in both])
         # The pre-stress is uniform beyond the Gaussian.
         uniform_from = FAR * width
         time_beyond = times - fronts.arrival(uniform_from)

@@ -8,9 +8,8 @@ from ..measurement.fronts import fit_front
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
-from ..theory.closed_pulse import pulse_at_speed
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window"]}
 
@@ -23,7 +22,7 @@ BLOCKS, SPACING = 1000, 0.05005
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Quantity, published, localised (on the same lattice) and exact."""
-    pulse = pulse_at_speed(PROFILE.left, GAMMA, BETA, front_speed(PROFILE.left, BETA / SPACING))
+    pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
     localised = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
     window = settings["measure"]["front_window"]

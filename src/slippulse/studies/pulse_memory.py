@@ -5,8 +5,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..simulation.exact_rupture import exact_rupture
-from ..theory.closed_pulse import pulse_at_speed
-from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
@@ -22,9 +21,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         position, level = scene.prestress.steps[-1]
         before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
-        rule = scene.damping_ratio, scene.release
+        ratio, release = scene.damping_ratio, scene.release
         old, new = (
-            pulse_at_speed(tau, scene.gamma, 0.0, front_speed(tau, *rule))
+            steady_pulse(tau, scene.gamma, damping_ratio=ratio, release=release)
             for tau in (before, level)
         )
         memory = new.width / (new.speed - 1.0)

@@ -7,8 +7,7 @@ from scipy.integrate import cumulative_trapezoid
 from ..configuration.runs import runs
 from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
-from ..theory.closed_pulse import pulse_at_speed
-from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
@@ -32,9 +31,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def profile(run: Run) -> pd.DataFrame:
     """A steady pulse, its corners at the front and at the trailing edge kept sharp."""
-    level = run.prestress.right
-    speed = front_speed(level, run.damping_ratio, run.release)
-    pulse = pulse_at_speed(level, run.gamma, run.beta, speed)
+    level, ratio = run.prestress.right, run.damping_ratio
+    pulse = steady_pulse(level, run.gamma, run.beta, damping_ratio=ratio, release=run.release)
     even = np.linspace(-(1.0 + BEHIND), AHEAD, POINTS) * pulse.width
     edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
     xi = np.unique(np.concatenate([even, edges]))

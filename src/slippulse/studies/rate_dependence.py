@@ -15,8 +15,9 @@ from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
-from ..theory.closed_pulse import critical_rate_strengthening, pulse_at_speed
+from ..theory.closed_pulse import critical_rate_strengthening
 from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
@@ -54,7 +55,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     limit = [(level, _front(level)[1]) for level in np.linspace(0.05, 0.9, 60)]
     speed, critical = _front(LEVEL)
     alphas = critical * np.linspace(-0.97, 0.97, 80)
-    pulses = [pulse_at_speed(LEVEL, GAMMA, 0.0, speed, alpha) for alpha in alphas]
+    pulses = [steady_pulse(LEVEL, GAMMA, 0.0, speed, rate_strengthening=one) for one in alphas]
     steady = [(pulse.rate_strengthening, pulse.width, pulse.slip) for pulse in pulses]
     maps = [_map(regime, fraction * critical) for regime, fraction in MAPPED.items()]
     arrests = [_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]

@@ -33,32 +33,30 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     border = np.vstack([[(0.0, 0.0)], np.column_stack([low, BORDER]), [(low[-1], 0.0)]])
     parts: list[pd.DataFrame] = []
 
-    def labels(role: str, boundary: str, left: float, right: float) -> dict:
+    def add(role: str, boundary: str, rows: pd.DataFrame, left: float, right: float) -> None:
+        """Add a series of rows, whose regime is that of a pair of levels."""
         regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
-        return {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
+        labels = {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
+        parts.append(rows.assign(**labels))
 
-    # Role, boundary, corners, and a pair of levels inside: quadrants, the areas of cracks along a
-    # border, and lines on the axes.
-    outlines: list[tuple[str, str, np.ndarray, np.ndarray]] = []
+    def outline(role: str, boundary: str, corners: np.ndarray, inside: np.ndarray) -> None:
+        add(role, boundary, pd.DataFrame(corners, columns=["left", "right"]), *inside)
+
+    # Quadrants, the areas of cracks along a border, and lines on the axes.
     line = np.array([(-1.0, 0.0), (0.0, 0.0)])
     for boundary, gamma in GAMMAS.items():
         for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
             # The corners of the quadrant of these signs.
             corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
-            outlines.append(("area", boundary, corners, 0.5 * levels))
+            outline("area", boundary, corners, 0.5 * levels)
         # Each is on the right as on the left: sides (1, 0) mirrors it.
         for sides in ([0, 1], [1, 0]):
             if gamma == 0.0:
-                inside = np.array([-0.9, 1e-3])[sides]
-                outlines.append(("area", boundary, border[:, sides], inside))
-            outlines.append(("line", boundary, line[:, sides], 0.5 * line[0, sides]))
-    for role, boundary, corners, (left, right) in outlines:
-        rows = pd.DataFrame(corners, columns=["left", "right"])
-        parts.append(rows.assign(**labels(role, boundary, left, right)))
+                outline("area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides])
+            outline("line", boundary, line[:, sides], 0.5 * line[0, sides])
     for boundary, left, right in PROFILES:
         rupture = Rupture(Prestress(left, right), GAMMAS[boundary], *rules, TIME)
         x = np.linspace(*rupture.fronts_at(TIME), POINTS)
         rows = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, TIME)})
-        rows = rows.assign(time=TIME, left=left, right=right)
-        parts.append(rows.assign(**labels("profile", boundary, left, right)))
+        add("profile", boundary, rows.assign(time=TIME, left=left, right=right), left, right)
     return pd.concat(parts, ignore_index=True)

@@ -14,11 +14,11 @@ from .exact_transition import uniform_transition_time as uniform_transition_time
 from .friction_laws import SteadyRupture as SteadyRupture
 from .friction_laws import rate_pulse as rate_pulse
 from .friction_laws import weakening_pulse as weakening_pulse
-from .front_speeds import continuum_front_speed as continuum_front_speed
 from .front_speeds import front_speed as front_speed
 from .front_speeds import front_speed_undamped as front_speed_undamped
-from .front_speeds import lattice_front_speed as lattice_front_speed
 from .front_speeds import prestress_for_speed as prestress_for_speed
+from .front_speeds_with_springs import continuum_front_speed as continuum_front_speed
+from .front_speeds_with_springs import lattice_front_speed as lattice_front_speed
 from .fronts import ExactTransition as ExactTransition
 from .pulse import steady_pulse as steady_pulse
 from .rupture import FrontEnd as FrontEnd

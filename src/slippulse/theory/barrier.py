@@ -72,7 +72,7 @@ def barrier_depth(
         panel, stop, _ = front.next_panel(math.inf)
         if panel is not None:
             panels.append(panel)
-    if stop != "dead":
+    if stop != "stops":
         raise ValueError(
             f"tau_barrier: {tau_barrier!r}, where the front is {stop} {place};"
             " allowed: levels on which it is resolved"

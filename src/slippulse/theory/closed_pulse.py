@@ -73,10 +73,8 @@ def pulse_at_speed(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
     """The pulse of `theory.steady_pulse` behind a front of a given speed."""
-    check_domains(tau0=tau0, gamma=gamma)
-    check_number("beta", beta, at_least=0.0)
+    check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)
-    check_number("rate_strengthening", rate_strengthening)
     tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
     v, alpha = float(speed), float(rate_strengthening)
     inertia = (v - 1.0) * (v + 1.0)
@@ -97,14 +95,12 @@ def pulse_at_speed(
         if not all(0.0 < size < math.inf for size in sizes):
             raise OverflowError
     except (ArithmeticError, ValueError):
-        place, critical = f"at gamma = {gamma:.4g}", critical_rate_strengthening(gamma, v)
-        if abs(alpha) <= 0.5 * critical:
-            allowed = "numbers whose pulse can be computed"
-            text = f"speed: {v:.4g}, {place}, beta = {beta:.4g}; allowed: {allowed}"
-            raise ValueError(text) from None
-        allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
-        text = f"rate_strengthening: {rate_strengthening!r}; allowed: {allowed}"
-        raise ValueError(f"{text}, or no pulse is steady") from None
+        place, critical = f"at gamma = {gamma:.6g}", critical_rate_strengthening(gamma, v)
+        message = f"speed: {v:.6g} {place}; allowed: numbers whose pulse can be computed"
+        if abs(alpha) > 0.5 * critical:
+            allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
+            message = f"rate_strengthening: {alpha!r}; allowed: {allowed}, or no pulse is steady"
+        raise ValueError(message) from None
     return SteadyPulse(tau0, gamma, beta, v, *sizes, float(gamma * slip), p, q, alpha)
 
 
@@ -127,8 +123,7 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
     >>> critical_rate_strengthening(0.25, 1.25)
     0.6
     """
-    check_domains(gamma=gamma)
-    check_number("speed", speed, above=1.0)
+    check_domains(gamma=gamma, speed=speed)
     return 2.0 * math.sqrt(gamma) * math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
 
 

@@ -5,7 +5,7 @@ characteristics through (y, t) meet it. With xi = t - y and eta = t + y these ar
 T - x rises to xi, going left from y, and where T + x rises to eta, going right.
 """
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -104,12 +104,9 @@ class Curve:
     """
 
     def __init__(
-        self,
-        panels: list[Panel],
-        restarts_left: Iterable[float] = (),
-        restarts_right: Iterable[float] = (),
+        self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
-        self.panels = panels
+        self.panels, self.restarts = panels, restarts
         columns = map(np.array, zip(*panels, strict=True))
         self.x, self.time, self.source, x_ends, time_ends = columns
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
@@ -117,7 +114,6 @@ class Curve:
         self.late, self.early = self.time + self.x, self.time - self.x
         # Values of FIELDS but the last, one after another, at both ends of each panel: [end, row].
         self.ends = np.concatenate([x_ends, time_ends, time_ends + x_ends, time_ends - x_ends]).T
-        self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
 
     @cached_property
     def powers(self) -> np.ndarray:
@@ -165,8 +161,8 @@ class Curve:
     def _exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
         """`_least_beyond` of T + x going right, and of T - x going left, where panels are left."""
         _, _, late, early = np.split(self.ends, 4, axis=1)
-        right = _least_beyond(late[1], self.edges, self.restarts_left)
-        return right, _least_beyond(early[0, ::-1], self.edges[::-1], self.restarts_right)
+        right = _least_beyond(late[1], self.edges, self.restarts[0])
+        return right, _least_beyond(early[0, ::-1], self.edges[::-1], self.restarts[1])
 
     def front_at(self, time: float, x: float, side: float) -> float:
         """Position of the front that goes to one side from x: the nearest that is released then."""
@@ -204,7 +200,7 @@ class Curve:
 
 
 def _least_beyond(
-    exits: np.ndarray, edges: np.ndarray, restarts: Iterable[float]
+    exits: np.ndarray, edges: np.ndarray, restarts: Sequence[float]
 ) -> list[np.ndarray]:
     """The least exit of each panel and those after it in its region, which ends at a restart."""
     # A characteristic that leaves its region across a slow front meets no source beyond.

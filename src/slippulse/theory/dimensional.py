@@ -1,14 +1,6 @@
 """The stress drop of a fault with a compliant damage zone, in SI units."""
 
-from .domains import broadcast_numbers
-
-POSITIVE = {"above": 0.0}
-DOMAINS = {
-    "shear_modulus": POSITIVE,
-    "rock_shear_modulus": POSITIVE,
-    "thickness": POSITIVE,
-    "rock_thickness": {"at_least": 0.0},
-}
+from ..model.checks import as_numbers
 
 
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
@@ -34,7 +26,8 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
     5.0
     """
-    moduli = {"shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
-    given = {"slip": slip, **moduli, "thickness": thickness, "rock_thickness": rock_thickness}
-    slip, zone, rock, thickness, rock_thickness = broadcast_numbers(DOMAINS, **given)
-    return zone * slip / (thickness + zone / rock * rock_thickness)
+    zone = as_numbers("shear_modulus", shear_modulus, above=0.0)
+    rock = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
+    height = as_numbers("thickness", thickness, above=0.0)
+    rock_height = as_numbers("rock_thickness", rock_thickness, at_least=0.0)
+    return zone * as_numbers("slip", slip) / (height + zone / rock * rock_height)

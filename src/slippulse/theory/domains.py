@@ -1,6 +1,5 @@
 """Domains of the arguments of formulas."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -12,9 +11,11 @@ from ..model.checks import as_numbers, check_number
 DOMAINS: dict[str, dict[str, Any]] = {
     "tau0": {"above": 0.0, "below": 1.0},
     "gamma": {"above": 0.0},
+    "beta": {"at_least": 0.0},
     "dx": {"above": 0.0},
     "speed": {"above": 1.0, "at_most": 1e100},
     "damping_ratio": {"at_least": 0.0, "at_most": 1e100},
+    "rate_strengthening": {},
     "duration": {"at_least": 1e-9},
 }
 
@@ -25,11 +26,9 @@ def check_domains(**values: Any) -> None:
         check_number(key, value, **DOMAINS[key])
 
 
-def broadcast_numbers(
-    domains: Mapping[str, dict] = DOMAINS, **values: Any
-) -> tuple[np.ndarray, ...]:
+def broadcast_numbers(**values: Any) -> tuple[np.ndarray, ...]:
     """Arrays of values, broadcast to each other; values outside of their domains are refused."""
-    arrays = {key: as_numbers(key, value, **domains.get(key, {})) for key, value in values.items()}
+    arrays = {key: as_numbers(key, value, **DOMAINS.get(key, {})) for key, value in values.items()}
     try:
         return np.broadcast_arrays(*arrays.values())
     except ValueError:

@@ -1,6 +1,6 @@
 """Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -33,29 +33,27 @@ NARROW = 0.1
 FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
 
 
+@dataclass
 class FastFront:
     """The law of motion of a front that outruns the waves; it makes the panels of its path."""
 
-    def __init__(
-        self,
-        prestress: Prestress,
-        gamma: float,
-        damping_ratio: float,
-        release: str,
-        refinement: int = 1,
-        alpha: float = 0.0,
-    ) -> None:
+    prestress: Prestress
+    gamma: float
+    damping_ratio: float
+    release: str
+    refinement: int = 1
+    alpha: float = 0.0
+
+    def __post_init__(self) -> None:
+        prestress = self.prestress
         check_kind("prestress", prestress, Prestress)
-        check_number("gamma", gamma, at_least=0.0)
-        check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
-        check_choice("release", release, RELEASES)
-        check_number("refinement", refinement, integer=True, at_least=1, at_most=FINEST)
-        check_number("rate_strengthening", alpha)
-        check_runaway(gamma, alpha)
-        self.prestress, self.release = prestress, release
-        self.gamma, self.alpha = float(gamma), float(alpha)
-        self.damping_ratio = float(damping_ratio)
-        self.refinement = int(refinement)
+        check_number("gamma", self.gamma, at_least=0.0)
+        check_number("damping_ratio", self.damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+        check_choice("release", self.release, RELEASES)
+        check_number("refinement", self.refinement, integer=True, at_least=1, at_most=FINEST)
+        check_number("rate_strengthening", self.alpha)
+        check_runaway(self.gamma, self.alpha)
+        self.gamma, self.alpha = float(self.gamma), float(self.alpha)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
         # An edge of a panel stands at each feature, so that none falls between two nodes.
         centre, width = np.array(gaussians(prestress)).T[..., None]
@@ -75,8 +73,7 @@ class FastFront:
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
         turned = replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
-        law = self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
-        return FastFront(turned, *law)
+        return replace(self, prestress=turned)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         """1/v at each pre-stress."""
@@ -102,7 +99,7 @@ class FastFront:
         last_feature = float(self.features[-1])
         while x < stop and time < until:
             piece = self.piece_right_of(x)
-            if not piece.supersonic:
+            if not piece.above:
                 break
             end = min(stop, piece.right)
             if np.isinf(end) and x >= last_feature:

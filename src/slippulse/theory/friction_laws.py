@@ -98,15 +98,15 @@ class _Exponentials:
 
 def _tail(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
-) -> tuple[float, _Exponentials] | None:
-    """End of the weakening zone, and U from there; None where the slip stops in that zone."""
+) -> tuple[float, _Exponentials]:
+    """End of the weakening zone, NaN where the slip stops in it, and U from there."""
     b, inertia = beta * v, (v - 1.0) * (v + 1.0)
     zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
     xi = zone.samples()
     weak = zone.at(xi) >= weakening
     first = int(np.argmax(weak))
     if not weak[first] or (zone.at(xi, 1) >= 0.0)[:first].any():
-        return None
+        return math.nan, zone
     before = 0.0 if first == 0 else float(xi[first - 1])
     end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
@@ -139,8 +139,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
 
     def too_fast(v: float) -> float:
-        solution = _tail(v, tau0, gamma, beta, weakening)
-        return -1.0 if solution is None or solution[1].first_turn()[1] else 1.0
+        end, tail = _tail(v, tau0, gamma, beta, weakening)
+        return -1.0 if math.isnan(end) or tail.first_turn()[1] else 1.0
 
     upper = SLOWEST
     while upper < FASTEST and too_fast(upper) < 0.0:
@@ -150,9 +150,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         allowed = f"numbers with a steady rupture of a speed from {SLOWEST} to {FASTEST}"
         raise ValueError(f"weakening: {numbers}; allowed: {allowed}")
     speed = root_to_last_bit(too_fast, upper / FASTER, upper)
-    solution = _tail(speed, tau0, gamma, beta, weakening)
-    assert solution is not None
-    zone_end, tail = solution
+    zone_end, tail = _tail(speed, tau0, gamma, beta, weakening)
     turn, _ = tail.first_turn()
     if tail.creeps() or not turn.size:
         return SteadyRupture(speed, math.inf, tau0 / gamma)

@@ -1,4 +1,4 @@
-"""Both fronts of one nucleation point at x = 0, and the slip velocity behind them."""
+"""Both fronts of one nucleation point at x = 0."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,6 @@ from ..model.prestress import Prestress
 from .curve import Curve, Point, seen_from
 from .fast_front import FastFront
 from .prestress_pieces import nucleations
-from .riemann import Past
 
 
 class ExactTransition(NamedTuple):
@@ -37,16 +36,3 @@ def fast_fronts(
     if not prestress.symmetric:
         left, _ = law.mirrored().rightwards(start, reach, np.inf)
     return Curve(seen_from(-1.0, left) + right)
-
-
-def slip_velocity(fronts: Curve, gamma, y, time) -> np.ndarray:
-    """du/dt at points before anything sticks, broadcast; 0 where no front has been."""
-    stiffness, y, time = np.broadcast_arrays(gamma, y, time)
-    released = fronts.arrival(y) < time
-    past = Past(fronts, stiffness[released], y[released], time[released])
-    if not np.all(past.left.known & past.right.known):
-        allowed = "earlier, its past leaves the part that outruns the waves"
-        raise ValueError(f"time: {time!r}; allowed: {allowed}")
-    out = np.zeros(released.shape)
-    out[released] = past.slip_velocity()
-    return out

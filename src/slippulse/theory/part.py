@@ -44,7 +44,7 @@ class Part:
 
     def past(self, x: np.ndarray, time: np.ndarray) -> Past:
         """Domains of dependence of points that slide."""
-        return Past(self.curve, self.gamma, x, time, self.alpha)
+        return Past(self.curve, self.gamma, self.alpha, x, time)
 
     def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """du/dt at points that slide."""

@@ -16,12 +16,12 @@ ROUNDING = 1e-15
 
 
 class Piece(NamedTuple):
-    """An interval on which the pre-stress is smooth and of one sign."""
+    """An interval on which the pre-stress is smooth, and on one side of a value."""
 
     left: float
     right: float
     level: float  # of its side
-    supersonic: bool  # tau >= 0, so that a front outruns the waves
+    above: bool  # tau >= the value; for 0, a front outruns the waves
 
 
 def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
@@ -37,30 +37,24 @@ def gaussians(prestress: Prestress) -> list[tuple[float, float]]:
     return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
 
 
-def pieces(prestress: Prestress) -> list[Piece]:
-    """The pieces from left to right."""
+def pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
+    """The pieces from left to right; one where tau only touches the value has no length."""
     out = []
     for left, right, level in prestress.intervals:
-        positive, changes = _changes(prestress, (left, right, level), 0.0)
+        above, changes = _changes(prestress, (left, right, level), value)
         for start, end in pairwise([left, *changes, right]):
-            if end > start:
-                out.append(Piece(start, end, level, positive))
-            positive = not positive
+            out.append(Piece(start, end, level, above))
+            above = not above
     return out
 
 
 def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     """Intervals with tau >= 1 (points, where tau only touches 1), from left to right."""
-    intervals: list[tuple[float, float]] = []
-    for left, right, level in prestress.intervals:
-        released, changes = _changes(prestress, (left, right, level), 1.0)
-        edges = [left, *changes] if released else changes
-        intervals += zip(edges[::2], [*edges[1::2], right], strict=False)
     merged: list[tuple[float, float]] = []
-    for left, right in sorted(intervals):
-        if merged and left <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], max(right, merged[-1][1]))
-        else:
+    for left, right, _, above in pieces(prestress, 1.0):
+        if above and merged and left <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], right)
+        elif above:
             merged.append((left, right))
     return merged
 

@@ -88,18 +88,13 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
 class Past:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
-    gamma may differ from point to point for du/dt. An integrand along some panels of the curve is a
-    function of xi - g and eta - h, with one row a point and one column a node; of a function of the
-    order, K or a derivative of it; and of the slice of these panels.
+    An integrand along some panels of the curve is a function of xi - g and eta - h, with one row a
+    point and one column a node; of a function of the order, K or a derivative of it; and of the
+    slice of these panels.
     """
 
     def __init__(
-        self,
-        curve: Curve,
-        gamma: float | np.ndarray,
-        y: np.ndarray,
-        time: np.ndarray,
-        alpha: float = 0.0,
+        self, curve: Curve, gamma: float, alpha: float, y: np.ndarray, time: np.ndarray
     ) -> None:
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
@@ -204,11 +199,9 @@ class Past:
             ends = np.arange(low.size), np.array([high, low])
             d_xi = self.xi[points, None] - curve.early[panels].ravel()
             d_eta = self.eta[points, None] - curve.late[panels].ravel()
-            stiffness = np.broadcast_to(self.stiffness, self.xi.shape)[points, None]
-            z = stiffness * d_xi
+            z = self.stiffness * d_xi
             z *= d_eta
-            # It is the sign of k that counts here: gamma may vary for alpha = 0 only.
-            kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
+            kernel = kernel_of(self.stiffness, z, z.reshape(low.size, -1, COUNT)[ends])
             values = integrand(d_xi, d_eta, kernel, panels)
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)

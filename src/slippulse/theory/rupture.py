@@ -120,7 +120,6 @@ class Rupture:
     def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and time <= self._last:
-            reason = "stops" if reason == "dead" else reason
             return FrontEnd(float(x), float(min(time, self.duration)), reason)
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
         x = part.curve.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
@@ -205,8 +204,7 @@ class Rupture:
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None for none until ``duration``."""
-        known = [part.edge.first_stick() for part in self._solved]
-        first = min((first for first in known if first), default=None)
+        first = min(filter(None, (part.first_stick() for part in self._solved)), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
         last = self.limit.time * (1.0 + SAME) if self.limit else np.inf
         if not first or first.time > min(last, self._last):
@@ -350,7 +348,7 @@ class Rupture:
         """All points in whose future the construction says nothing."""
         limits = [Limit(*point, reason) for point, reason in self._unknown]
         for part in self._solved:
-            slow = [Limit(*point, SLOW_EDGE) for point in part.edge.slow_points()]
+            slow = [Limit(*point, SLOW_EDGE) for point in part.slow_points()]
             falling = part.falling_slip(partial(_horizon, limits + slow))
             new = slow + [Limit(*point, FALLING_SLIP) for point in falling]
             if self.prestress.symmetric:

@@ -162,7 +162,7 @@ class SlowFront:
         """Continue the front by one panel of entries at most, or a shorter length.
 
         mark is the end of the negative piece (may be infinite). The stop is "mark" where the new
-        panel ends there, "dead" where the front could only go back, as the solution beyond shows,
+        panel ends there, "stops" where the front could only go back, as the solution beyond shows,
         "unknown" where its characteristic comes from beyond the left end of the curve, and
         "unresolved" where no panel is short enough. A panel ends where the front stops.
         """
@@ -176,7 +176,7 @@ class SlowFront:
             x = self.solve(chunk)
             if x is not None and _goes_back(x):
                 if mark - self.x0 >= NEAR_MARK * self.size:
-                    return Advance(None, "dead")
+                    return Advance(None, "stops")
                 # This close to a mark rounding may send a front back.
                 x = None
             if x is None:

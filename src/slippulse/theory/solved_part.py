@@ -1,14 +1,11 @@
 """A connected part of a rupture with its trailing edge: fields at all its points, and extremes."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from .curve import Point
-from .part import Part
-from .trailing_edge import TrailingEdge
+from .trailing_edge import EdgedPart
 from .vector_roots import roots_between
 
 # The grid for the largest velocity has DENSER positions for each knot, where knots are farther
@@ -22,24 +19,17 @@ PEAKS, PEAK = 2, 0.97
 CHECKED, FALL = 0.25, 1e-6
 
 
-@dataclass
-class SolvedPart(Part):
-    """A connected part of the rupture and its trailing edge."""
+class SolvedPart(EdgedPart):
+    """A connected part of the rupture, where it slides and where it has stuck."""
 
-    def __post_init__(self) -> None:
-        # One field after another is wanted at the same positions: the last ones, and their sticks.
-        self._last: tuple[np.ndarray, np.ndarray] = np.empty(0), np.empty(0)
-
-    @cached_property
-    def edge(self) -> TrailingEdge:
-        """The trailing edge."""
-        return TrailingEdge(self)
+    # One field after another is wanted at the same positions: the last ones, and their sticks.
+    _last: tuple[np.ndarray, np.ndarray] = np.empty(0), np.empty(0)
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions; NaN outside the part, and for none before the end."""
         if not np.array_equal(x, self._last[0]):
             out, covered = np.full(x.shape, np.nan), self.curve.covers(x)
-            out[covered] = self.edge.stick_time(x[covered])
+            out[covered] = self._stick_time(x[covered])
             self._last = x, out
         return self._last[1]
 
@@ -59,10 +49,10 @@ class SolvedPart(Part):
 
     def falling_slip(self, horizon: Callable) -> list[Point]:
         """Releases after which slip would fall before the stick and the horizon, in samples."""
-        x = self.edge.knots.x
+        x = self.knots.x
         x = x[np.unique(np.floor(x / (CHECKED * self.scale)), return_index=True)[1]]
         release = self.curve.arrival(x)
-        last = np.minimum(self.edge.about(x), horizon(x))
+        last = np.minimum(self.about(x), horizon(x))
         x, release, last = np.array([x, release, last])[:, last > release]
         middle, end = (self.field("slip", x, t) for t in (0.5 * (release + last), last))
         falls = np.minimum(middle, end - middle) < -FALL * np.max(end, initial=0.0)
@@ -71,7 +61,7 @@ class SolvedPart(Part):
     def largest_velocity(self, until: float, horizon: Callable) -> float:
         """Largest slip velocity until a time and before a horizon."""
         # Positions as dense as the knots of the trailing edge, and between them.
-        knots = self.edge.knots.x
+        knots = self.knots.x
         knots = knots[np.diff(knots, prepend=-np.inf) > SAME_GRID * self.scale]
         index = np.arange(knots.size)
         x = np.interp(np.linspace(0.0, index[-1], DENSER * index[-1] + 1), index, knots)
@@ -94,7 +84,7 @@ class SolvedPart(Part):
 
     def _highest(self, x: np.ndarray, last: np.ndarray) -> np.ndarray:
         """Largest slip velocity at each position before it sticks and before a last time."""
-        release, last = self.curve.arrival(x), np.minimum(self.edge.about(x), last)
+        release, last = self.curve.arrival(x), np.minimum(self.about(x), last)
         time = np.linspace(release, np.maximum(release, last), FINER, axis=1)
         values = self.velocity(np.repeat(x, FINER), time.ravel()).reshape(time.shape)
         row, column = np.arange(x.size), np.argmax(values, axis=1)

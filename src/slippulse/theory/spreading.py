@@ -32,8 +32,8 @@ class Stretch:
     # Position, with the side turned to the right, of the next nucleation point.
     next_start: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
-    # Reason why a front goes no further: "dead" (it stops for good), "duration", "met", a key of
-    # UNKNOWN, or None.
+    # Reason why a front goes no further: "stops" (for good), "duration", "met", a key of UNKNOWN,
+    # or None.
     end_reason: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
     # Positions where a slow front outran the waves again, and where two fronts met.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
@@ -45,7 +45,7 @@ class Stretch:
         """The panels as one curve, with a side turned to the right."""
         left = [side * x for x in self.restarts[-side]]
         right = [side * x for x in self.restarts[side]]
-        return Curve(seen_from(side, self.panels), left, right)
+        return Curve(seen_from(side, self.panels), (left, right))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels, and their end, of a front whose side is turned to the right."""
@@ -134,8 +134,8 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     panel, stop, stretch.longest[side] = front.next_panel(mark, stretch.longest[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
-    if stop in ("dead", *UNKNOWN):
-        loaded = stop == "dead" and law.prestress(side * stretch.ends[side].x) > SAME
+    if stop in ("stops", *UNKNOWN):
+        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > SAME
         stretch.end_reason[side] = "loaded" if loaded else stop
     elif stretch.ends[side].time >= until:
         stretch.end_reason[side] = "duration"
@@ -143,7 +143,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
         # Where the next piece is negative, too, the next step goes on.
         if mark >= stretch.next_start[side]:
             stretch.end_reason[side] = "met"
-        elif law.piece_right_of(mark).supersonic:
+        elif law.piece_right_of(mark).above:
             stretch.restarts[side].append(side * mark)
             _run(law, stretch, side, until)
 

@@ -15,7 +15,6 @@ slide at the end, or when the first position sticks, are halved until the bound 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -55,43 +54,40 @@ class FirstStick(NamedTuple):
     x: float
 
 
-@dataclass
-class TrailingEdge:
-    """Stick times of a part, known at knots and found in between with their help."""
-
-    part: Part
+class EdgedPart(Part):
+    """A connected part whose stick times are known at knots, and found in between by their help."""
 
     @cached_property
     def knots(self) -> Knots:
         """The trailing edge at knots that predict it in between."""
-        curve = self.part.curve
+        curve = self.curve
         left, right = curve.edges[[0, -1]]
-        if self.part.one_side:
+        if self.one_side:
             left = max(left, 0.0)
-        last = self.part.until * (1.0 - SAME)
+        last = self.until * (1.0 - SAME)
         start = curve.edges[np.argmin(curve.edge_times)]
         fronts = [curve.front_at(last, start, side) for side in (-1.0, 1.0)]
-        cell = np.floor(curve.edges / (CELL * self.part.scale))
+        cell = np.floor(curve.edges / (CELL * self.scale))
         edges = curve.edges[np.diff(cell, prepend=-np.inf) > 0.0]
-        x = np.unique([left, *edges, *self.part.marks, *fronts])
-        x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.part.until)]
+        x = np.unique([left, *edges, *self.marks, *fronts])
+        x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.until)]
         x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
         # Knots halfway are found together with the others, and as independently.
         halfway = 0.5 * (x[:-1] + x[1:])
         x = np.sort(np.append(x, halfway))
-        knots = self._knots_of(x, self.part.search(x))
+        knots = self._knots_of(x, self.search(x))
         if x.size < 2:
             return knots
         apart = Knots._make(values[::2] for values in knots)
         predicted = apart.predict(np.arange(halfway.size), Knots._make(v[1::2] for v in knots))
         again = ~np.repeat(predicted, 2)
         x, left = np.union1d(self._landings(knots), self._near_end(knots)), x[:-1][again]
-        knots = self._with(knots, x, self.part.search(x), left)
-        while (x := stuck_between(self.part, knots.sliding, self.part.until)).size:
-            knots = self._with(knots, x, self.part.search(x))
+        knots = self._with(knots, x, self.search(x), left)
+        while (x := stuck_between(self, knots.sliding, self.until)).size:
+            knots = self._with(knots, x, self.search(x))
         # Where the edge may turn slow between knots it is looked at once more, not halfway.
         x = knots.nearly_slow
-        return self._with(knots, x, self.stick_time(x, knots)) if x.size else knots
+        return self._with(knots, x, self._stick_time(x, knots)) if x.size else knots
 
     def _with(
         self, knots: Knots, x: np.ndarray, stick: np.ndarray, left: Sequence[float] = ()
@@ -104,22 +100,22 @@ class TrailingEdge:
         return knots
 
     def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
-        part, sticks = self.part, np.isfinite(stick)
-        time = np.where(sticks, stick, part.until)
-        past = part.past(x, time)
+        sticks = np.isfinite(stick)
+        time = np.where(sticks, stick, self.until)
+        past = self.past(x, time)
         velocity = np.zeros(x.size) if sticks.all() else past.slip_velocity()
         velocity[sticks] = 0.0
         by_xi, by_eta = past.velocity_slopes()
         slow = (by_xi >= 0.0) | (by_eta >= 0.0)
         kind = np.where(sticks, np.where(slow, SLOW, FAST), SLIDES)
-        kind[sticks & (time - part.curve.arrival(x) <= SHORTEST * part.scale)] = BRIEF
+        kind[sticks & (time - self.curve.arrival(x) <= SHORTEST * self.scale)] = BRIEF
         return Knots(x, time, kind, velocity, by_xi, by_eta)
 
     def _landings(self, knots: Knots) -> np.ndarray:
         """Positions on both sides of those where waves from the marks meet the trailing edge."""
-        marks = np.array(self.part.marks)
-        arrival = self.part.curve.arrival(marks)
-        out, near = [], LANDED * self.part.scale
+        marks = np.array(self.marks)
+        arrival = self.curve.arrival(marks)
+        out, near = [], LANDED * self.scale
         for side in (-1.0, 1.0):
             phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
             fast = knots.outruns(np.arange(knots.x.size - 1))[:, None]
@@ -129,7 +125,7 @@ class TrailingEdge:
             x = left + (right - left) * before / (before - after)
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
-                past = self.part.past(x, time)
+                past = self.past(x, time)
                 x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
                 x = x.clip(left, right)
             # The edge has a kink there.
@@ -137,7 +133,7 @@ class TrailingEdge:
         return np.concatenate(out)
 
     def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
-        return self.part.velocity(x, np.full(x.size, self.part.until))
+        return self.velocity(x, np.full(x.size, self.until))
 
     def _near_end(self, knots: Knots) -> np.ndarray:
         """Positions on both sides of those where the trailing edge reaches the end."""
@@ -147,7 +143,7 @@ class TrailingEdge:
         meets = velocity[0] * velocity[1] < 0.0
         at_left, at_right = velocity[:, meets]
         left, right = knots.x[k[meets]], knots.x[k[meets] + 1]
-        near = 0.4 * AT_END * self.part.scale
+        near = 0.4 * AT_END * self.scale
         x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
         return np.clip([x - near, x + near], left, right).ravel()
 
@@ -160,7 +156,7 @@ class TrailingEdge:
         earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
         k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
         jumps, at_end = knots.jumps(k), knots.of_kinds(k, FAST, SLIDES)
-        size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
+        size, scale = self.curve.edges[-1] - self.curve.edges[0], self.scale
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
         short[jumps] = LOCATED * size
@@ -172,7 +168,7 @@ class TrailingEdge:
         x = np.append(pieces[1:].ravel(), middle)
         if not x.size:
             return knots, x
-        new = self._knots_of(x, self.stick_time(x, knots))
+        new = self._knots_of(x, self._stick_time(x, knots))
         in_middle = Knots._make(values[x.size - middle.size :] for values in new)
         surprise = ~knots.predict(halved, in_middle)
         halves = np.append(knots.x[halved], middle)
@@ -195,11 +191,11 @@ class TrailingEdge:
             knots.outruns(k), knots.stick_between(k, x), np.interp(x, knots.x, knots.stick)
         )
 
-    def stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
+    def _stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
         """Stick times at positions, with the help of knots; NaN where there is none."""
         knots = knots or self.knots
         if knots.x.size < 2:
-            return self.part.search(x)
+            return self.search(x)
         k = knots.interval(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
         out = self._between_knots(knots, x, k, inside & knots.outruns(k))
@@ -207,8 +203,8 @@ class TrailingEdge:
         slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
         slides = slides[self._velocity_at_end(x[slides]) > 0.0]
         unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
-        out[unknown] = self.part.search(x[unknown])
-        return np.where(out <= self.part.until, out, np.nan)
+        out[unknown] = self.search(x[unknown])
+        return np.where(out <= self.until, out, np.nan)
 
     def _between_knots(
         self, knots: Knots, x: np.ndarray, k: np.ndarray, wanted: np.ndarray
@@ -225,7 +221,7 @@ class TrailingEdge:
         for _ in range(12):
             if not todo.size:
                 break
-            earlier, velocity[todo] = velocity[todo], self.part.velocity(x[todo], time[todo])
+            earlier, velocity[todo] = velocity[todo], self.velocity(x[todo], time[todo])
             last = step[todo]
             # Secants follow the first step.
             secant = (earlier - velocity[todo]) / np.where(last == 0.0, np.nan, last)
@@ -252,7 +248,7 @@ class TrailingEdge:
         first = self._first()
         # The knots may have missed one: then they become more.
         while first and (x := self._earlier(first)).size:
-            self.knots = self._with(self.knots, x, self.part.search(x, first.time))
+            self.knots = self._with(self.knots, x, self.search(x, first.time))
             first = self._first()
         return first
 
@@ -281,7 +277,7 @@ class TrailingEdge:
 
     def _earlier(self, first: FirstStick) -> np.ndarray:
         """Positions between the knots that have stuck before the first that the knots show."""
-        knots, curve = self.knots, self.part.curve
+        knots, curve = self.knots, self.curve
         # What begins between two knots comes later than its waves may come to both.
         earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
         slips = curve.arrival(knots.x) < first.time
@@ -293,17 +289,17 @@ class TrailingEdge:
             inner = [first.x] if left < first.x < right else []
             intervals += pairwise([left, *inner, right])
         x = np.array(intervals).reshape(-1, 2).T
-        return stuck_between(self.part, x, first.time, first.x)
+        return stuck_between(self, x, first.time, first.x)
 
     def _minimum(self, left: float, right: float) -> FirstStick | None:
         """The first sticking between two positions, if the edge goes down into the interval."""
 
         def pace(position: float) -> float:
             x = np.array([position])
-            return float(self._knots_of(x, self.stick_time(x)).pace[0])
+            return float(self._knots_of(x, self._stick_time(x)).pace[0])
 
         # Where rounding alone says that it does, the knot itself is the minimum.
         if not pace(left) < 0.0 < pace(right):
             return None
         x = root_between(pace, left, right, xtol=STEP)
-        return FirstStick(float(self.stick_time(np.array([x]))[0]), x)
+        return FirstStick(float(self._stick_time(np.array([x]))[0]), x)
