@@ -15,7 +15,7 @@ from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
 from slippulse.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse.claims.ledger import Ledger, with_texts
-from slippulse.claims.paper import SIMULATIONS, all_claims, written
+from slippulse.claims.paper import SIMULATIONS, all_claims, judged, written
 from slippulse.claims.reading import read_entries, read_text
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.measurement.uncertainty import grid_tables
@@ -160,8 +160,25 @@ def test_one_verdict_at_every_choice_is_the_verdict(over_all):
 
 
 def test_each_claim_of_the_texts_has_a_judge_and_each_judge_a_text():
-    with pytest.raises(ValueError, match=r"claims: .*estimate, .*pulse_slip.*; allowed: the same"):
+    with pytest.raises(ValueError, match=r"claims: .*estimate, .*thin_layer.*; allowed: the same"):
         all_claims(evidence(), {}, [])
+
+
+@pytest.mark.parametrize(
+    ("rule", "reason"),
+    [
+        ({"sweep": ["sweep"]}, "unexpected keyword argument 'sweep'"),
+        ({"sweeps": ["sweeps"], "holds": "left > 0"}, "'sweeps'"),
+        ({"sweeps": ["sweep"], "holds": "lef > 0"}, "name 'lef' is not defined"),
+        ({"sweeps": ["sweep"], "holds": "left >"}, "invalid syntax"),
+    ],
+)
+def test_a_rule_that_fails_is_named(rule, reason):
+    entries = {"always": {"kind": "qualitative", "tolerance": 0.0, "rule": rule}}
+    tables = evidence()
+    tables.entries = entries
+    with pytest.raises(ValueError, match=f"claims: rule of always: .*{reason}; allowed: the keys"):
+        judged(tables, "always")
 
 
 def test_no_claim_compares_a_function_with_itself(project):

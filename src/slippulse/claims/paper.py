@@ -40,10 +40,10 @@ SIMULATIONS = {
     "stress_pulses": ["transition"],
     "undamped_pulses": ["pulse"],
 }
-# The function that judges each claim, by id.
+# What judges a claim by a rule of its entry, by kind.
+RULES: dict[str, Callable[..., Claim]] = {"exact": pulses.equation, "qualitative": pulses.always}
+# The function that judges each other claim, by id.
 CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
-    **dict.fromkeys(pulses.EQUATIONS, pulses.equation),
-    **dict.fromkeys(pulses.ALWAYS, pulses.always),
     "zero_net_stress_change": pulses.zero_net_stress_change,
     "front_speed_moderate_gamma": pulses.front_speed_moderate_gamma,
     "front_arrest_position": transition.front_arrest_position,
@@ -74,7 +74,7 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
 }
 # Texts of an entry that are not in claims.json as they are.
-UNWRITTEN = ("sentences", "doubt")
+UNWRITTEN = ("sentences", "doubt", "rule")
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
@@ -88,15 +88,28 @@ def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) 
 
     ``common`` has, by verdict, why claims have it that are judged over open choices.
     """
-    odd = ", ".join(sorted({*evidence.entries} ^ {*CLAIMS}))
+    without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
+    odd = ", ".join(sorted(without_rule ^ {*CLAIMS}))
     if odd:
         raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.meet)
     where = places_of(evidence.entries, sentences)
     return [
-        written(id, CLAIMS[id](evidence, id), entry, where[id], common)
+        written(id, judged(evidence, id), entry, where[id], common)
         for id, entry in evidence.entries.items()
     ]
+
+
+def judged(evidence: Evidence, id: str) -> Claim:
+    """One claim, by the rule of its entry or by its function; a rule that fails is named."""
+    entry = evidence.entries[id]
+    if "rule" not in entry:
+        return CLAIMS[id](evidence, id)
+    try:
+        return RULES[entry["kind"]](evidence, id, **entry["rule"])
+    except (AttributeError, LookupError, NameError, SyntaxError, TypeError) as error:
+        allowed = "the keys of its kind, with expressions over columns"
+        raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 
 def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping = {}) -> dict:

@@ -3,140 +3,57 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, combinations
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from ..measurement.regime import REGIMES
 from . import rules
 from .evidence import Evidence, agreeing, value_of
 from .kinds import Approximate, Equation, Qualitative
 
-TWO_WAY, STEADY_PULSE = "pulses, two-way", "pulse, one-way, steady"
+TWO_WAY = "pulses, two-way"
 CHANGE, HALF_WIDTH = "largest_velocity_change", "pulse_half_width"
-# A lattice tells the change of a pulse if it is above its uncertainty.
-CHANGED = f"abs({CHANGE}) > uncertainty_{CHANGE}"
 UNDAMPED = "damping_ratio == 0"
-STEADY = "pulse_state == 'steady'"
-ALONE = {"steady_displacement": f"{UNDAMPED} and {STEADY}"}
-# The state of a block at either end of a pulse is judged where blocks are narrow.
-NARROW = {"undamped_pulses": STEADY}
-# Without leaf springs, and at the smallest gamma with them.
-GAMMA_TO_ZERO = {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"}
 # Pulses that meet another pre-stress, and come back from it or not; and those that began in each.
 PERTURBED = ("pulses_across_a_step", "pulses_across_wide_steps", "pulses_perturbed_elsewhere")
 UNPERTURBED = ("any_prestress", "steady_displacement", "steady_elsewhere")
 
-DISPLACEMENT = ["regimes_displacement"]
-STRESS = ["regimes_stress"]
-BEYOND = ["regimes_beyond"]
-ONE_WAY = [regime for regime in REGIMES if regime.startswith("pulse, one-way")]
-LASTING = (TWO_WAY, STEADY_PULSE, "pulse, one-way, growing")
-NO_LASTING_PULSE = [regime for regime in REGIMES if regime not in LASTING]
 
-KEEPS_SLIP = f"slip_variation < {{tolerance}} and regime == {TWO_WAY!r}"
-STEADY_AT_ZERO = f"(beyond == 0 and abs({CHANGE}) <= {{steady}}) or (beyond != 0 and changed != 0)"
-
-
-# A measured quantity, the paper's expression for it, and conditions on runs by simulation.
-EQUATIONS: dict[str, tuple[str, str, Mapping[str, str]]] = {
-    "front_speed": ("front_speed_right", "paper_front_speed_right", GAMMA_TO_ZERO),
-    "pulse_profile": ("pulse_shape_deviation", "0", ALONE),
-    "pulse_peak_velocity": ("pulse_peak_velocity", "paper_pulse_peak_velocity", ALONE),
-    "pulse_slip": ("pulse_slip", "paper_pulse_slip", ALONE),
-    "pulse_width": ("pulse_width", "paper_pulse_width", NARROW),
-    "pulse_acceleration": ("pulse_acceleration", "paper_pulse_acceleration", NARROW),
-    "stress_drop": ("pulse_stress_drop", "2 * left", ALONE),
-}
+def equation(
+    evidence: Evidence, id: str, measured: str, predicted: str, runs: Mapping[str, str]
+) -> Equation:
+    """An equation between columns, by a rule of manuscript/claims.yaml."""
+    tables = [evidence.finest(name, where=where) for name, where in runs.items()]
+    return evidence.equation(id, pd.concat(tables), measured, predicted)
 
 
 class Always(NamedTuple):
-    """A condition that must hold in each run of some sweeps: an expression, or a regime at the end.
-
-    Where the two finest lattices disagree, or ``decidable`` is false, the exact regime decides if
-    ``ends`` are given, else nobody. ``counted`` has further runs to count by regime; ``numbers``
-    are of the first sweep.
-    """
+    """A rule of manuscript/claims.yaml: what must hold in each run of some sweeps."""
 
     sweeps: Sequence[str]
-    where: str
+    where: str = ""
     holds: str = ""
     decidable: str = ""
     ends: Sequence[str] = ()
-    count_regimes: bool = False
     counted: Mapping[str, str] = {}
     numbers: Mapping[str, str] = {}
 
 
-ALWAYS = {
-    # A run tells of the transition if it lasts 1.5 of the paper's T_trans.
-    "symmetric_displacement_pulses": Always(
-        DISPLACEMENT, "left > 0", decidable="duration > 1.5 * paper_transition_time", ends=[TWO_WAY]
-    ),
-    "one_way_pulse_displacement": Always(
-        ["regimes_displacement_asymmetric"],
-        "right > 0",
-        ends=ONE_WAY,
-        count_regimes=True,
-        counted={r"at $\tau_{0,r}=0$, without a verdict": "right == 0"},
-    ),
-    "symmetric_stress_cracks": Always(STRESS, "left == right > 0", ends=["crack-like, two-way"]),
-    # Under held stress a run tells if it lasts 2.6 |x_minus|, as the collapses of figure 5.
-    "one_way_pulse_stress": Always(
-        STRESS,
-        "left < 0 and right == 0",
-        decidable="duration >= 2.6 * exact_balance_distance",
-        ends=[STEADY_PULSE],
-        count_regimes=True,
-        counted={r"at $\tau_{0,r}>0$, without a verdict": "left < 0 < right"},
-    ),
-    "stress_pulse_needs_barrier": Always(
-        STRESS, "(left < 0) == (right < 0)", ends=NO_LASTING_PULSE
-    ),
-    "steady_for_any_prestress": Always(
-        ["any_prestress", "steady_elsewhere"], "0 < left < 1", KEEPS_SLIP
-    ),
-    # Pulses that formed at level 0 meet another, `beyond` (see `meet`).
-    "grows_above_zero": Always(
-        BEYOND, "beyond > 0", "changed == 1 and widened == 1", CHANGED, count_regimes=True
-    ),
-    "decays_below_zero": Always(
-        BEYOND, "beyond < 0", "changed == -1 and widened == -1", CHANGED, count_regimes=True
-    ),
-    # A small perturbation is within 0.03, in units of the friction drop.
-    "small_perturbation_changes_pulse": Always(
-        BEYOND,
-        "0 < abs(beyond) <= 0.03",
-        "changed * beyond > 0 and widened * beyond > 0",
-        CHANGED,
-        numbers={"smallest level": "abs(beyond).where(beyond != 0).min()"},
-    ),
-    "steady_only_at_zero": Always(BEYOND, "", STEADY_AT_ZERO),
-}
-
-
-def equation(evidence: Evidence, id: str) -> Equation:
-    """A row of `EQUATIONS`."""
-    quantity, paper, runs = EQUATIONS[id]
-    tables = [evidence.finest(name, where=where) for name, where in runs.items()]
-    return evidence.equation(id, pd.concat(tables), quantity, paper)
-
-
-def always(evidence: Evidence, id: str) -> Qualitative:
-    """A row of `ALWAYS`."""
-    row = ALWAYS[id]
-    holds = row.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
-    holds = holds or f"regime in {[*row.ends]}"
+def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
+    """A claim that has a rule `Always`."""
+    rule = Always(**keys)
+    holds = rule.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
+    holds = holds or f"regime in {rule.ends}"
     decided = [
-        evidence.agreed(sweep, row.where, holds, row.decidable, row.ends) for sweep in row.sweeps
+        evidence.agreed(sweep, rule.where, holds, rule.decidable, rule.ends)
+        for sweep in rule.sweeps
     ]
-    table = evidence.tables[row.sweeps[0]]
-    further = {words: float(value_of(table, number)) for words, number in row.numbers.items()}
-    counted = {"at the end": row.where, **row.counted} if row.count_regimes else {}
-    for words, where in counted.items():
-        ends = evidence.finest(*row.sweeps, where=where)["regime"].value_counts()
-        further |= {f"{words}: {regime}": float(count) for regime, count in ends.items()}
+    table = evidence.tables[rule.sweeps[0]]
+    further = {words: float(value_of(table, number)) for words, number in rule.numbers.items()}
+    for words, condition in rule.counted.items():
+        regimes = evidence.finest(*rule.sweeps, where=condition)["regime"].value_counts()
+        further |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}
     return Qualitative(decided=[*chain.from_iterable(decided)], further=further)
 
 
