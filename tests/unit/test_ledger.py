@@ -177,7 +177,7 @@ def test_a_rule_that_fails_is_named(rule, reason):
     entries = {"always": {"kind": "qualitative", "tolerance": 0.0, "rule": rule}}
     tables = evidence()
     tables.entries = entries
-    with pytest.raises(ValueError, match=f"claims: rule of always: .*{reason}; allowed: the keys"):
+    with pytest.raises(ValueError, match=f"claims: rule of always: .*{reason}.*; allowed: the"):
         judged(tables, "always")
 
 
