@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from .lattice_state import second_difference
+
 ACCURACY = {"method": "DOP853", "max_step": 0.0125, "rtol": 1e-12, "atol": 1e-13}
 # Events this close are one, as on the two sides of a symmetric chain.
 TOGETHER, ROUNDING = 1e-9, 1e-14
@@ -29,17 +31,17 @@ class Chain:
 
     def __post_init__(self) -> None:
         n = self.pull.size
-        self.slip, self.velocity = np.zeros(n), np.zeros(n)
+        self.slip, self.slip_velocity = np.zeros(n), np.zeros(n)
         self.release_time, self.stick_time = np.full(n, np.nan), np.full(n, np.nan)
         self.sliding = np.zeros(n, dtype=bool)
         self.releases = self.sticks = 0
 
     def elastic(self, slip: np.ndarray) -> np.ndarray:
         """Force of the springs and of the pull; the ends are held."""
-        return np.diff(np.concatenate([[0.0], slip, [0.0]]), 2) - self.leaf * slip + self.pull
+        return second_difference(slip, 1.0) - self.leaf * slip + self.pull
 
     def drag(self, velocity: np.ndarray) -> np.ndarray:
-        return self.damping * np.diff(np.concatenate([[0.0], velocity, [0.0]]), 2)
+        return self.damping * second_difference(velocity, 1.0)
 
     def threshold_force(self, slip: np.ndarray, velocity: np.ndarray) -> np.ndarray:
         return self.elastic(slip) + (self.drag(velocity) if self.release == "total" else 0.0)
@@ -54,12 +56,12 @@ class Chain:
         # A block just released has no velocity yet: only what is beyond rounding is an event.
         first = lambda _time, state: self._margins(state).min() + ROUNDING
         first.terminal, first.direction = True, -1.0
-        self._release(self.threshold_force(self.slip, self.velocity) >= 1.0, 0.0)
+        self._release(self.threshold_force(self.slip, self.slip_velocity) >= 1.0, 0.0)
         time = 0.0
         while time < duration and self.sliding.any():
-            state = np.concatenate([self.slip, self.velocity])
+            state = np.concatenate([self.slip, self.slip_velocity])
             path = solve_ivp(self.rate, (time, duration), state, events=first, **ACCURACY)
-            time, (self.slip, self.velocity) = path.t[-1], np.split(path.y[:, -1].copy(), 2)
+            time, (self.slip, self.slip_velocity) = path.t[-1], np.split(path.y[:, -1].copy(), 2)
             self._apply(time)
         return self
 
@@ -69,14 +71,14 @@ class Chain:
         return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
 
     def _apply(self, time: float) -> None:
-        state = np.concatenate([self.slip, self.velocity])
+        state = np.concatenate([self.slip, self.slip_velocity])
         slip_rate, velocity_rate = np.split(self.rate(time, state), 2)
         force_rate = self.threshold_force(slip_rate, velocity_rate) - self.pull
         margin = self._margins(state)
         stops = self.sliding & (margin <= TOGETHER * np.abs(velocity_rate)) & (velocity_rate < 0.0)
         starts = ~self.sliding & (margin <= TOGETHER * np.abs(force_rate)) & (force_rate > 0.0)
         self.sliding[stops] = False
-        self.velocity[stops] = 0.0
+        self.slip_velocity[stops] = 0.0
         self.stick_time[stops] = time
         self.sticks += int(stops.sum())
         self._release(starts, time)

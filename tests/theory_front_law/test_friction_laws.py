@@ -88,14 +88,20 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
     assert slip == pytest.approx(2.0 * (0.5 + 0.3) / GAMMA, rel=1e-3)
 
 
-def test_laws_that_depend_on_slip_are_refused():
-    law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
-    with pytest.raises(ValueError, match="law: 'slip_weakening'; allowed: laws that depend"):
-        rate_pulse(0.5, GAMMA, 0.1, law)
-
-
-@pytest.mark.parametrize("alpha", [-1.2, -50.0])
-def test_slip_velocity_that_grows_without_bound_is_no_pulse(alpha):
-    law = sp.friction("linear_rate", alpha=alpha)
-    with pytest.raises(ValueError, match=f"'alpha': {alpha}}}; allowed: laws whose slip velocity"):
+@pytest.mark.parametrize(
+    ("law", "refusal"),
+    [
+        (
+            sp.friction("slip_weakening", d_c=0.1, nucleation=2.0),
+            "law: 'slip_weakening'; .* depend",
+        ),
+        (
+            sp.friction("linear_rate", alpha=-1.2),
+            "'alpha': -1.2}; allowed: laws whose slip velocity",
+        ),
+        (sp.friction("linear_rate", alpha=-50.0), "'alpha': -50.0}; allowed: laws whose slip vel"),
+    ],
+)
+def test_laws_without_a_pulse_are_refused(law, refusal):
+    with pytest.raises(ValueError, match=refusal):
         rate_pulse(0.5, GAMMA, 0.1, law)

@@ -8,6 +8,7 @@ import pytest
 import tolerances
 import yaml
 from numpy.polynomial import polynomial as poly
+from numpy.polynomial.legendre import leggauss
 from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.special import j0
@@ -20,6 +21,8 @@ from slippulse.theory.part import Part
 # The algebra of the paper: each formula over the one derived from its equations, at random layers
 # of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
 LAYERS, SEED, DEGREE = 200, 20210501, 4
+# Gauss-Legendre quadrature over the height of a layer, from 0 to 1.
+HEIGHTS, WEIGHTS = 0.5 * np.array(leggauss(DEGREE)) + [[0.5], [0.0]]
 symbol = lambda k, v, b: 1.0 - 4.0 * np.sin(k / 2.0) ** 2 * (1.0 + 1j * b * v * k) / (v * k) ** 2
 second_difference = lambda u: np.roll(u, 1) - 2.0 * u + np.roll(u, -1)
 
@@ -135,13 +138,11 @@ def layer_average(layer, tau, random):
     shear = layer.shear_modulus / layer.thickness**2
     strain = poly.polyder(poly.polyval(x, u))
     curvature = poly.polyval(x, poly.polyder(u, 2, axis=0))
-    nodes, weights = np.polynomial.legendre.leggauss(DEGREE)
-    y = 0.5 * (nodes + 1.0)
-    divergence = layer.modulus * poly.polyval(y, curvature)
-    divergence += shear * poly.polyval(y, poly.polyder(strain))
+    divergence = layer.modulus * poly.polyval(HEIGHTS, curvature)
+    divergence += shear * poly.polyval(HEIGHTS, poly.polyder(strain))
     stretch = layer.modulus * poly.polyval(1.0, poly.polyint(curvature))
     faces = shear * (poly.polyval(1.0, strain) - poly.polyval(0.0, strain))
-    averaged = 0.5 * float(weights @ divergence)
+    averaged = WEIGHTS @ divergence
     return [1.0 + (averaged - (stretch + faces)) / (abs(stretch) + abs(faces))]
 
 
@@ -149,11 +150,9 @@ def displacement_reduction(layer, tau, random):
     """A linear profile under a held top, averaged by quadrature, and (A8), its sign corrected."""
     slip, held, acceleration, *curvatures = random.normal(size=5)
     height, rigidity = layer.thickness, layer.shear_modulus / layer.thickness
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    y = 0.5 * (nodes + 1.0)
-    inertia = layer.density * height * 0.5 * float(weights @ (acceleration * (1.0 - y)))
-    curvature = 0.5 * float(weights @ (curvatures[0] * (1.0 - y) + curvatures[1] * y))
-    stiffness = layer.modulus * height * curvature
+    inertia = layer.density * height * (WEIGHTS @ (acceleration * (1.0 - HEIGHTS)))
+    curvature = curvatures[0] * (1.0 - HEIGHTS) + curvatures[1] * HEIGHTS
+    stiffness = layer.modulus * height * (WEIGHTS @ curvature)
     shear = layer.shear_modulus * (held - slip) / height
     printed = 0.5 * layer.density * height * acceleration
     printed -= 0.5 * layer.modulus * height * sum(curvatures)
