@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from . import style
 from .shared.space_time import draw_halves
-from .style import BLACK, BLUE, CYCLE, GREY, MARKERS, OPEN, PAGE, Look
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, Look
 
 NEEDS = {"studies": ["rate_dependence"]}
 table = style.as_given
@@ -40,9 +40,9 @@ def draw(table: pd.DataFrame) -> Figure:
     maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact")
     rows = roles["arrest"][roles["arrest"]["dx"] == roles["arrest"]["dx"].min()]
     groups = rows.groupby("rate_strengthening")
-    for colour, marker, (alpha, line) in zip(CYCLE, MARKERS, groups, strict=False):
+    for marker, (alpha, line) in zip(MARKERS, groups, strict=False):
         look: Look = OPEN | {"label": rf"$\alpha = {alpha:g}$"}
-        arrest.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
+        arrest.plot(line["time"], line["largest_velocity"], marker, color=GREY, **look)
     theory = roles["asymptote"]
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
     arrest.plot(line["time"], line["largest_velocity"], "--", label="diffusion", **LINES)
