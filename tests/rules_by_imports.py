@@ -60,17 +60,9 @@ def module_file(name: str) -> str:
 
 @cache
 def imports() -> grimp.ImportGraph:
-    """Graph of imports, in which a module imports the packages that it is in.
-
-    Users of a package that loads its modules when they are asked for import them all.
-    """
+    """Graph of imports, in which a module imports the packages that it is in."""
     graph = grimp.build_graph("slippulse", cache_dir=None)
     modules = graph.modules - {"slippulse"}
-    for name in modules:
-        if "def __getattr__(" in (PROJECT / module_file(name)).read_text(encoding="utf-8"):
-            for user in graph.find_modules_that_directly_import(name):
-                for inside in graph.find_descendants(name):
-                    graph.add_import(importer=user, imported=inside)
     for name in modules:
         graph.add_import(importer=name, imported=name.rpartition(".")[0])
     return graph

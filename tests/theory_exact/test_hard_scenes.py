@@ -99,6 +99,19 @@ def test_an_edge_as_steep_as_waves_is_slow_and_not_a_jump_in_each_of_its_pieces(
     assert finer.time == pytest.approx(limit.time, rel=NUDGED)
 
 
+@pytest.mark.parametrize("number", [0, 96])
+def test_a_pulse_ends_at_the_trailing_edge_next_to_its_front(number):
+    """Farther behind blocks slide that belong to another pulse."""
+    keys = scene(number)
+    ruptures = keys.rupture(), replace(keys, duration=1.1 * keys.duration).rupture()
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        one, two = (rupture.pulse_width(keys.duration, side) for rupture in ruptures)
+        assert one == pytest.approx(two, rel=NUDGED)
+        front = ruptures[1].fronts_at(keys.duration, ruptures[1].first_stick.x)[side == "right"]
+        inside = front - sign * np.linspace(0.01, 0.99, 50) * one
+        assert not np.any(ruptures[1].stick_time(inside) <= keys.duration)
+
+
 @pytest.mark.parametrize("number", [39, 53, 59])
 def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monkeypatch):
     """The scale of a part is a fraction of the duration then."""

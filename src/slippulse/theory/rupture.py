@@ -241,7 +241,16 @@ class Rupture:
             stick = np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)
             return float(stick) - time
 
-        trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
+        # Of several trailing edges that of the pulse is next to its front.
+        knots = np.concatenate([part.knots.x for part in self._solved])
+        knots = np.append(knots, -knots) if self.prestress.symmetric else knots
+        inner = np.append(knots[(knots - x) * (knots - front) < 0.0], x)
+        inner = inner[np.argsort(np.abs(inner - front))]
+        first = int(np.argmax(self._stick(inner) <= time))
+        ahead = inner[first - 1] if first else front
+        trailing = front
+        if late(front) > 0.0:
+            trailing = root_between(late, float(inner[first]), float(ahead), xtol=1e-11)
         unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
         return np.nan if unknown else abs(front - trailing)
 
