@@ -93,8 +93,6 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     exact = float(exact_speed(LEVEL, RATIO))
     error = abs(fit_front(simulate(scene), window)[0] / exact - 1.0)
     seconds = best(lambda: solve_on_lattice(scene), REPEATS)
-    longer = _scene(2.0 * DURATION, DX, accuracy)
-    twice = best(lambda: solve_on_lattice(longer), REPEATS)
     step = error / textbook_error(window)
     blocks = int(2.0 * exact * DURATION / DX)
     needed = DURATION / (step * DX)
@@ -102,7 +100,6 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     return {
         "seconds": seconds,
         "front_speed_error": error,
-        "cost_of_twice_the_duration": twice / seconds,
         "textbook_step_at_equal_error": step,
         "textbook_steps": needed,
         "textbook_seconds_a_step": a_step,

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-import slippulse as sp
 from slippulse.figures import fig01_system_sketch
 from slippulse.figures import fig06_burridge_knopoff as figure
 from slippulse.studies import damage_zone
@@ -107,23 +106,6 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     assert f"{first['left'].iloc[0]:g}" in strip.get_title()
 
 
-@pytest.mark.parametrize("name", figure.PITCH)
-def test_instants_are_the_start_a_crack_the_first_stick_and_later(drawn, name):
-    data, rows, _ = drawn
-    run = sp.point(data[f"burridge_knopoff_{name}"], 0)
-    (start, first), (crack, _), (stick, index), *_, (_, last) = figure.instants(run)
-    assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
-    slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
-    stuck = (slip > 0.0) & (velocity <= 0.0)
-    assert not stuck[:index].any() and stuck[index].any()
-    times = rows[rows["panel"] == name].groupby("row")["time"].first()
-    assert (np.diff(times) > 0.0).all()
-    assert times.iloc[-1] == pytest.approx(run["sample_time"].values[last])
-    low, high = figure.window(run)
-    slipped = run["sample_position"].values[slip[last] > 0.0]
-    assert low < slipped.min() and slipped.max() < high
-
-
 def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(drawn):
     _, rows, panels = drawn
     last = rows[(rows["panel"] == "displacement") & (rows["instant"] == "two pulses")]
@@ -140,10 +122,3 @@ def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_release
     assert (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
     frames = [patch for patch in panels["stress"][0].patches if patch.get_linewidth() > 1.0]
     assert len(frames) == part["row"].nunique()
-
-
-def test_a_run_without_a_stick_is_called_a_crack():
-    scene = sp.Scene("stress", sp.Prestress(0.3, 0.3), 4.0, dx=1.0, resolved_blocks=1)
-    samples = sp.Samples(np.linspace(0.0, 4.0, 21), np.linspace(-20.0, 20.0, 41))
-    names = [name for name, _ in figure.instants(sp.simulate(scene, samples))]
-    assert names == ["start", "crack", "crack"]

@@ -225,14 +225,8 @@ def test_lattices_a_tenth_away_from_the_line_where_pulses_cease_to_stick_are_on_
     assert (late["largest_velocity"] / late["largest_velocity_limit"]).between(0.8, 1.1).all()
 
 
-def test_one_dimension_stays_away_from_the_plane_as_pulses_become_wide(draw):
-    drawn = draw("study_layer")
-    ratios = select(drawn.table, part="ratio")
-    widths = select(ratios, source="paper", quantity="pulse_width")
-    assert len(widths) == 4 and (widths["ratio"] > 1.4).all()
-    assert select(ratios, source="strip")["ratio"].between(1.0, 1.02).all()
-    field = select(drawn.table, part="field")
-    # The bottom slides, the top is held, and ahead of the compressional wave all is at rest.
+def test_the_bottom_slides_the_top_is_held_and_nothing_moves_ahead_of_the_fastest_wave(draw):
+    field = select(draw("study_layer").table, part="field")
     assert field["velocity"].abs().max() > 1.0
     assert select(field, y=1.0)["velocity"].abs().max() == 0.0
     assert field.query("x > time + 2.1")["velocity"].abs().max() < 0.01

@@ -89,14 +89,6 @@ def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp
     assert "pre-stress AVATAR" in pdf.pages[0].extract_text()
 
 
-@pytest.mark.parametrize("rows", ["a", "abc;def", "aab;ccc"])
-def test_every_panel_has_a_letter_in_the_order_of_reading(rows):
-    figure, panels = style.new_panels(COLUMN, 2.0, rows)
-    assert panels == figure.axes
-    letters = [f"({letter})" for letter in "abcdef"[: len(panels)]]
-    assert [axes.get_title(loc="left") for axes in panels] == letters
-
-
 def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):
     outputs = {ending: tmp_path / f"sketch.{ending}" for ending in ("csv", "png", "pdf")}
     settings = {"figure": "fig01_system_sketch", "altered": ""}

@@ -13,7 +13,6 @@ import tokenize
 from functools import partial
 from types import SimpleNamespace
 
-import pandas as pd
 import pytest
 import yaml
 from PIL import Image
@@ -23,7 +22,6 @@ from slippulse.claims.ledger import KINDS, Ledger
 from slippulse.claims.reading import REASONS, claims_of, coverage
 from slippulse.report import texts
 from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
-from slippulse.report.tables import sticking
 from slippulse.report.texts import Caption, read_captions, read_errata
 
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
@@ -232,17 +230,6 @@ def test_every_derivation_says_where_it_starts_and_is_checked(source, project):
     assert len(referred) >= 4
     for name in referred:
         assert [title for title in titles if title.startswith(name)], name
-
-
-def test_the_table_of_stick_times():
-    values = {"release_time": (0.0, None), "stick_time": (3.93122803, None)}
-    values |= {"final_slip": (1.94166, 0.0)}
-    table = pd.DataFrame({"x": [0.0, 9.0]} | values).melt("x", var_name="quantity")
-    assert sticking(table).splitlines()[2:] == [
-        "| 0 | 0 | 3.9312 | 1.9417 |",
-        "| 9 | not measured | not measured | 0 |",
-    ]
-    assert sticking(table.assign(value=float("nan"))) == ""
 
 
 def in_code(code: str) -> list[str]:

@@ -8,7 +8,7 @@ from scipy.special import j0, jn_zeros
 
 import slippulse as sp
 from slippulse.model.balance import integral
-from slippulse.theory import Rupture, front_speed, uniform_transition_time
+from slippulse.theory import Rupture, uniform_transition_time
 from slippulse.theory.fronts import fast_fronts
 from slippulse.theory.part import Part
 
@@ -129,28 +129,6 @@ def test_slip_and_strain_belong_to_the_velocity_and_obey_the_equation(name):
         u = rupture.slip(x + h * np.array([-1, 0, 1, 0, 0]), time + h * np.array([0, -1, 0, 1, 0]))
         balance = (u[1] + u[3] - u[0] - u[2]) / h**2 + gamma * u[4]
         assert balance == pytest.approx(float(profile(x)), abs=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("ratio", "level", "then"), [(0.0, 0.3, 0.6), (0.0, 0.6, 0.35), (0.1, 0.5, 0.7)]
-)
-def test_the_pulse_is_steady_exactly_beyond_its_memory(ratio, level, then):
-    gamma, step = 0.65, 6.0
-    speed = float(front_speed(then, ratio))
-    pulse = sp.theory.steady_pulse(then, gamma, 0.0, speed)
-    bound = pulse.width / (speed - 1.0)
-    profile = sp.Prestress(level, level, steps=((step, then),))
-    rupture = Rupture(profile, gamma, ratio, "total", (step + bound) * 1.3 + 6.0)
-    x = step + bound * np.array([0.7, 1.001, 1.05, 1.2])
-    assert rupture.limit is None or np.all(rupture.stick_time(x[1:]) < rupture.horizon(x[1:]))
-    delay = rupture.stick_time(x) - rupture.release_time(x) - pulse.width / speed
-    assert np.abs(delay[1:]) == pytest.approx(0.0, abs=1e-9)
-    assert abs(delay[0]) > 1e-6
-    assert rupture.final_slip(x)[1:] == pytest.approx(pulse.slip, abs=1e-9)
-    times = rupture.release_time(x[1]) + np.linspace(0.05, 0.95, 9) * pulse.width / speed
-    expected = pulse.profile(-speed * (times - rupture.release_time(x[1])))[:2]
-    slip, velocity = rupture.slip(x[1], times), rupture.slip_velocity(x[1], times)
-    assert np.array([slip, velocity]) == pytest.approx(np.array(expected), abs=1e-9)
 
 
 @pytest.mark.parametrize("tau0", [1e-320, 1e-5, 3e-3, 1e-2])

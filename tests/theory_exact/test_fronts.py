@@ -75,15 +75,3 @@ def test_the_depth_scales_with_the_leaf_springs_and_falls_with_the_level():
     depths = [barrier_depth(0.4, level, 0.65, 0.1) for level in (-0.1, -0.3, -1.0, -3.0)]
     assert np.all(np.diff(depths) < 0.0)
     assert sp.theory.barrier_depth_estimate(0.5, -0.5, 0.65) == pytest.approx(2.1328, abs=1e-4)
-
-
-@pytest.mark.parametrize("fraction", [0.95, 0.99, 1.01, 1.1])
-def test_a_barrier_is_passed_if_and_only_if_it_is_shorter_than_the_depth(fraction):
-    length = fraction * barrier_depth(0.5, -0.5, 0.65, 0.1)
-    profile = sp.Prestress(0.5, 0.5, steps=((14.0, -0.5), (14.0 + length, 0.5)))
-    rupture = Rupture(profile, 0.65, 0.1, "total", 19.0)
-    time = rupture.release_time([14.0 + length - 1e-6, 14.0 + length + 0.5])
-    assert np.isfinite(time[1]) == (fraction < 1.0)
-    if fraction < 1.0:
-        # It outruns the waves again at once.
-        assert time[1] - time[0] == pytest.approx(0.5 / front_speed(0.5, 0.1), abs=1e-4)

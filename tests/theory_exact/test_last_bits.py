@@ -4,7 +4,7 @@ from itertools import chain
 
 import numpy as np
 import pytest
-from nudges import nudged
+from theory_exact.conftest import nudged
 from tolerances import END, NUDGED, NUDGED_DOUBLE
 
 from slippulse.model.prestress import Prestress

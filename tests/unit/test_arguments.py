@@ -58,9 +58,7 @@ WITHOUT_SPRINGS = GOOD | {"gamma": 0.0}
 SCENES = {
     "boundary: 'strain'; allowed: displacement, stress": {"boundary": "strain"},
     "gamma: 0.65; allowed: 0 or left out under boundary 'stress'": {"boundary": "stress"},
-    "gamma: nan; allowed: 0 or left out": {"boundary": "stress", "gamma": math.nan},
     "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
-    "gamma: 1e+200": {"gamma": 1e200},
     "beta: -0.001; allowed: a finite number and >= 0": {"beta": -1e-3},
     "dx: 0.0; allowed: a finite number and > 0": {"dx": 0.0},
     "prestress.width: 1.0; allowed: >= dx = 1.5": {"dx": 1.5},
@@ -73,7 +71,6 @@ SCENES = {
     "max_step: 0.0; allowed: a finite number and > 0": {"max_step": 0.0},
     "friction_ratio: -0.1; allowed: a finite number and >= 0": {"friction_ratio": -0.1},
     "resolved_blocks: 0; allowed: a whole number and >= 1": {"resolved_blocks": 0},
-    "resolved_blocks: 1.5; allowed: a whole number and >= 1": {"resolved_blocks": 1.5},
     "half_lattice: 'no'; allowed: a bool": {"half_lattice": "no"},
     "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
     "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip runs": linear(-1.62),
@@ -99,12 +96,10 @@ EXACT_SCENES = {
 }
 PRESTRESSES = {
     "prestress.left: 1.2; allowed: a finite number and < 1": {"left": 1.2},
-    "prestress.right: 1.0; allowed: a finite number and < 1": {"right": 1.0},
     "prestress.width: 0.0; allowed: a finite number and > 0": {"width": 0.0},
     "prestress.steps: [0.0]; allowed: different positions": {"steps": ((0.0, 0.3),)},
     "prestress.steps: ((1.0,),); allowed: a list of [position, level]": {"steps": ((1.0,),)},
     "prestress.steps: 3.0; allowed: a list of [position, level]": {"steps": 3.0},
-    "prestress.steps: array(0.5); allowed: a list of": {"steps": np.array(0.5)},
     "prestress.steps position: inf; allowed: a finite number": {"steps": ((math.inf, 0.1),)},
     "prestress.steps level: 1.2; allowed: a finite number and < 1": {"steps": ((30.0, 1.2),)},
     "prestress.bumps width: 0.0; allowed: a finite number and > 0": {"bumps": ((1.0, 0.1, 0.0),)},
@@ -114,7 +109,6 @@ PRESTRESSES = {
 ATTRIBUTES = {
     "order: 4.7; allowed: 3, 4, 5, 6, 7, 8": {"order": 4.7},
     "half_lattice: 'no'; allowed": {"half_lattice": "no"},
-    "dx: '0.1'; allowed: a finite number": {"dx": "0.1"},
     "steps_and_bumps: '{'; allowed": {"steps_and_bumps": "{"},
 }
 RUPTURES = {
@@ -130,13 +124,10 @@ RUPTURES = {
     },
     "-0.01; allowed: >= 0 without leaf springs, or": {"rate_strengthening": -0.01, "gamma": 0.0},
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
-    "refinement: 1000; allowed: a whole number and >= 1": {"refinement": 1000},
 }
 SETTINGS = {
     "accuracy: 0.5; allowed: a finite number and >= 0.0001 and <= 0.1": {"accuracy": 0.5},
-    "accuracy: 1e-06; allowed: a finite number and >= 0.0001": {"accuracy": 1e-6},
     "damping_ratio: 3.0; allowed: a finite number and >= 0 and <= 1": {"damping_ratio": 3.0},
-    "damping_ratio: -1.0; allowed: a finite number and >= 0": {"damping_ratio": -1.0},
     "boundary: 'free'; allowed: displacement, stress": {"boundary": "free"},
     "release: 'both'; allowed: total, elastic": {"release": "both"},
     "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
@@ -149,7 +140,6 @@ SAMPLES = {
     "not increasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
     "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
-    "samples.positions: inf; allowed: a finite number": ([0.0, 1.0], [math.inf]),
 }
 
 recorded_sweep = lambda name: sp.run_sweep([TINY], record=(name,))
@@ -163,7 +153,6 @@ CALLS = [
     (TOO_LATE, sp.simulate, TINY, LATE),
     (TOO_LATE, sp.simulate, EXACT, LATE),
     (TOO_LATE, sp.run_sweep, [TINY], [LATE]),
-    (TOO_LATE, sp.run_sweep, [EXACT], [LATE]),
     ("allowed: one run; point(sweep, index)", sp.measure, SWEEP),
     ("allowed: a Dataset that simulate returned", sp.measure, TINY),
     ("allowed: a whole run, without blocks", sp.measure, RUN.isel(x=slice(None, None, 2))),
@@ -174,7 +163,6 @@ CALLS = [
     ("allowed: 'continuum' for all, or for none", sp.run_sweep, [TINY, EXACT]),
     ("record: 'samples' without samples; allowed: Samples", recorded_sweep, "samples"),
     ("record: ('x',); allowed: a list of fronts, fields, samples", recorded_sweep, "x"),
-    ("index: -1; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, -1),
     ("index: 2; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, 2),
     ("allowed: a Dataset that run_sweep returned", sp.point, sp.simulate(EXACT), 0),
     ("sweep: 'x.nc'; allowed: a Dataset", sp.point, "x.nc", 0),
@@ -182,7 +170,6 @@ CALLS = [
     ("allowed: numbers of blocks whose sum", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: Dataset; allowed: a Dataset that simulate returned", sp.plot, SWEEP),
     ("attributes: 3; allowed: a mapping", sp.Scene.from_attributes, 3),
-    ("tau0: 0.0; allowed: a finite number and > 0 and < 1", theory.front_speed, 0.0, 0.1),
     ("tau0: 1.0; allowed: a finite number and > 0 and < 1", theory.front_speed, [0.5, 1.0], 0.1),
     (LARGEST, theory.front_speed, 0.5, -1.0),
     ("damping_ratio: inf; allowed: a finite number", theory.front_speed, 0.5, [0.1, math.inf]),
@@ -190,12 +177,9 @@ CALLS = [
     ("shapes (2,) and (3,); allowed", theory.front_speed, [0.1, 0.2], [0.1, 0.2, 0.3]),
     ("damping_ratio: {}; allowed: finite numbers", theory.prestress_for_speed, 1.2, {}),
     ("speed: 1.0; allowed: a finite number and > 1 and <", theory.prestress_for_speed, 1.0, 0.1),
-    ("speed: 1e+200; allowed", theory.prestress_for_speed, 1e200, 0.1),
     (SLOW, theory.lattice_front_speed, 0.3, 1.0, 1.0, 0.1),
     ("tau0: 0.33; allowed: > 0.336545, values", theory.lattice_front_speed, 0.33, 0.5, 1.0, 3.0),
     ("tau0: 0.5; allowed: > 1", theory.lattice_front_speed, 0.5, 1e300, 1e300),
-    ("dx: 0.0; allowed", theory.lattice_front_speed, 0.5, 1.0, 0.0),
-    ("gamma: 0.0; allowed", theory.lattice_front_speed, 0.5, 0.0, 1.0),
     ("tau0: 0.3; allowed: values whose front outruns", theory.continuum_front_speed, 0.3, 2.0, 0.3),
     ("beta: 0.0; allowed", theory.continuum_front_speed, 0.3, 2.0, 0.0),
     ("position: -100; allowed", CRACK.time_at, -100),
@@ -206,7 +190,6 @@ CALLS = [
     ("front speed at tau0 = 0.999999999", theory.barrier_depth, 1 - 1e-9, -0.5, 0.65),
     ("tau_barrier: 0.1; allowed", theory.barrier_depth, 0.5, 0.1, 0.65),
     ("tau_barrier: -1e-05; allowed", theory.barrier_depth, 0.5, -1e-5, 0.65),
-    ("gamma: 0.0; allowed", theory.barrier_depth, 0.5, -0.1, 0.0),
     ("tau_barrier: 0.5; allowed", theory.barrier_depth_estimate, 0.5, 0.5, 0.65),
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
     ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),

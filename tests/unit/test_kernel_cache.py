@@ -76,9 +76,3 @@ def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(tmp_pa
     textbook.unlink()
     run_with(tmp_path, COMPILE_ALL)
     assert {name for name, time in times().items() if time != kernels[name]} == {textbook.name}
-
-
-def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
-    """The pipeline runs so under a debugger."""
-    run_with(tmp_path, COMPILE_ALL, NUMBA_DISABLE_JIT="1")
-    assert not list(tmp_path.rglob("*.nbc"))

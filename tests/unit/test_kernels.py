@@ -47,7 +47,6 @@ STOPS = {
     "none": (NO_DIP, 0.9, ()),
     # Released at the end of the last step: the acceleration is the rounding of the stress.
     "just released": ([0.0, -1e-16, 0.0, 3e-14, 0.0], 1.0, ()),
-    "just released, faster": ([0.0, -1e-16, 0.0, 3e-13, 0.0], 1.0, ()),
 }
 
 

@@ -272,13 +272,6 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     assert agreeing([True, None, False], [True, None, True]) == [True, None, None]
 
 
-def test_a_qualitative_claim_counts_runs():
-    claim = Qualitative(decided=[*answers(37, 0, 2), np.bool_(True)]).written()
-    assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
-    assert claim["flips_at"] == []
-    assert Qualitative(decided=np.array([True, False])).verdict() == NO
-
-
 def test_what_must_hold_besides_decides_at_every_tolerance():
     """So a claim that fails by its second condition has no tolerance at which it is reproduced."""
     numbers = {"deviations": np.array([0.1]), "median": (0.1, 0.001)}

@@ -2,18 +2,15 @@
 
 import pytest
 from pytest import approx
+from verification.test_friction_laws import EXAMPLES
 
 from slippulse import Prestress, friction, theory
 from slippulse.model.run import Run
 from slippulse.predict.one_run import SETTINGS
 from slippulse.steps.predict import TOPICS, predictions
 
-OTHERS = {
-    "bounded_rate": {"limit": 0.2, "v_0": 0.1},
-    "rate_weakening": {"slope": 0.2, "limit": 0.1},
-    "slip_weakening": {"d_c": 0.1, "nucleation": 2.0},
-    "exponential_weakening": {"d_c": 0.1, "nucleation": 2.0},
-}
+# Theory knows the others.
+OTHERS = EXAMPLES.keys() - {"coulomb", "linear_rate"}
 
 
 def predicted(*laws):
@@ -24,12 +21,12 @@ def predicted(*laws):
     return predictions(TOPICS, runs, SETTINGS)
 
 
-@pytest.mark.parametrize("law", OTHERS)
+@pytest.mark.parametrize("law", sorted(OTHERS))
 def test_no_theory_is_named_that_ignores_the_friction_of_a_run(law):
-    table = predicted(friction("coulomb"), friction(law, **OTHERS[law]))
+    table = predicted(friction("coulomb"), friction(law, **EXAMPLES[law]))
     assert table.loc[0].equals(predicted(friction("coulomb")).loc[0])
     assert table.loc[1].isna().all()
-    assert predicted(friction(law, **OTHERS[law])).isna().all(axis=None)
+    assert predicted(friction(law, **EXAMPLES[law])).isna().all(axis=None)
 
 
 def test_a_rate_term_changes_pulses_leaves_fronts_and_has_no_predicted_transition():

@@ -125,16 +125,6 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
     assert not (folder / ".venv").exists()
 
 
-@pytest.mark.parametrize(("folder", "said"), [([], "usage: "), (["Makefile"], "Makefile: ")])
-def test_the_reference_says_in_one_line_how_it_is_used(project, monkeypatch, capsys, folder, said):
-    monkeypatch.chdir(project)
-    monkeypatch.setattr(sys, "argv", ["reference", *folder])
-    with pytest.raises(SystemExit) as ended:
-        runpy.run_path("docs/reference.py", run_name="__main__")
-    text = capsys.readouterr().err.strip() or ended.value.code
-    assert said in text and "\n" not in text
-
-
 @pytest.mark.parametrize("text", ODD_NOTES)
 def test_an_odd_note_on_the_last_run_counts_as_absent(project, tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
