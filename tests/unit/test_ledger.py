@@ -15,7 +15,7 @@ from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
 from slippulse.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse.claims.ledger import Ledger, with_texts
-from slippulse.claims.paper import SIMULATIONS, all_claims, judged, written
+from slippulse.claims.paper import SIMULATIONS, all_claims, claim_of, written
 from slippulse.claims.reading import read_entries, read_text
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.measurement.uncertainty import grid_tables
@@ -178,7 +178,7 @@ def test_a_rule_that_fails_is_named(rule, reason):
     tables = evidence()
     tables.entries = entries
     with pytest.raises(ValueError, match=f"claims: rule of always: .*{reason}.*; allowed: the"):
-        judged(tables, "always")
+        claim_of(tables, "always")
 
 
 def test_no_claim_compares_a_function_with_itself(project):

@@ -95,12 +95,12 @@ def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) 
     evidence.assign("regimes_beyond", pulses.meet)
     where = places_of(evidence.entries, sentences)
     return [
-        written(id, judged(evidence, id), entry, where[id], common)
+        written(id, claim_of(evidence, id), entry, where[id], common)
         for id, entry in evidence.entries.items()
     ]
 
 
-def judged(evidence: Evidence, id: str) -> Claim:
+def claim_of(evidence: Evidence, id: str) -> Claim:
     """One claim, by the rule of its entry or by its function; a rule that fails is named."""
     entry = evidence.entries[id]
     if "rule" not in entry:
