@@ -1,29 +1,57 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
+# Jobs that share a study, where it is divided.
+STUDY_CHUNKS = {"layer_map": config["figures"]["study_layer"].get("chunks", 1)}
+
 for study, needs in STUDY_NEEDS.items():
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
     reached = [scheme for scheme in KERNELS if KERNELS[scheme] in sources(f"studies.{study}")]
+    values = selected(config, needs.get("settings", ()), {"sweeps": swept})
+    count = STUDY_CHUNKS.get(study, 1)
+    chunks = {f"{study}/{number}-of-{count}": (number, count) for number in range(1, count + 1)}
 
-    rule:
-        name:
-            f"study_of_{study}"
-        input:
-            environment,
-            **inputs_of(needs),
-            kernels=made("kernels", reached),
-        output:
-            table=f"results/studies/{study}.csv",
-        log:
-            f"results/logs/study_of_{study}.log",
-        priority: 2
-        params:
-            step="run_study",
-            study=study,
-            values=selected(config, needs.get("settings", ()), {"sweeps": swept}),
-        message:
-            f"Studying {study}"
-        run:
-            run_step(rule, wildcards, input, output, params, threads, log)
+    for part, chunk in chunks.items() if count > 1 else [(study, None)]:
+
+        rule:
+            name:
+                f"study_of_{part.replace('/', '_').replace('-', '_')}"
+            input:
+                environment,
+                **inputs_of(needs),
+                kernels=made("kernels", reached),
+            output:
+                table=f"results/studies/{part}.csv",
+            log:
+                f"results/logs/study_of_{part}.log",
+            priority: 2
+            params:
+                step="run_study",
+                study=study,
+                values=values | ({"chunk": [*chunk]} if chunk else {}),
+            message:
+                f"Studying {part}"
+            run:
+                run_step(rule, wildcards, input, output, params, threads, log)
+
+    if count > 1:
+
+        rule:
+            name:
+                f"study_of_{study}"
+            input:
+                environment,
+                chunks=made("studies", chunks),
+            output:
+                joined=f"results/studies/{study}.csv",
+            log:
+                f"results/logs/study_of_{study}.log",
+            params:
+                step="join",
+                kind="studies",
+            message:
+                f"Joining the chunks of {study}"
+            run:
+                run_step(rule, wildcards, input, output, params, threads, log)
 
 
 # A figure is drawn from its table (CSV) alone.

@@ -64,6 +64,7 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "thin_layer": pulses.thin_layer,
     "layer_regimes": layer.layer_regimes,
     "layer_width": layer.layer_width,
+    "layer_stability": layer.layer_stability,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
     "published_space_time_figure": space_time_figure.left,
