@@ -1,4 +1,4 @@
-"""Pulses of the layer in the plane: what sets speed, width and slip, and whether they are stable."""
+"""Pulses of the layer in the plane: what sets speed, width and slip, and which are stable."""
 
 import numpy as np
 import pandas as pd

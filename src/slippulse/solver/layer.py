@@ -43,8 +43,8 @@ class LayerScene:
     nucleation: float = 2.0  # friction is 0 for |x| <= this from t = 0 on
     top: str = "held"  # normal displacement, or "free": no change of normal stress
     coupling: float = 0.0  # friction coefficient mu of a strength - mu s_yy that follows pressure
-    # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. That
-    # alters no event at x until the time x + trail, since no wave is faster.
+    # Columns farther than this behind the compressional wave from x = 0 are no longer advanced.
+    # That alters no event at x until the time x + trail, since no wave is faster.
     trail: float = math.inf
 
     def __post_init__(self) -> None:

@@ -29,8 +29,8 @@ LEVEL, LEVELS, LEVELS_AT = 0.8, (0.5, 0.65, 0.95), 0.42
 # Half of the length without friction and the duration at GAMMA. All lengths and times of a scene
 # are multiplied by sqrt(GAMMA/gamma), as those of the paper's pulses are.
 NUCLEATION, DURATION = 2.0, 48.0
-# Places at which a pulse is measured at GAMMA, each over half of NUCLEATION on both sides, its speed
-# over all of it: the last two show whether it has settled.
+# Places at which a pulse is measured at GAMMA, each over half of NUCLEATION on both sides, and its
+# speed over all of it: the last two show whether it has settled.
 PLACES = (6.0, 13.0, 16.0)
 # The same for other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
@@ -62,8 +62,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Rows of a run at its places by part, beside one dimension (pulse), and the part field.
 
     Parts: pulse (held displacement), patch (the same until the length without friction has stuck),
-    step (a pulse enters another pre-stress), free (its top free to rise), coupled (strength by normal
-    stress), crack and barrier (held stress).
+    step (a pulse enters another pre-stress), free (its top free to rise), coupled (strength by
+    normal stress), crack and barrier (held stress).
     """
     rows = []
     for gamma in GAMMAS:
