@@ -105,6 +105,14 @@ def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(l
     )
 
 
+def test_a_front_into_a_barrier_runs_for_ever_at_a_speed_below_that_of_waves():
+    exact, times = rupture(-0.3, 0.9, 0.0, 400.0), np.array([300.0, 400.0])
+    left, right = np.diff([exact.fronts_at(time) for time in times], axis=0)[0] / np.diff(times)
+    ratio = 0.9 / 0.3
+    assert -left == pytest.approx(ratio / (ratio + 1.0 + 1.0 / right), rel=2e-3)
+    assert regime(-0.3, 0.9, 0.0) == "crack-like, one front slow"
+
+
 @pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.02, 0.9), (0.3, 0.3)])
 def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_are_not_negative(
     left, right

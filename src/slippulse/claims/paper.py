@@ -79,9 +79,13 @@ UNWRITTEN = ("sentences", "doubt", "rule")
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
-EMPTY |= {"beyond": False, "remark": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict.fromkeys(
-    ("predicted", "measured", "uncertainty", "deviation")
-)
+EMPTY |= {
+    "beyond": False,
+    "remark": False,
+    "flips_at": [],
+    "at_earlier": "",
+    "asked": "",
+} | dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
 
 
 def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
