@@ -3,4 +3,7 @@
 from .shared.scaling import damping_figure, transition_table
 
 draw, table = damping_figure, transition_table
-NEEDS = {"measured": {"damping_displacement": ["transition"]}}
+NEEDS = {
+    "measured": {"damping_displacement": ["transition"]},
+    "uncertainties": ["damping_displacement"],
+}

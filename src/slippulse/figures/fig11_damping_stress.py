@@ -3,4 +3,4 @@
 from .shared.scaling import damping_figure, transition_table
 
 draw, table = damping_figure, transition_table
-NEEDS = {"measured": {"damping_stress": ["transition"]}}
+NEEDS = {"measured": {"damping_stress": ["transition"]}, "uncertainties": ["damping_stress"]}

@@ -60,6 +60,7 @@ def draw(table: pd.DataFrame) -> Figure:
             axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
         axes.set(xscale="log", yscale="log", xlabel="stencil passes over a block")
         axes.set(ylabel=f"relative error of {title}", title=boundary)
+        axes.set_ylim(None, 2.5 * rows["error"].max())
     # On dx/(n dt) fronts lock.
     rows = table[table["part"] == "locking"]
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
