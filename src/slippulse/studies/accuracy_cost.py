@@ -1,7 +1,8 @@
 """Error against cost: what each scheme, order, step and spacing buys, the presets among them.
 
 Cost is counted, not timed: the number of stencil passes over a block does not depend on the
-machine. The log has the seconds of the presets. The exact solution is sampled at the spacing of the textbook scheme.
+machine. The log has the seconds of the presets. The exact solution is sampled at the spacing of the
+textbook scheme.
 """
 
 import math

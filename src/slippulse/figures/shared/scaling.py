@@ -73,7 +73,7 @@ def ratio_inset(
 
 
 def draw_ratio(axes: Axes, runs: pd.DataFrame, quantity: str, across: str, line: str) -> None:
-    """Draw measured divided by predicted over ``across``: runs with bars, exact lines by ``line``."""
+    """Draw measured over predicted against ``across``: runs with bars, exact lines by ``line``."""
     axes.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
     for value, group in runs.groupby(line):
         group = group.sort_values(across)
