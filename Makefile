@@ -10,8 +10,12 @@ TARGET ?=
 ALLOW_LARGE ?=
 AGAINST ?=
 KILLS ?= 24
-# The options go through the environment: no value is read as a command.
-export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
+# No option is read as a command: make would expand $(shell ...) in a value that it uses or exports,
+# so each value is taken as it was written, and goes through the environment.
+OPTIONS := PYTHON CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
+GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+$(foreach name,$(OPTIONS) $(GIVEN),$(eval override $(name) := $$(value $(name))))
+export $(OPTIONS)
 # Without compiled modules each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
 # Settings of the user for other places to install do not apply to this environment.

@@ -37,15 +37,28 @@ SAID = {
     "word for a switch": ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
     "number for a switch": ({"allow_large": "2"}, "allow_large: 2; allowed: true or false"),
     "word for a number": ({"model": {"damping_ratio": "much"}}, "'much'; allowed: a number >= 0"),
+    "number for a preset": ({"preset": "01"}, "preset: '01'; allowed: draft, paper, reference"),
     "anchor": ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
 }
 # Files that are no overlay at all.
 FILES = {
     "text": (b"just some text\n", "'just some text'", "a mapping of keys"),
     "list": (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
-    "nothing": (b"# nothing\n", "None", "a mapping of keys"),
-    "key without value": (b"model: {damping_ratio: }", "line 1", "no value", "null, which removes"),
-    "open bracket": (b"preset: [draft\n", "not YAML", "line 2"),
+    "nothing": (b"# nothing\n", "empty", "a mapping of keys"),
+    "key without value": (
+        b"model:\n  damping_ratio:\n# a comment\n\nmeasure: {}\n",
+        "line 2: damping_ratio: no value",
+        "null, which removes",
+    ),
+    "entry without value": (b"simulations: {}\nstudies:\n  -\n  - layer\n", "line 3: no value"),
+    "decimal comma in braces": (
+        b"model:\n  {release: total, damping_ratio: 0,1}\n",
+        "line 2: damping_ratio: 0,1",
+        "write 0.1",
+    ),
+    "open bracket": (b"preset: [draft\nmodel: {}\n", "not YAML", "line 1"),
+    "open quote": (b"model: {}\npreset: 'draft\nmeasure: {}\n", "not YAML", "line 2"),
+    "line without a colon": (b"model: {}\npreset\nmeasure: {}\n", "not YAML", "line 2"),
     "picture": (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
     "older YAML": (b"# as it was\n%YAML 1.1\n---\nallow_large: yes\n", "'%YAML 1.1'", "YAML 1.2"),
     "python tag": (b"preset: !!python/object/apply:os.system [touch x]\n", "line 1", "no tags"),

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from ..configuration.markdown import harmless
 from ..measurement.inference import inference
 from .evidence import Evidence
 from .kinds import Reading
@@ -28,7 +29,8 @@ def arrows(evidence: Evidence, id: str) -> Reading:
         for name in ARROWS:
             entry = evidence.readings[name]
             longer.append(-fit["pulls"][name] * entry["reading_error"])
-            further[f"{entry['statement']}, longer than at the fit {words} arrows by"] = longer[-1]
+            drawn_arrow = harmless(entry["statement"])
+            further[f"{drawn_arrow}, longer than at the fit {words} arrows by"] = longer[-1]
     told = drawn(evidence)
     # The last fit is the one without arrows.
     told["longer"] = longer
@@ -59,4 +61,4 @@ def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
     """The readings of one panel as our own figure has them, by what they are."""
     entries = [one for one in evidence.readings.values() if one["simulation"] == simulation]
     runs = evidence.finest(simulation)
-    return {one["statement"]: float(runs[one["quantity"]].mean()) for one in entries}
+    return {harmless(one["statement"]): float(runs[one["quantity"]].mean()) for one in entries}

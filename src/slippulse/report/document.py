@@ -13,8 +13,9 @@ import matplotlib
 import typst
 from PIL import Image
 
+from ..configuration.markdown import pandoc
 from ..data.files import configuration, write_text, write_whole
-from .html import TEMPLATES, page, pandoc
+from .html import TEMPLATES, page
 
 # The fonts of the figures, which Matplotlib brings along.
 FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
@@ -83,6 +84,7 @@ def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Seque
     common = ["--standalone", "--number-sections", "--citeproc"]
     common += [
         f"--template={template}",
+        f"--csl={TEMPLATES / 'report.csl'}",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
         f"--variable=configuration:{configuration()}",

@@ -9,8 +9,10 @@ from . import reading
 reading.begin()
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
-# Figures are files, whatever display the user has chosen.
-os.environ["MPLBACKEND"] = "agg"
+# Figures are files in the house style, whatever display and style the user has chosen.
+os.environ |= {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
+# Results carry no date, and some libraries cannot be loaded if this one is not a number.
+os.environ.pop("SOURCE_DATE_EPOCH", None)
 
 import h5py
 import matplotlib.backends.backend_pdf
