@@ -7,6 +7,7 @@ from itertools import chain
 
 from snakemake.logging import logger
 
+from slippulse.configuration.drawn import drawing_problems
 from slippulse.configuration.refusals import format_problems
 from slippulse.data.records import write_json
 from slippulse.data.tree import Tree
@@ -49,6 +50,10 @@ def begin():
         raise ConfigError(problem)
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
+    drawn = {Path(name).stem for name in wanted if name.startswith("figures/")} & {*NEEDS}
+    draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in sorted(drawn)}
+    if problems := drawing_problems(CONFIG, draws):
+        raise ConfigError(format_problems(problems))
     data = [Path(name).parts[1] for name in wanted if name.startswith("data/")]
     simulated = sorted({name.removesuffix(".nc") for name in data})
     costs = {CONFIG.key_of(name): settings_of(name)["exceeded"]() for name in simulated}

@@ -10,6 +10,11 @@ from .shared.selection import spread_values
 from .style import LEVEL, PAGE, SYMBOLS, Look, colour, colour_scale, new_panels
 
 NEEDS = {"measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]}}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "scaling_displacement": "boundary displacement and equal levels above 0",
+    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
