@@ -25,9 +25,6 @@ def arguments(command: str) -> list[str]:
     given = {name: value for name, value in os.environ.items() if value}
     targets = [full_target(target) for target in given.get("TARGET", "").split()]
     names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
-    if "PRESET" in given:
-        # Snakemake would read a name such as 01 as a number.
-        given["PRESET"] = json.dumps(given["PRESET"])
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
     options += ["--configfile", checked(given["OVERLAY"])] if "OVERLAY" in given else []
     if command == "replicate":

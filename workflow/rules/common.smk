@@ -30,7 +30,12 @@ try:
     SHIPPED = read_overlay(f"{workflow.basedir}/config/config.yaml")
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     # A job on another node starts Snakemake again; its scenes were checked here.
-    said = workflow.config_settings.config
+    said = dict(workflow.config_settings.config)
+    # Snakemake reads the name of a preset such as 01 as a number.
+    names = [
+        value for value in workflow.config_settings.config_args or () if value[:7] == "preset="
+    ]
+    said |= {"preset": name[7:] for name in names if name[7:]}
     CONFIG = read_config(SHIPPED, OVERLAYS, said, workflow.is_main_process)
     if CONFIG.claims:
         read_entries("manuscript/claims.yaml", CONFIG.given()["claims"])
