@@ -121,8 +121,7 @@ replicate: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@"$(BIN)/python" -m snakemake --workflow-profile none --logger slippulse --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
-	    -- $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
+	@"$(BIN)/python" workflow/run.py rulegraph
 
 verify: $(READY)
 	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)

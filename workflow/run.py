@@ -1,6 +1,6 @@
 """Run Snakemake for make. A signal ends the run at once, with all of its jobs and with one line.
 
-    python workflow/run.py replicate|verify
+    python workflow/run.py replicate|verify|rulegraph
 
 The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
 """
@@ -29,13 +29,16 @@ def arguments(command: str) -> list[str]:
     options += ["--configfile", checked(given["OVERLAY"])] if "OVERLAY" in given else []
     if command == "replicate":
         return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
+    look = ["--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all"]
+    if command == "rulegraph":
+        targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
+        return [*look, *options, "--rulegraph", "mermaid-js", "--", *targets]
     if not options:
         # Without options, the results are compared with what the last run was to make.
         with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
             called = json.loads(CALL.read_text(encoding="utf-8"))
             targets = [*{"everything"} & {*called["targets"]}]
             options = [str(option) for option in called["options"]]
-    look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
     return [*look, "--cores", "1", *options, "--", "verify", *targets]
 
 

@@ -101,7 +101,8 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overla
     (tmp_path / "mine.yaml").write_text(template, encoding="utf-8")
     # Nothing waits for a writer of the pipe.
     os.mkfifo(tmp_path / "pipe")
-    assert overlay in make("replicate", f"OVERLAY={overlay.partition(':')[0]}")
+    for command in ("replicate", "rulegraph", "verify"):
+        assert overlay in make(command, f"OVERLAY={overlay.partition(':')[0]}")
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 

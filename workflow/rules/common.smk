@@ -32,10 +32,8 @@ try:
     # A job on another node starts Snakemake again; its scenes were checked here.
     said = dict(workflow.config_settings.config)
     # Snakemake reads the name of a preset such as 01 as a number.
-    names = [
-        value for value in workflow.config_settings.config_args or () if value[:7] == "preset="
-    ]
-    said |= {"preset": name[7:] for name in names if name[7:]}
+    texts = dict(text.split("=", 1) for text in workflow.config_settings.config_args or ())
+    said |= {name: texts[name] for name in ("preset",) if texts.get(name)}
     CONFIG = read_config(SHIPPED, OVERLAYS, said, workflow.is_main_process)
     if CONFIG.claims:
         read_entries("manuscript/claims.yaml", CONFIG.given()["claims"])
