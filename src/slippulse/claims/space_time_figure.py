@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from ..configuration.markdown import harmless
 from ..measurement.inference import inference
 from .evidence import Evidence
 from .kinds import Reading
@@ -29,8 +28,7 @@ def arrows(evidence: Evidence, id: str) -> Reading:
         for name in ARROWS:
             entry = evidence.readings[name]
             longer.append(-fit["pulls"][name] * entry["reading_error"])
-            drawn_arrow = harmless(entry["statement"])
-            further[f"{drawn_arrow}, longer than at the fit {words} arrows by"] = longer[-1]
+            further[f"{entry['statement']}, longer than at the fit {words} arrows by"] = longer[-1]
     told = drawn(evidence)
     # The last fit is the one without arrows.
     told["longer"] = longer
@@ -61,4 +59,4 @@ def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
     """The readings of one panel as our own figure has them, by what they are."""
     entries = [one for one in evidence.readings.values() if one["simulation"] == simulation]
     runs = evidence.finest(simulation)
-    return {harmless(one["statement"]): float(runs[one["quantity"]].mean()) for one in entries}
+    return {one["statement"]: float(runs[one["quantity"]].mean()) for one in entries}

@@ -50,20 +50,21 @@ def read_config(
         # Errors inside of an alternative, such as 'same' or a list, give the same line.
         lines = {problem_line(problem, merged) for problem in error.errors(include_url=False)}
         raise ConfigError(format_problems(sorted(lines))) from None
-    problems = [*simulation_problems(config), *_text_problems(config, shipped)] if every_run else []
+    problems = simulation_problems(config) if every_run else []
+    problems += _text_problems(merged["published"], shipped["published"]) if every_run else []
     if problems:
         raise ConfigError(format_problems(problems))
     return config
 
 
-def _text_problems(config: Configuration, shipped: Mapping) -> list[str]:
+def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
     """Lines on texts of the user that no page can show."""
     problems, allowed = [], "text with formulas that pandoc reads"
-    for name, reading in config.published.items():
-        known = shipped["published"].get(name, {}).get("statement")
-        if reading.statement != known and not is_readable(reading.statement):
-            given = f"published.{name}.statement: {short_repr(reading.statement)}"
-            problems.append(f"{given}; allowed: {allowed}")
+    for name, reading in given.items():
+        known, text = shipped.get(name, {}).get("statement"), reading["statement"]
+        if text != known and not is_readable(text):
+            key = f"published.{name}.statement"
+            problems.append(f"{key}: {short_repr(text)}; allowed: {allowed}")
     return problems
 
 

@@ -13,6 +13,7 @@ from pydantic_core import PydanticCustomError
 from ..model.checks import short_repr
 from ..model.friction import NAMES, friction_from
 from ..model.measured_columns import RECORD_FOR
+from .markdown import harmless
 from .problems import nearest
 
 T = TypeVar("T")
@@ -84,6 +85,8 @@ def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
 Friction = Annotated[
     dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
 ]
+# A text for pages and the report, in which formulas and links to the web are all that acts.
+Statement = Annotated[str, AfterValidator(harmless)]
 # Rows of numbers, which are lists in YAML.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
@@ -302,7 +305,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("name of the simulation whose run is compared with it")
     quantity: str = key("which of its measured numbers: a column of the measured table")
-    statement: str = key("what was read off (figure)", min_length=1)
+    statement: Statement = key("what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("of reading by pixel")
     arrow: bool = key("whether it is a drawn arrow: the fit is made with and without", False)

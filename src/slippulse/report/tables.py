@@ -8,7 +8,6 @@ import pandas as pd
 from ..claims.ledger import Ledger
 from ..claims.reading import REASONS, claims_of, coverage, places_of
 from ..claims.rules import WORST_FIRST
-from ..configuration.markdown import harmless
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
 
@@ -126,8 +125,7 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     rows = []
     for read in readings.values():
         drawn = with_uncertainty(read["value"], read["reading_error"])
-        statement = harmless(read["statement"])
-        rows.append((statement, drawn, number(ours.get(statement), 5)))
+        rows.append((read["statement"], drawn, number(ours.get(read["statement"]), 5)))
     return table("quantity l50 | published r20 | this run r20", rows)
 
 
