@@ -41,7 +41,7 @@ def arguments(command: str) -> list[str]:
 
 def checked(overlay: str) -> str:
     """Refuse an overlay that is no plain data, since Snakemake obeys templates."""
-    from slippulse.configuration.read import ConfigError, read_overlay
+    from slippulse_paper.configuration.read import ConfigError, read_overlay
 
     try:
         read_overlay(overlay)
@@ -53,7 +53,7 @@ def checked(overlay: str) -> str:
 def full_target(target: str) -> str:
     """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
     name, _, ending = target.removeprefix("results/figures/").partition(".")
-    modules = Path("src/slippulse/figures")
+    modules = Path("src/slippulse_paper/figures")
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
         paths = modules.glob(f"fig{int(numbered[1]):02d}_*.py")
@@ -68,8 +68,8 @@ def answer() -> str:
     called = json.loads(CALL.read_text(encoding="utf-8"))
     text = ""
     if called["judged"]:
-        from slippulse.claims.ledger import Ledger
-        from slippulse.claims.reading import read_text
+        from slippulse_paper.claims.claim_texts import read_text
+        from slippulse_paper.claims.ledger import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
         text = f"{ledger.summary()}\n"

@@ -7,18 +7,18 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from slippulse.claims.reading import read_entries
-from slippulse.configuration.accuracy import promised
-from slippulse.configuration.altered import Alterations
-from slippulse.configuration.runs import run_count
-from slippulse.configuration.limits import bound_of_sweep
-from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
-from slippulse.steps.origins import below
-from slippulse.steps.processes import JobFailed, Jobs, end_with
-from slippulse.steps.reach import declared, needs_of, sources
-from slippulse.steps.targets import SOURCES, selected
+from slippulse_paper.claims.claim_texts import read_entries
+from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.altered import Alterations
+from slippulse_paper.configuration.runs import run_count
+from slippulse_paper.configuration.limits import bound_of_sweep
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse_paper.steps.origins import below
+from slippulse_paper.steps.processes import JobFailed, Jobs, end_with
+from slippulse_paper.steps.reach import declared, needs_of, sources
+from slippulse_paper.steps.targets import SOURCES, selected
 
 JOBS, FAILED = Jobs(), []
 if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
@@ -79,7 +79,7 @@ def run_step(rule, wildcards, input, output, params, threads, log):
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 TOPICS = declared("steps.predict", "TOPICS")
 SWEEPS = {f"sweep_{name}": {"measured": {name: TOPICS}} for name in OWN_SIMULATIONS}
-CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+CLAIM_SIMULATIONS = declared("claims.paper_claims", "SIMULATIONS")
 CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
 # The front speeds are those of one level, without a grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]

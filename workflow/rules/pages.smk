@@ -1,6 +1,6 @@
 # Files to read: claims, explorer, report, and the page that leads to all, with the provenance.
 
-from slippulse.data.provenance import changes, source_files
+from slippulse_paper.records.provenance import changes, source_files
 
 CLAIM_STUDIES = (
     "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"

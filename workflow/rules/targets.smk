@@ -7,11 +7,11 @@ from itertools import chain
 
 from snakemake.logging import logger
 
-from slippulse.configuration.refusals import format_problems
-from slippulse.data.records import write_json
-from slippulse.data.tree import Tree
-from slippulse.steps.origins import LOCK, jobs_of
-from slippulse.steps.targets import Plan, unlike, write_faulty
+from slippulse_paper.configuration.refusals import format_problems
+from slippulse_paper.records.job_records import write_json
+from slippulse_paper.records.tree import Tree
+from slippulse_paper.steps.origins import LOCK, jobs_of
+from slippulse_paper.steps.targets import Plan, unlike, write_faulty
 
 overlays, values = workflow.overwrite_configfiles, workflow.config_settings.config_args
 OPTIONS = ["--configfile", *map(os.path.relpath, overlays)] if overlays else []
