@@ -49,7 +49,9 @@ READ_BY["open_choices.yaml"] = {"study_of_open_choices"}
 # The rule that notes a digest of every source.
 EVERY_SOURCE = {"write_index"}
 # All files of the package and all texts.
-PATHS = [path for path in [*PACKAGE.rglob("*"), *LIBRARY.rglob("*"), *TEXTS.rglob("*")] if path.is_file()]
+PATHS = [
+    path for path in [*PACKAGE.rglob("*"), *LIBRARY.rglob("*"), *TEXTS.rglob("*")] if path.is_file()
+]
 FILES = [path.relative_to(PROJECT).as_posix() for path in PATHS if "__pycache__" not in path.parts]
 FILES.sort()
 
