@@ -117,7 +117,7 @@ replicate: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@"$(BIN)/python" -m snakemake --workflow-profile none --logger slippulse --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
+	@"$(BIN)/python" -m snakemake --workflow-profile none --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
 	    -- $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
 
 verify: $(READY)

@@ -11,6 +11,7 @@ from slippulse.model.scene import Scene
 from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed
 
+from .altered import Alterations
 from .expand import expand
 from .promised_spacings import promised
 from .resolve import accuracy_of, all_simulations, corners, resolve
@@ -99,3 +100,18 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     runs = run_count(simulation) / chunks
     updates = max(bound.block_updates for bound in bounds)
     return Bound(runs, runs * updates, runs * max(bound.bytes for bound in bounds))
+
+
+def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
+    """Return a line for each simulation that costs too much, of those that the user has changed."""
+    shipped, here = altered.shipped, altered.here
+    lattice = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
+    before, accuracy, problems = all_simulations(shipped), accuracy_of(here), []
+    for name, simulation in all_simulations(here).items():
+        if not (lattice or altered.simulations[name] or before.get(name) != simulation):
+            continue
+        whole = resolve(simulation, here.model, accuracy)
+        exceeded = bound_of_sweep(whole, simulation.chunks).exceeded(simulation.chunks)
+        if exceeded:
+            problems.append(f"{here.key_of(name)}.{exceeded}")
+    return problems

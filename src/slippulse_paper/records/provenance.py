@@ -5,14 +5,13 @@ import platform
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
 import yaml
 
-from .job_records import FOLDER, digest_of, file_digest, read_record
+from .job_records import digest_of, file_digest, job_seconds
 
 PACKAGES = ["slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf"]
 PACKAGES += ["snakemake", "matplotlib", "pandas"]
@@ -68,17 +67,6 @@ def machine_class() -> dict:
     }
 
 
-def job_times(results: str | Path) -> dict[str, float]:
-    """Seconds that all jobs of each step took together, from their records."""
-    seconds: dict[str, float] = {}
-    for path in sorted(Path(results, FOLDER).rglob("*.json")):
-        # A record that cannot be read is replaced by the next run.
-        with suppress(OSError, ValueError, KeyError, TypeError):
-            record = read_record(path)
-            seconds[record.step] = round(seconds.get(record.step, 0.0) + record.used["seconds"], 2)
-    return seconds
-
-
 def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
     """Collect all that the results in ``base`` depend on; shipped is without overlays."""
     versions = {"python": platform.python_version()}
@@ -88,12 +76,14 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | 
         "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
-        "source_digest": digest_of({str(path): file_digest(path) for path in source_files(root)}),
+        "source_digest": digest_of(
+            {path.relative_to(root).as_posix(): file_digest(path) for path in source_files(root)}
+        ),
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
         "versions": versions,
         "machine": machine_class(),
-        "times": {"written": written, "seconds_of_jobs": job_times(base)},
+        "times": {"written": written, "seconds_of_jobs": job_seconds(base)},
     }
 
 

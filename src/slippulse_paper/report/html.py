@@ -11,8 +11,6 @@ from slippulse.data.files import configuration
 
 from ..text.numerals import FILTERS
 
-# Files that every page is made with; the step of a page names the others.
-FILES = ("report/templates/base.html", "report/templates/style.css")
 TEMPLATES = Path(__file__).with_name("templates")
 PAGES = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined)
 PAGES.trim_blocks = PAGES.lstrip_blocks = True

@@ -10,8 +10,6 @@ from ..figures import scene_figure as scene
 from ..figures.shared.main_numbers import scene_numbers
 from ..report.scene_page import scene_page
 
-FILES = ("report/templates/parts.html", "report/templates/scene.html")
-
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: one of each kind. Outputs: numbers, csv, png, pdf, html. Settings: title, altered."""

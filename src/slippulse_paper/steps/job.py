@@ -5,42 +5,95 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
-from typing import TextIO
+from typing import Any, NamedTuple, TextIO
 
 from slippulse.data.files import CONFIGURATION
 
-from ..records.job_records import Origin, read_record, write_record
-from . import reading
+from ..records.job_records import (
+    ChangedFile,
+    FileState,
+    Record,
+    check_inputs,
+    check_unchanged,
+    digest_of,
+    state_of,
+    write_record,
+)
+from ..records.sources import changed_sources
 
 SECONDS_BETWEEN_LINES = 2.0
 
 
-def run_job(
-    origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
-) -> None:
-    """Run the step of a job; files and outputs are paths, or lists of them, by name."""
+class JobFailed(Exception):
+    """A job that failed, with the reason in one line."""
+
+
+class Job(NamedTuple):
+    """A job: the step that it runs, its files by name, its settings, and the sources it depends on.
+
+    ``settings`` are what the results depend on; ``variables`` are wildcards and threads, which are
+    given to the step, too. ``sources`` are the SHA-256 of the sources when the run was planned.
+    """
+
+    step: str
+    name: str
+    inputs: Mapping[str, str | list[str]]
+    outputs: Mapping[str, str | list[str]]
+    settings: Mapping[str, Any]
+    variables: Mapping[str, Any]
+    log: str
+    code: str
+    sources: Mapping[str, str]
+
+
+def run_job(job: Job) -> None:
+    """Run the step of a job and write its record. Raises JobFailed."""
     began = time.monotonic()
-    os.environ[CONFIGURATION] = origin.configuration
-    with logged(log) as progress:
-        inputs = {}
-        for result, record in origin.inputs.items():
-            inputs[result] = read_record(Path("results", record)).outputs[result]
-        results = {f"results/{result}": digest for result, digest in inputs.items()}
-        with reading.expected({**origin.files, **results}):
-            step = import_module(f"slippulse_paper.steps.{origin.step}")
-            step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
-        seconds = time.monotonic() - began
-        write_record(origin, inputs, {"seconds": round(seconds, 2), "options": origin.options})
+    with logged(job.log) as progress:
+        read, records = check_inputs(_paths(job.inputs))
+        # Data, figures and pages carry the digest of all settings that they depend on.
+        earlier = sorted({record.configuration for record in records.values()})
+        os.environ[CONFIGURATION] = configuration = digest_of([dict(job.settings), *earlier])
+        step = import_module(f"slippulse_paper.steps.{job.step}")
+        show = progress_of(job.name, progress)
+        settings = {**job.settings, **job.variables, "progress": show}
+        step.run(job.inputs, job.outputs, settings)
+        check_unchanged(read)
+        for path in changed_sources(dict(job.sources)):
+            raise ChangedFile(f"{path}: changed since this run was planned; run again")
+        seconds = round(time.monotonic() - began, 2)
+        _write_records(job, configuration, read, seconds)
     if not sys.stderr.isatty():
-        sys.stderr.write(f"{Path(log).read_text(encoding='utf-8')}  {name}: {seconds:.1f} s\n")
+        sys.stderr.write(f"{Path(job.log).read_text(encoding='utf-8')}  {job.name}: {seconds} s\n")
+
+
+def _write_records(
+    job: Job, configuration: str, read: Mapping[str, FileState], seconds: float
+) -> None:
+    """Write one record for each folder in which a job has written; the first has its seconds."""
+    folders: dict[Path, list[str]] = {}
+    for output in map(Path, _paths(job.outputs)):
+        folders.setdefault(output.parent, []).append(output.name)
+    for folder, names in folders.items():
+        outputs = {name: state_of(folder / name) for name in names}
+        inputs = {os.path.relpath(path, folder): state.sha256 for path, state in read.items()}
+        record = Record(job.step, job.code, configuration, outputs, inputs, seconds)
+        write_record(record, folder)
+        seconds = 0.0
+
+
+def _paths(files: Mapping[str, str | list[str]]) -> list[str]:
+    """List the paths of files by name, each of which is a path or a list of paths."""
+    lists = ([value] if isinstance(value, str) else value for value in files.values())
+    return [path for paths in lists for path in paths]
 
 
 def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
-    """Make a function of how many runs are done, and of how many, that writes the time left."""
+    """Make a function of the number of finished runs and of all runs that writes the time left."""
     began = shown = time.monotonic()
 
     def show(done: float, total: int) -> None:
@@ -57,7 +110,7 @@ def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
 
 @contextmanager
 def logged(path: str | Path) -> Iterator[TextIO]:
-    """Log what a job writes, and yield a stream for its progress; a failure is one line."""
+    """Log what a job writes, and yield a stream for its progress. Raises JobFailed in one line."""
     # Snakemake prints the log: the traceback has a file of its own.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")
     try:
@@ -66,13 +119,15 @@ def logged(path: str | Path) -> Iterator[TextIO]:
         log = open(path, "w", encoding="utf-8")  # noqa: SIM115
     except OSError as error:
         allowed = "a results folder that can be written"
-        raise SystemExit(f"{path}: {error.strerror}; allowed: {allowed}") from None
+        raise JobFailed(f"{path}: {error.strerror}; allowed: {allowed}") from None
     sys.stderr = log
     try:
         # A terminal shows a progress bar, which other lines would tear.
         yield log if terminal.isatty() else terminal
     except KeyboardInterrupt:
-        raise SystemExit("stopped") from None
+        raise JobFailed("stopped") from None
+    except ChangedFile as error:
+        raise JobFailed(str(error)) from None
     except Exception as error:
         # A full disk has no room for the traceback either; HDF5 describes it in several lines.
         with suppress(OSError):
@@ -81,7 +136,7 @@ def logged(path: str | Path) -> Iterator[TextIO]:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
             remedy = "the unfinished file is removed; make room and run again"
             reason = f"{os.strerror(error.errno)}: {remedy}"
-        raise SystemExit(f"{reason} (details: {details})") from None
+        raise JobFailed(f"{reason} (details: {details})") from None
     finally:
         sys.stderr = terminal
         with suppress(OSError):

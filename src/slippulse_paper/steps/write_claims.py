@@ -12,8 +12,6 @@ from ..records.job_records import write_json
 from ..report.claims_page import claims_page
 from .inputs import given
 
-FILES = ("report/templates/claims.html", "report/templates/parts.html")
-
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: as of `given`; texts, statements. Outputs: json, findings, html."""

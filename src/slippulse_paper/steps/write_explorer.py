@@ -6,7 +6,6 @@ from slippulse.plotting.style import VELOCITY_MAP
 
 from ..report.explorer_page import explorer_page
 
-FILES = ("report/templates/explorer.html", "report/templates/explorer/*")
 SIMULATIONS = [
     "scaling_displacement",
     "damping_displacement",

@@ -6,10 +6,10 @@ from slippulse.data.files import write_text
 
 from ..records.job_records import write_json
 from ..records.provenance import checksums, manifest, provenance
+from ..records.sources import PROJECT
 from ..report.index_page import index_page
 from ..report.texts import read_captions
 
-FILES = ("report/templates/index.html", "report/templates/parts.html")
 # Headings of figures, by how the names of these begin.
 HEADINGS = {
     "fig": "The figures of the paper",
@@ -24,7 +24,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, titles), outputs["manifest"])
-    facts = provenance(".", settings["config"], settings["shipped"], base)
+    facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
     write_json(facts, outputs["provenance"])
     galleries = {}
     for start, heading in HEADINGS.items():

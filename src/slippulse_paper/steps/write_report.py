@@ -14,7 +14,6 @@ from ..report.document import write_html, write_pdf
 from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
 from .inputs import given
 
-FILES = ("report/templates/report.*",)
 NEEDS = {
     "measured": {
         "scaling_displacement": ["transition"],

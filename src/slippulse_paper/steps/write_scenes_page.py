@@ -4,8 +4,6 @@ from slippulse.data.files import write_text
 
 from ..report.html import page
 
-FILES = ("report/templates/scenes.html",)
-
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: html. Settings: scenes (titles by name)."""

@@ -1,16 +1,15 @@
-"""Libraries that most steps use, loaded once for all processes of a run."""
+"""Libraries that most steps use, loaded once for all workers of a run."""
 
-# ruff: noqa: E402, F401
+# ruff: noqa: F401
 import gc
 import os
 
-from . import reading
-
-reading.begin()
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
 # Figures are files, whatever display the user has chosen.
 os.environ["MPLBACKEND"] = "agg"
+# Files have no times, whatever time the user has chosen for them.
+os.environ.pop("SOURCE_DATE_EPOCH", None)
 
 import h5py
 import matplotlib.backends.backend_pdf
@@ -20,6 +19,6 @@ import xarray
 
 # The first function that is compiled loads most of numba.
 numba.njit(lambda: 0)()
-# The processes share memory that none of them touches; few objects that jobs make are in cycles.
+# The workers share memory that none of them touches; few objects that jobs make are in cycles.
 gc.freeze()
 gc.set_threshold(50_000)
