@@ -267,6 +267,92 @@ CHUNKS = {
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 
 
+# Kind and simulation of each joined file, below results/.
+KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
+JOINED = {
+    made(kind, [name])[0].removeprefix("results/"): (kind, name)
+    for name in CHUNKS
+    for kind in KINDS
+}
+ALL_FIGURES = NEEDS | SWEEPS
+
+
+def solver_of(wildcards):
+    """Module of the solver of a simulation."""
+    return settings_of(wildcards.simulation)["solver"].partition(":")[0]
+
+
+def prediction_modules(wildcards):
+    """Modules that compute the predictions of a simulation."""
+    modules = declared("steps.predict", "MODULES")
+    topics = settings_of(wildcards.simulation)["topics"]
+    return [f"slippulse.prediction.{modules[topic]}" for topic in topics]
+
+
+def joined_inputs(wildcards):
+    """Files of the chunks; uncertainties are joined in the order of the joined measurements."""
+    kind, name = JOINED[wildcards.joined]
+    finest = made("measured", [name] if kind == "uncertainties" else [])
+    return {"chunks": made(kind, CHUNKS[name]), "finest": finest}
+
+
+def joined_settings(wildcards):
+    """Kind of a joined file, and what the runs of its simulation record."""
+    kind, name = JOINED[wildcards.joined]
+    return {"kind": kind, "record": SIMULATIONS[name].record}
+
+
+def study_inputs(wildcards):
+    """Inputs of a study, and the kernels that it runs."""
+    reached = modules_reached(f"slippulse_paper.studies.{wildcards.study}")
+    schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
+    return {**inputs_of(STUDY_NEEDS[wildcards.study]), "kernels": made("kernels", schemes)}
+
+
+def study_settings(wildcards):
+    """The study, and the values of the configuration that it depends on."""
+    needs = STUDY_NEEDS[wildcards.study]
+    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
+    values = selected(config, needs.get("settings", ()), {"sweeps": swept})
+    return {"study": wildcards.study, "values": values}
+
+
+def texts_of(needs):
+    """Texts of the project among the inputs of a figure or a study."""
+    return [path for path in needs.get("lists", ()) if not path.startswith("results/")]
+
+
+def module_of(figure):
+    """Module that draws a figure."""
+    return figure if figure in NEEDS else "user_defined_sweep"
+
+
+def figure_settings(wildcards):
+    """The module of a figure, the values that it depends on, and a note on altered ones."""
+    figure, needs = wildcards.figure, ALL_FIGURES[wildcards.figure]
+    values = selected(config, needs.get("settings", ()), config["figures"].get(figure, {}))
+    altered = note_of(needs, f"figures.{figure}")
+    return {"figure": module_of(figure), "values": values, "altered": altered}
+
+
+def figure_category(wildcards):
+    """Heading of a figure in Snakemake's report."""
+    return "Figures of the paper" if wildcards.figure in FIGURES else "Studies and sweeps"
+
+
+@cache
+def captions():
+    """Texts of the figures."""
+    from slippulse_paper.report.texts import read_captions
+
+    return read_captions(PROJECT / "manuscript/captions.yaml")
+
+
+def title_of(figure):
+    """Title of a figure."""
+    return captions()[figure].title if figure in captions() else figure
+
+
 def one_of(names):
     """Regular expression of a wildcard that has one of some values."""
     return "|".join(map(re.escape, names)) or "(?!)"
@@ -278,3 +364,4 @@ wildcard_constraints:
     scheme=one_of(KERNELS),
     study=one_of(STUDY_NEEDS),
     figure=one_of([*NEEDS, *SWEEPS]),
+    joined=one_of(JOINED),

@@ -1,26 +1,6 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
 
-def study_inputs(wildcards):
-    """Inputs of a study, and the kernels that it runs."""
-    reached = modules_reached(f"slippulse_paper.studies.{wildcards.study}")
-    schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
-    return {**inputs_of(STUDY_NEEDS[wildcards.study]), "kernels": made("kernels", schemes)}
-
-
-def study_settings(wildcards):
-    """The study, and the values of the configuration that it depends on."""
-    needs = STUDY_NEEDS[wildcards.study]
-    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
-    values = selected(config, needs.get("settings", ()), {"sweeps": swept})
-    return {"study": wildcards.study, "values": values}
-
-
-def texts_of(needs):
-    """Texts of the project among the inputs of a figure or a study."""
-    return [path for path in needs.get("lists", ()) if not path.startswith("results/")]
-
-
 rule study:
     input:
         unpack(study_inputs),
@@ -40,27 +20,6 @@ rule study:
         "Studying {wildcards.study}"
     run:
         run_step("run_study", wildcards, input, output, params, threads, log)
-
-
-ALL_FIGURES = NEEDS | SWEEPS
-
-
-def module_of(figure):
-    """Module that draws a figure."""
-    return figure if figure in NEEDS else "user_defined_sweep"
-
-
-def figure_settings(wildcards):
-    """The module of a figure, the values that it depends on, and a note on altered ones."""
-    figure, needs = wildcards.figure, ALL_FIGURES[wildcards.figure]
-    values = selected(config, needs.get("settings", ()), config["figures"].get(figure, {}))
-    altered = note_of(needs, f"figures.{figure}")
-    return {"figure": module_of(figure), "values": values, "altered": altered}
-
-
-def figure_category(wildcards):
-    """Heading of a figure in Snakemake's report."""
-    return "Figures of the paper" if wildcards.figure in FIGURES else "Studies and sweeps"
 
 
 # A figure is drawn from its table (CSV) alone.

@@ -153,16 +153,3 @@ rule write_index:
         "Writing the page of all results"
     run:
         run_step("write_index", wildcards, input, output, params, threads, log)
-
-
-@cache
-def captions():
-    """Texts of the figures."""
-    from slippulse_paper.report.texts import read_captions
-
-    return read_captions(PROJECT / "manuscript/captions.yaml")
-
-
-def title_of(figure):
-    """Title of a figure."""
-    return captions()[figure].title if figure in captions() else figure

@@ -6,11 +6,6 @@ BOUNDS = {
 }
 
 
-def solver_of(wildcards):
-    """Module of the solver of a simulation."""
-    return settings_of(wildcards.simulation)["solver"].partition(":")[0]
-
-
 rule compile_kernels:
     output:
         kernels="results/kernels/{scheme}.txt",
@@ -64,13 +59,6 @@ rule measure:
         "Measuring {wildcards.simulation}"
     run:
         run_step("measure", wildcards, input, output, params, threads, log)
-
-
-def prediction_modules(wildcards):
-    """Modules that compute the predictions of a simulation."""
-    modules = declared("steps.predict", "MODULES")
-    topics = settings_of(wildcards.simulation)["topics"]
-    return [f"slippulse.prediction.{modules[topic]}" for topic in topics]
 
 
 rule predict:
