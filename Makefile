@@ -22,7 +22,7 @@ export PYTHONDONTWRITEBYTECODE :=
 unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT \
     PIP_PYTHON PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
-LOCK := src/slippulse/data/lock.py
+LOCK := src/slippulse_paper/records/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
@@ -124,7 +124,7 @@ rulegraph: $(READY)
 	@"$(BIN)/python" workflow/run.py rulegraph
 
 verify: $(READY)
-	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
+	@$(if $(AGAINST),"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)

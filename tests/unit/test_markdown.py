@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.configuration import markdown
-from slippulse.configuration.markdown import harmless, is_readable, markup_of, pandoc
+from slippulse_paper.text import markdown
+from slippulse_paper.text.markdown import harmless, is_readable, markup_of, pandoc
 
 HOSTILE = (
     '[x](javascript:alert(4)) [y]{onmouseover=alert(1) style="position:fixed"}',
