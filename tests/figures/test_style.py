@@ -4,6 +4,8 @@ Colour vision is simulated after Machado et al. (2009).
 """
 
 import os
+import subprocess
+import sys
 from dataclasses import replace
 from itertools import combinations
 
@@ -129,3 +131,12 @@ def test_settings_fonts_and_dates_of_the_user_change_no_byte_of_a_figure(tmp_pat
         monkeypatch.setattr(fonts, "ttflist", [replace(other, weight=400), *fonts.ttflist])
         assert written("theirs") == expected
         assert matplotlib.rcParams["text.usetex"] and os.environ["SOURCE_DATE_EPOCH"] == ""
+
+
+def test_the_libraries_of_jobs_load_whatever_the_user_has_set(tmp_path):
+    (tmp_path / "matplotlibrc").write_bytes(b"text.usetex: True\nbackend: none\n\xff\xfe")
+    theirs = {"MPLCONFIGDIR": str(tmp_path), "MPLBACKEND": "none", "SOURCE_DATE_EPOCH": ""}
+    program = "import slippulse_paper.steps.worker_libraries, matplotlib\n"
+    program += "assert not matplotlib.rcParams['text.usetex']"
+    command = [sys.executable, "-W", "error", "-c", program]
+    subprocess.run(command, env=os.environ | theirs, check=True)
