@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from slippulse.studies.layer_map import outcome
+from slippulse_paper.studies.layer_map import outcome
 
 CASE = ["gamma", "tau0", "fracture_energy"]
 QUANTITIES = ["speed", "pulse_width", "pulse_slip"]

@@ -1,0 +1,57 @@
+"""The main numbers of a run: their labels, the measured values and exact theory."""
+
+import numpy as np
+import pandas as pd
+
+from slippulse.model.prestress import prestress_from
+
+# Labels of the measured columns that both boundary conditions have, and of all by boundary.
+COMMON = {
+    "front_speed_left": "front speed, left",
+    "front_speed_right": "front speed, right",
+    "transition_time": "T_trans",
+    "transition_length": "L_trans",
+}
+PULSE = {
+    "first_stick_time": "first stick",
+    "pulse_width": "pulse width, right",
+    "pulse_peak_velocity": "peak velocity, right",
+    "pulse_slip": "final slip, right",
+}
+LABELS = {
+    "displacement": COMMON | PULSE,
+    "stress": COMMON | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
+}
+
+
+def with_symbols(label: str) -> str:
+    """Return a label of LABELS, as a formula where it is a symbol."""
+    symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\text{trans}", "L_trans": r"L_\text{trans}"}
+    return f"${symbols[label]}$" if label in symbols else label
+
+
+def main_numbers(run: pd.Series) -> pd.DataFrame:
+    """Main measured numbers of a run: quantity, label, value, theory (NaN where there is none)."""
+    numbers = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
+    numbers["value"] = [run.get(name, np.nan) for name in numbers["quantity"]]
+    numbers["theory"] = [run.get(f"exact_{name}", np.nan) for name in numbers["quantity"]]
+    return numbers[np.isfinite(numbers["value"].astype(float))]
+
+
+def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
+    """`main_numbers` of a scene, with what its grid study has: uncertainty, promised and kept."""
+    numbers = main_numbers(run)
+    quantity = numbers["quantity"]
+    # The theory of steady pulses applies to a steady pulse alone.
+    if run.get("pulse_state") != "steady":
+        numbers.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
+    if run.get("pulse_state") == "stopped":
+        numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
+    # The balance of the pre-stress is computed for the Gaussian and its levels alone.
+    if prestress_from(run).bumps and run["boundary"] == "stress":
+        numbers = numbers[~quantity.str.startswith("transition")]
+    if (quantity == "transition_time").any():
+        numbers = numbers[quantity != "first_stick_time"]
+    promise = [name for name in ("promised", "kept") if name in study]
+    numbers = numbers.merge(study[["quantity", "uncertainty", *promise]], on="quantity")
+    return numbers[["quantity", "label", "value", "uncertainty", "theory", *promise]]
