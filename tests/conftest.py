@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 import yaml
 from selection import SMALL_STUDIES, small_sweep
-from slippulse_paper.steps.reach import declared
-from slippulse_paper.steps.targets import selected
+from slippulse_paper.steps.needs import declared
+from slippulse_paper.configuration.selected import selected
 
 from slippulse.data.tables import load_table, save_table
 from slippulse_paper.records.lock import take
