@@ -6,11 +6,12 @@ The background is two side levels with optional steps, or piecewise linear throu
 import json
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from itertools import groupby, pairwise
 from operator import itemgetter
+from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -157,6 +158,94 @@ class Prestress:
         check_that(size == len(values), "prestress.points", len(values), f"{size} values, as of x")
         points = tuple(zip(positions, values, strict=True))
         return cls(values[0], values[-1], width, peak, bumps=bumps, points=points)
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path,
+        x: str | None = None,
+        prestress: str | None = None,
+        width: float | None = None,
+        peak: float = 1.0,
+        bumps: tuple[tuple[float, float, float], ...] = (),
+    ) -> Self:
+        """A pre-stress through the points of a CSV or netCDF file, as by `through`.
+
+        Parameters
+        ----------
+        path : str or Path
+            A CSV file has the names of its columns in the first row, and their units in the second
+            if it gives any: H and S (the stress drop), or 1 or -. Rows that begin with # are
+            comments.
+        x, prestress : str, optional
+            Names of the two columns, or variables; by default those named x, position or distance,
+            and tau, prestress, shear_stress or stress.
+        width, peak, bumps
+            As in `through`.
+
+        Returns
+        -------
+        Prestress
+
+        Raises
+        ------
+        ValueError
+            In one line that names the file, the row and what is allowed.
+
+        Examples
+        --------
+        >>> profile = sp.Prestress.from_file("stress.csv", width=1.0)  # doctest: +SKIP
+        """
+        from .stress_file import read_dimensionless
+
+        table = read_dimensionless(path, x, prestress)
+        try:
+            return cls.through(table.x, table.prestress, width, peak, bumps)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Callable[[float], float],
+        start: float,
+        stop: float,
+        tolerance: float,
+        width: float | None = None,
+        peak: float = 1.0,
+        bumps: tuple[tuple[float, float, float], ...] = (),
+    ) -> Self:
+        """A pre-stress through samples of a function, as by `through`.
+
+        Parameters
+        ----------
+        function : callable
+            Pre-stress (units of the stress drop) at a position (units of H).
+        start, stop : float, units of H
+            First and last position; the pre-stress is constant before and after them.
+        tolerance : float, units of the stress drop
+            Largest deviation of the lines between samples from the function. Features narrower than
+            1/256 of the range may be missed.
+        width, peak, bumps
+            As in `through`.
+
+        Returns
+        -------
+        Prestress
+
+        Raises
+        ------
+        ValueError
+            If the function is not finite somewhere, or needs too many samples.
+
+        Examples
+        --------
+        >>> profile = sp.Prestress.from_function(lambda x: 0.9 / (1.0 + x * x), -9.0, 9.0, 1e-3)
+        """
+        from .sampled_function import sample_function
+
+        x, tau = sample_function(function, start, stop, tolerance)
+        return cls.through(x, tau, width, peak, bumps)
 
     def __repr__(self) -> str:
         """The arguments that differ from the defaults; a long table by its size."""
@@ -310,7 +399,7 @@ def _column(name: str, values: Any) -> list[float]:
     """One column of a table as numbers; ValueError names the first row that is not one."""
     key, listed = f"prestress.points {name}", values
     try:
-        listed = values.tolist() if isinstance(values, np.ndarray) else [*values]
+        listed = np.asarray(values).tolist() if hasattr(values, "__array__") else [*values]
         size = len(listed)
     except TypeError:
         size = 0
