@@ -13,6 +13,8 @@ from pydantic_core import PydanticCustomError
 from ..model.checks import short_repr
 from ..model.friction import NAMES, friction_from
 from ..model.measured_columns import RECORD_FOR
+from ..model.prestress import Prestress
+from ..model.rough_prestress import rough
 from .problems import nearest
 
 T = TypeVar("T")
@@ -121,6 +123,12 @@ class Rough(Block):
     spacing: Positive = key("distance of the positions [H]")
     seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
 
+    @model_validator(mode="after")
+    def _positions(self) -> Self:
+        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
+        rough(**(self.plain() | {"seed": seed}))
+        return self
+
 
 class Profile(Block):
     """One pre-stress."""
@@ -159,8 +167,13 @@ class Profile(Block):
             return self
         given = [*tables, *levels, *(["steps"] if self.steps else [])]
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
-        if "points" in own and "width" not in self.model_fields_set:
-            self.__dict__["width"] = None
+        if self.points is not None:
+            if "width" not in self.model_fields_set:
+                self.__dict__["width"] = None
+            try:
+                Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
+            except ValueError as error:
+                raise ValueError(str(error).removeprefix("prestress.")) from None
         if "file" in own:
             require("points" in own, f"file: {short_repr(self.file)}", "in an overlay")
         return self
