@@ -6,7 +6,7 @@ The background is two side levels with optional steps, or piecewise linear throu
 import json
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from itertools import groupby, pairwise
@@ -365,12 +365,14 @@ def attributes_of(prestress: Prestress) -> dict[str, float | str]:
 
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
-    numbers = [attributes[name] for name in NUMBERS]
+    left, right, width, peak = (attributes[name] for name in NUMBERS)
     text = attributes["steps_and_bumps"]
-    plain = isinstance(text, str) and all(isinstance(number, float) for number in numbers)
-    if not plain:
-        return _from_text(text, *numbers)
-    return _cached_from_text(text, *(None if math.isnan(number) else number for number in numbers))
+    if isinstance(width, float) and math.isnan(width):
+        width = None
+    # Lists and the like, which are refused, are no keys of a cache.
+    plain = all(isinstance(value, Hashable) for value in (text, left, right, width, peak))
+    read = _cached_from_text if plain else _from_text
+    return read(text, left, right, width, peak)
 
 
 def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
@@ -387,7 +389,7 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
 
 
 # The numbers of one run are measured one after the other, and each starts from the pre-stress.
-_cached_from_text = lru_cache(maxsize=8)(_from_text)
+_cached_from_text = lru_cache(maxsize=8, typed=True)(_from_text)
 
 
 def _points(rows: Any) -> tuple[tuple[float, float], ...]:
