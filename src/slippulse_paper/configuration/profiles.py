@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +65,7 @@ def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
 
 def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The profiles as runs have them: one for each seed, and points without their file."""
-    return [one for profile in profiles for one in _of_each_seed(profile)]
+    return [*chain.from_iterable(map(_of_each_seed, profiles))]
 
 
 def _of_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -88,9 +89,9 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 @lru_cache(maxsize=256)
 def _table(text: str) -> Prestress:
     profile = json.loads(text)
-    columns = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
+    x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
     rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
-    return Prestress.through(*columns, **rest)
+    return Prestress.through(x, tau, **rest)
 
 
 def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
