@@ -4,6 +4,7 @@ from .configuration.accuracy import settings_for as settings_for
 from .data.point import point as point
 from .figures.run import plot as plot
 from .model.friction import friction as friction
+from .model.layer_units import Layer as Layer
 from .model.prestress import Prestress as Prestress
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
