@@ -121,7 +121,7 @@ def settings_for(
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
-    peak_width = min([prestress.width, *(width for *_, width in prestress.bumps)])
+    peak_width = prestress.narrowest
     error = SPACING_FRACTION * accuracy
     demand = Demand(error, levels, peak_width, gamma, damping_ratio, release, fields)
     if gamma:
@@ -182,7 +182,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
     """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
     error, ratio = demand.error, demand.damping_ratio
-    width, peak = prestress.width, prestress.peak
+    width, peak = prestress.width or math.inf, prestress.peak
     # Distances to where the Gaussian falls to 0, towards each negative level.
     negative = [level for level in demand.levels if level < 0.0 < peak]
     distances = [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative]

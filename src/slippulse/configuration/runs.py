@@ -73,7 +73,7 @@ def _spacing(
         return float(rule["fixed"])
     spacing = simulation["spacings"][index] if "spacings" in simulation else given
     if spacing is None:
-        powers = profile.width ** rule["width_power"] * gamma ** rule["gamma_power"]
+        powers = (profile.width or 1.0) ** rule["width_power"] * gamma ** rule["gamma_power"]
         spacing = simulation["accuracy"]["dx"] * rule["scale"] * powers
     # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.
     return float(f"{simulation['coarser'] * spacing:.12g}")

@@ -9,6 +9,7 @@ blocks that slip again and again may take twice as much.
 import math
 from typing import NamedTuple
 
+from .prestress import Interval
 from .samples import Samples
 from .scene import Scene
 
@@ -21,6 +22,8 @@ HOW_TO_GO_ON = "--config allow_large=true"
 RECORDED, ARRAYS = 56.0, 16.0
 # Block updates that take as long as a run that does nothing, and as a block of the exact solution.
 START, EXACT_BLOCK = 1e5, 3e4
+# A front that crosses a table where it reaches 1 is taken to be this fast.
+HIGHEST_LEVEL = 1.0 - 1e-9
 # A step ends early after this number of events.
 EVENTS_OF_A_STEP = 64
 # Seconds of a block update at the highest order on a slow machine, and the number of block updates
@@ -64,16 +67,38 @@ class Bound(NamedTuple):
         return START_MEGABYTES + math.ceil(2.0 * self.bytes / 1e6)
 
 
-def bound_of(scene: Scene, samples: Samples | None = None) -> Bound:
-    """Upper bound on what one run takes."""
-    profile, ratio = scene.prestress, scene.damping_ratio
-    level = max([0.0, *(level for *_, level in profile.intervals)])
-    # This is above the exact speed at any damping, under either release rule.
+def _reach(scene: Scene, side: float) -> float:
+    """Upper bound on the distance from x = 0 that a front reaches on one side, 1.0 or -1.0."""
+    profile = scene.prestress
+    bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
+    start = max(bumps, profile.nucleation_reach) + 5.0 * (profile.width or 0.0)
+    intervals = profile.intervals if side > 0.0 else profile.intervals[::-1]
+    if not profile.points:
+        highest = max(interval.left_value for interval in intervals)
+        intervals = [Interval(-math.inf, math.inf, highest, highest)]
+    distance, time = start, 0.0
+    for left, right, *values in intervals:
+        end = right if side > 0.0 else -left
+        if end > distance:
+            step = (end - distance) / _fastest(scene, max(0.0, *values))
+            if not time + step < scene.duration:
+                break
+            distance, time = end, time + step
+    return distance + (scene.duration - time) * _fastest(scene, max(0.0, *values))
+
+
+def _fastest(scene: Scene, level: float) -> float:
+    """Speed above the exact one of a front at a level, at any damping, under either rule."""
+    level = min(level, HIGHEST_LEVEL)
     speed = 1.3 / math.sqrt((1.0 - level) * (1.0 + level))
     if scene.release == "total":
-        speed += 1.3 * ratio * level / (1.0 - level)
-    start = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
-    reach = start + 5.0 * profile.width + speed * scene.duration
+        speed += 1.3 * scene.damping_ratio * level / (1.0 - level)
+    return speed
+
+
+def bound_of(scene: Scene, samples: Samples | None = None) -> Bound:
+    """Upper bound on what one run takes."""
+    reach = max(_reach(scene, 1.0), _reach(scene, -1.0))
     blocks = (1.0 if scene.symmetric else 2.0) * (reach / scene.dx + 16.0)
     steps = scene.duration / (scene.max_step * scene.dx) + 2.0 * blocks / EVENTS_OF_A_STEP
     updates = EXACT_BLOCK * blocks if scene.scheme == "continuum" else steps * blocks

@@ -10,7 +10,7 @@ from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_that
 from .friction import COULOMB, Friction, friction_from
-from .prestress import Prestress, prestress_from
+from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import law_of
 from .release import RELEASES
 from .runaway import check_runaway
@@ -131,7 +131,7 @@ class Scene:
             kind = int if "integer" in bounds else float
             object.__setattr__(self, name, kind(getattr(self, name)))
         width, allowed = self.prestress.width, f">= dx = {self.dx:g}, which must see the peak"
-        check_that(width >= self.dx, "prestress.width", width, allowed)
+        check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
         for centre, _, width in self.prestress.bumps:
             reach = abs(centre) + 4.0 * width
             check_number("prestress.bumps reach", reach, at_most=FARTHEST_BUMP * self.dx)
@@ -196,10 +196,8 @@ class Scene:
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file; see `from_attributes`."""
-        profile = self.prestress
-        parts = {"steps": profile.steps, "bumps": profile.bumps}
-        values = vars(profile) | vars(self) | {"half_lattice": int(self.half_lattice)}
-        values |= {"damping_ratio": self.damping_ratio, "steps_and_bumps": json.dumps(parts)}
+        values = vars(self) | attributes_of(self.prestress)
+        values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
         values["friction"] = json.dumps(self.friction.mapping())
         return {name: values[name] for name in ATTRIBUTES.split()}
 
