@@ -219,6 +219,8 @@ class Layer:
     def convert_from_si(self, values: Any, quantity: str) -> Any:
         """Convert numbers in SI units to non-dimensional ones; the inverse of `convert_to_si`.
 
+        Static friction becomes exactly 1.
+
         Parameters
         ----------
         values : float or array
@@ -228,9 +230,13 @@ class Layer:
         -------
         float or array
         """
-        if quantity == "stress":
-            return (values - self.kinetic_strength) / self.strength_drop
-        return values / self._scale(quantity)
+        if quantity != "stress":
+            return values / self._scale(quantity)
+        tau = (values - self.kinetic_strength) / self.strength_drop
+        # Static friction is released at 1, not a rounding error below it.
+        rounding = 8.0 * sys.float_info.epsilon * (1.0 + self.friction_ratio)
+        tau = np.where(np.abs(tau - 1.0) <= rounding, 1.0, tau)
+        return tau if np.ndim(values) else float(tau)
 
     def _scale(self, quantity: str) -> float:
         check_choice("quantity", quantity, tuple(UNITS))
@@ -377,15 +383,12 @@ class Layer:
         Returns
         -------
         array
-            Exactly 1 where the stress is static friction up to rounding.
         """
         stress, lowest = as_numbers(key, stress), -self.static_strength
         least = float(stress.min(initial=math.inf))
         allowed = f"> {lowest:g} Pa, minus static friction, or the interface slides backwards"
         check_that(least > lowest, key, f"{least:g} Pa", allowed)
-        tau = self.convert_from_si(stress, "stress")
-        rounding = 8.0 * sys.float_info.epsilon * (1.0 + self.static_strength / self.strength_drop)
-        return np.where(np.abs(tau - 1.0) <= rounding, 1.0, tau)
+        return np.asarray(self.convert_from_si(stress, "stress"))
 
     def _check_outermost(self, key: str, tau: np.ndarray) -> None:
         """Refuse a table at static friction everywhere, or at an end, which goes on for ever."""

@@ -64,8 +64,8 @@ def layer_results(
     """
     check_kind("layer", layer, Layer)
     check_that(layer.top == "held", "layer.top", layer.top, "'held'")
-    bounds = {"above": layer.kinetic_strength, "below": layer.static_strength}
-    check_number("initial_stress", initial_stress, **bounds)
+    lowest, highest = layer.kinetic_strength, layer.static_strength
+    check_number("initial_stress", initial_stress, above=lowest, below=highest)
     tau0, gamma = float(layer.convert_from_si(initial_stress, "stress")), layer.gamma
     speed = float(front_speed(tau0, damping_ratio, release))
     time = uniform_transition_time(tau0, gamma, damping_ratio, release)
