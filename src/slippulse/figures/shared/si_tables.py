@@ -1,0 +1,65 @@
+"""Tables of a run converted to SI units with readable prefixes, before they are drawn."""
+
+import pandas as pd
+
+from ...data.readable_units import readable_unit
+from ...model.layer_units import Layer
+from ...model.si_quantities import QUANTITIES
+
+# Quantity of the column value by role; of the other roles the column series names it.
+ROLE_QUANTITIES = {"prestress": "stress", "map": "slip_velocity", "largest": "slip_velocity"}
+# Roles whose values share one unit by quantity, so that they can share an axis.
+ON_AXES = ("prestress", "map", "largest", "profile", "steady")
+COLUMN_QUANTITIES = {"position": "length", "time": "time"}
+
+
+def numbers_in_si(numbers: pd.DataFrame, layer: Layer) -> pd.DataFrame:
+    """Convert main numbers (`shared.numbers`), each with a prefix of its own in a column unit."""
+    converted = numbers.assign(unit="")
+    for index, row in numbers.iterrows():
+        quantity = QUANTITIES[str(row["quantity"])]
+        unit = readable_unit(quantity, layer.convert_to_si(row["value"], quantity))
+        for column in ("value", "uncertainty", "theory"):
+            number = layer.convert_to_si(row[column], quantity)
+            converted.loc[index, column] = number / unit.value
+        converted.loc[index, "unit"] = unit.text
+    return converted
+
+
+def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
+    """Convert the rows of a run, and add rows with the units of its axes (role unit).
+
+    The column unit has the unit of the column value. Rows of numbers stay as they are.
+    """
+    table = table.copy() if "unit" in table else table.assign(unit="")
+    units = {}
+    for column, quantity in COLUMN_QUANTITIES.items():
+        numbers = layer.convert_to_si(table[column], quantity)
+        unit = readable_unit(quantity, numbers)
+        table[column], units[column] = numbers / unit.value, unit.text
+    series = table["series"] if "series" in table else pd.Series(index=table.index, dtype=object)
+    quantities = table["role"].map(ROLE_QUANTITIES).fillna(series.map(QUANTITIES))
+    for quantity, rows in table.groupby(quantities):
+        drawn, parameters = (rows["role"].isin(roles) for roles in (ON_AXES, ("parameter",)))
+        for chosen in (rows[drawn], *(rows.loc[[index]] for index in rows.index[parameters])):
+            if chosen.empty:
+                continue
+            numbers = layer.convert_to_si(chosen["value"], str(quantity))
+            unit = readable_unit(str(quantity), numbers)
+            table.loc[chosen.index, "value"] = numbers / unit.value
+            table.loc[chosen.index, "unit"] = unit.text
+        if drawn.any():
+            units[str(quantity)] = table.loc[rows.index[drawn], "unit"].iloc[0]
+    unit = readable_unit("length", layer.thickness)
+    height = {"series": "thickness", "value": layer.thickness / unit.value, "unit": unit.text}
+    added = [{"role": "parameter", **height}]
+    added += [{"role": "unit", "series": name, "unit": text} for name, text in units.items()]
+    return pd.concat([table, pd.DataFrame(added)], ignore_index=True)
+
+
+def with_unit(label: str, roles: dict[str, pd.DataFrame], name: str) -> str:
+    """Add to the label of an axis the unit of a column or quantity, if the table is in SI units."""
+    if "unit" not in roles:
+        return label
+    units = roles["unit"].set_index("series")["unit"]
+    return f"{label} ({units[name]})"
