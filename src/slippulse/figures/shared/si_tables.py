@@ -8,8 +8,11 @@ from ...model.si_quantities import QUANTITIES
 
 # Quantity of the column value by role; of the other roles the column series names it.
 ROLE_QUANTITIES = {"prestress": "stress", "map": "slip_velocity", "largest": "slip_velocity"}
+ROLE_QUANTITIES["strength"] = "stress"
+# Non-dimensional stresses that are marked (role strength).
+STRENGTHS = {"kinetic friction": 0.0, "static friction": 1.0}
 # Roles whose values share one unit by quantity, so that they can share an axis.
-ON_AXES = ("prestress", "map", "largest", "profile", "steady")
+ON_AXES = ("prestress", "strength", "map", "largest", "profile", "steady")
 COLUMN_QUANTITIES = {"position": "length", "time": "time"}
 
 
@@ -29,16 +32,20 @@ def numbers_in_si(numbers: pd.DataFrame, layer: Layer) -> pd.DataFrame:
 def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     """Convert the rows of a run, and add rows with the units of its axes (role unit).
 
-    The column unit has the unit of the column value. Rows of numbers stay as they are.
+    The column unit has the unit of the column value. Rows of numbers stay as they are. Static and
+    kinetic friction are added as well (role strength).
     """
-    table = table.copy() if "unit" in table else table.assign(unit="")
+    strengths = [
+        {"role": "strength", "series": name, "value": value} for name, value in STRENGTHS.items()
+    ]
+    table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
+    table = table if "unit" in table else table.assign(unit="")
     units = {}
     for column, quantity in COLUMN_QUANTITIES.items():
         numbers = layer.convert_to_si(table[column], quantity)
         unit = readable_unit(quantity, numbers)
         table[column], units[column] = numbers / unit.value, unit.text
-    series = table["series"] if "series" in table else pd.Series(index=table.index, dtype=object)
-    quantities = table["role"].map(ROLE_QUANTITIES).fillna(series.map(QUANTITIES))
+    quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
     for quantity, rows in table.groupby(quantities):
         drawn, parameters = (rows["role"].isin(roles) for roles in (ON_AXES, ("parameter",)))
         for chosen in (rows[drawn], *(rows.loc[[index]] for index in rows.index[parameters])):

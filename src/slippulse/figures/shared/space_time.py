@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...model.prestress import prestress_from
 from ...model.recorded_law import law_of
-from ..style import BLACK, GREY, Look, conditions
+from ..style import BLACK, GREY, SMALL, Look, conditions
 from .selection import spaced_indices
 from .si_tables import with_unit
 
@@ -119,13 +119,28 @@ def edges(run: xr.Dataset) -> list[pd.DataFrame]:
 def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     """Draw the pre-stress to the right and the position upwards."""
     rows, in_si = roles["prestress"], "unit" in roles
-    axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
+    if in_si:
+        _mark_strengths(axes, roles["strength"])
+    else:
+        axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     axes.margins(x=0.12)
     axes.xaxis.set_major_locator(MaxNLocator(2, integer=not in_si))
     label = with_unit("stress" if in_si else r"$\tau$", roles, "stress")
     axes.set(xlabel=label, ylabel=with_unit(r"position $x$", roles, "position"))
     axes.set_ylim(rows["position"].min(), rows["position"].max())
+
+
+def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
+    """Mark static and kinetic friction on the axis of stresses."""
+    look: Look = {"rotation": 90, "va": "bottom", "color": GREY, "fontsize": SMALL}
+    look["transform"] = axes.get_xaxis_transform()
+    # Both names stand between the two lines.
+    for strength, side in zip(
+        rows.sort_values("value").itertuples(), ("left", "right"), strict=True
+    ):
+        axes.axvline(strength.value, color=GREY, linewidth=0.6, linestyle=":")
+        axes.text(strength.value, 0.02, strength.series, ha=side, **look)
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
@@ -135,7 +150,8 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
     draw_edges(axes, roles, grid.columns[-1])
     label = with_unit(r"slip velocity $\dot u$", roles, "slip_velocity")
-    label = rf"{label} (largest {look['vmax']:#.3g})"
+    largest = f"{look['vmax']:#.3g}".rstrip(".")
+    label = f"{label} (largest {largest})"
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
