@@ -55,6 +55,9 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """A scene as a simulation of one run that records everything, up to where its fronts may go."""
+    layer = scene.layer
+    friction_ratio = layer and layer.layer(scene.boundary).friction_ratio
+    scene = scene.in_model_units()
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
     level = min(max(scene.left, scene.right, *[level for _, level in scene.steps]), 1.0 - 1e-6)
     if level <= 0.0:
@@ -74,6 +77,8 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     given["duration"] = {"time": scene.duration}
     given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
     given["record"] = ["fronts", "fields", "samples"]
+    if friction_ratio is not None:
+        given["friction_ratio"] = friction_ratio
     return Simulation.model_validate(given)
 
 

@@ -4,7 +4,7 @@ The refusals (`refusals`) follow from these, and docs/describe.py makes the JSON
 tables of config/README.md from them. A class has no docstring where the key of it says enough.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
@@ -12,7 +12,9 @@ from pydantic_core import PydanticCustomError
 
 from ..model.checks import short_repr
 from ..model.friction import NAMES, friction_from
+from ..model.layer_units import BOUNDARY_OF_TOP, Layer
 from ..model.measured_columns import RECORD_FOR
+from ..model.si_quantities import PROFILE_QUANTITIES
 from .problems import nearest
 
 T = TypeVar("T")
@@ -70,6 +72,8 @@ Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Boundary = Literal["displacement", "stress"]
+Top = Literal["held", "stress"]
+TOP_OF_BOUNDARY: Mapping[str, str] = {value: name for name, value in BOUNDARY_OF_TOP.items()}
 Switch = Annotated[bool, Field(strict=False)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
@@ -101,6 +105,10 @@ RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
 ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "law of friction of sliding blocks, below; by default the model's"
+IN_SI = "a layer; then profile, `duration` and `dx` are in m, Pa and s"
+# Quantity of each number of a scene that is in SI units with a layer.
+SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
+SI_KEYS |= {"dx": "length", "duration": "time"}
 KEPT = "what is kept: release and stick times; slip, velocity, acceleration at the end; samples"
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
@@ -158,15 +166,19 @@ class Physics(Block):
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
+        if getattr(self, "layer", None) is None:
+            self._check_gamma()
+        self.alone("beta", "damping_ratio")
+        self.alone("rate_strengthening", "friction")
+        return self
+
+    def _check_gamma(self) -> None:
         gamma = getattr(self, "gamma", None)
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
         else:
             allowed = "left out under boundary 'stress', which has no leaf springs"
             require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
-        self.alone("beta", "damping_ratio")
-        self.alone("rate_strengthening", "friction")
-        return self
 
 
 class Simulation(Physics):
@@ -215,8 +227,32 @@ class Simulation(Physics):
         return self
 
 
+class LayerKeys(Block):
+    """A layer in SI units; `Layer` of the library says more about each number."""
+
+    thickness: Positive = key("thickness H, from the interface to what is held on top [m]")
+    shear_modulus: Positive = key("shear modulus G [Pa]")
+    lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
+    poisson_ratio: float | None = key("instead of `lame_parameter`, from -1 to 0.5", None)
+    density: Positive = key("density [kg/m3]")
+    static_friction: Positive = key("coefficient of static friction, above the kinetic one")
+    kinetic_friction: NonNegative = key("coefficient of kinetic friction")
+    normal_stress: Positive = key("normal stress on the interface [Pa]")
+    top: Top | None = key("held (displacement) or stress; by default as `boundary`", None)
+
+    @model_validator(mode="after")
+    def _known_layer(self) -> Self:
+        self.layer("displacement")
+        return self
+
+    def layer(self, boundary: str) -> Layer:
+        """The layer, with the condition on top that a boundary condition stands for."""
+        given = {"top": TOP_OF_BOUNDARY[boundary]} | self.plain()
+        return Layer(**given)
+
+
 class NamedScene(Profile, Physics):
-    """One run by name."""
+    """One run by name, non-dimensional, or in SI units with a layer."""
 
     title: str = key("above figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
@@ -224,9 +260,60 @@ class NamedScene(Profile, Physics):
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
-    dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
+    dx: Positive | None = key("block spacing, <= 1; by default the preset's [H]", None)
     release: Release | None = key("by default the model's", None)
     duration: Positive = key("how long the run is [H/c]")
+    layer: LayerKeys | None = key(IN_SI, None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _boundary_of_layer(cls, given: Any) -> Any:
+        """Take the boundary condition from a layer, if it is not given."""
+        layer = given.get("layer") if isinstance(given, dict) else None
+        if not isinstance(layer, dict) or "boundary" in given:
+            return given
+        top = layer.get("top") or "held"
+        known = isinstance(top, str) and top in BOUNDARY_OF_TOP
+        return given | {"boundary": BOUNDARY_OF_TOP[top]} if known else given
+
+    @model_validator(mode="after")
+    def _layer(self) -> Self:
+        if self.layer is None:
+            too_large = self.dx is not None and self.dx > 1.0
+            require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
+            return self
+        top = self.layer.top
+        agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
+        require(agree, f"boundary: {self.boundary!r}", f"what layer.top = {top!r} means, or none")
+        require(self.gamma is None, f"gamma: {self.gamma}", "none, since the layer has it")
+        self.in_model_units()
+        return self
+
+    def in_model_units(self) -> Self:
+        """The scene without its layer, non-dimensional; ValueError if a stress is not allowed."""
+        if self.layer is None:
+            return self
+        layer = self.layer.layer(self.boundary)
+        gamma = layer.gamma if self.boundary == "displacement" else None
+        given: dict[str, Any] = {"layer": None, "gamma": gamma}
+        for name, quantity in SI_KEYS.items():
+            value = getattr(self, name)
+            # A default is a number of the model already.
+            if name not in self.model_fields_set or value is None:
+                continue
+            if quantity == "stress":
+                given[name] = layer.level_from_pascal(name, value)
+            else:
+                given[name] = layer.convert_from_si(value, quantity)
+        allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
+        require((given.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
+        given["steps"] = [
+            (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
+            for x, level in self.steps
+        ]
+        quantities = PROFILE_QUANTITIES["bumps"]
+        given["bumps"] = [tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps]
+        return self.model_copy(update=given)
 
 
 class Preset(Block):

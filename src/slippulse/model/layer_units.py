@@ -390,6 +390,24 @@ class Layer:
         check_that(least > lowest, key, f"{least:g} Pa", allowed)
         return np.asarray(self.convert_from_si(stress, "stress"))
 
+    def level_from_pascal(self, key: str, stress: float) -> float:
+        """Convert the stress of a level, or of a peak, to a non-dimensional one.
+
+        Parameters
+        ----------
+        key : str
+            What a refusal names; a "peak" alone may reach static friction.
+        stress : float
+
+        Returns
+        -------
+        float
+        """
+        tau = float(self.stress_from_pascal(key, stress))
+        allowed = f"below static friction, {self.static_strength:g} Pa"
+        check_that(tau < 1.0 or key == "peak", key, f"{stress:g} Pa", allowed)
+        return tau
+
     def _check_outermost(self, key: str, tau: np.ndarray) -> None:
         """Refuse a table at static friction everywhere, or at an end, which goes on for ever."""
         below = f"below static friction, {self.static_strength:g} Pa"
