@@ -73,6 +73,7 @@ use rule step as draw_scene with:
     priority: 0
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
+        layer=lambda wildcards: LAYERS[wildcards.scene],
         altered=lambda wildcards: note_of({"data": [wildcards.scene]}),
     message:
         "Drawing scene {wildcards.scene}"
@@ -89,3 +90,4 @@ use rule step as animate_scene with:
     priority: 0
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
+        layer=lambda wildcards: LAYERS[wildcards.scene],

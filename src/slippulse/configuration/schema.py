@@ -289,6 +289,10 @@ class NamedScene(Profile, Physics):
         self.in_model_units()
         return self
 
+    def layer_parameters(self) -> dict[str, Any] | None:
+        """The parameters of the layer by name, as builtins; None if the scene has no layer."""
+        return None if self.layer is None else self.layer.layer(self.boundary).mapping()
+
     def in_model_units(self) -> Self:
         """The scene without its layer, non-dimensional; ValueError if a stress is not allowed."""
         if self.layer is None:

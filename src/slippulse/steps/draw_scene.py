@@ -6,23 +6,31 @@ from ..data.store import load_dataset
 from ..data.tables import load_table, save_table
 from ..figures import scene
 from ..figures.shared.numbers import scene_numbers
+from ..figures.shared.si_tables import numbers_in_si
 from ..figures.style import house_style, save_figure
+from ..model.layer_units import Layer
 from ..report.scene_page import scene_page
 
 FILES = ("report/templates/parts.html", "report/templates/scene.html")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html. Settings: title, altered."""
+    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html.
+
+    Settings: title, altered, layer (parameters of a scene in SI units, or None).
+    """
     title, note = settings["title"], settings["altered"]
+    layer = Layer(**settings["layer"]) if settings.get("layer") else None
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
+    if layer is not None:
+        numbers = numbers_in_si(numbers, row, layer)
     save_table(numbers, outputs["numbers"])
-    table = scene.table(data, numbers, row, title)
+    table = scene.table(data, numbers, row, title, layer)
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     with house_style():
         save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
-    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
+    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note, layer)
     write_text(page, outputs["html"])

@@ -1,5 +1,8 @@
 """Tables of a run converted to SI units with readable prefixes, before they are drawn."""
 
+import math
+
+import numpy as np
 import pandas as pd
 
 from ...data.readable_units import readable_unit
@@ -16,13 +19,20 @@ ON_AXES = ("prestress", "strength", "map", "largest", "profile", "steady")
 COLUMN_QUANTITIES = {"position": "length", "time": "time"}
 
 
-def numbers_in_si(numbers: pd.DataFrame, layer: Layer) -> pd.DataFrame:
-    """Convert main numbers (`shared.numbers`), each with a prefix of its own in a column unit."""
-    converted = numbers.assign(unit="")
-    for index, row in numbers.iterrows():
+def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:
+    """Convert main numbers (`shared.numbers`), each with a prefix of its own in a column unit.
+
+    The column paper has the number by the paper's formula as printed, from the row ``run`` of
+    measured and predicted numbers: its peak slip velocity in SI units is half of its own formula
+    without dimension (section IV A).
+    """
+    paper = [run.get(f"paper_{quantity}", math.nan) for quantity in numbers["quantity"]]
+    converted = numbers.assign(unit="", paper=np.array(paper, dtype=float))
+    converted.loc[converted["quantity"] == "pulse_peak_velocity", "paper"] *= 0.5
+    for index, row in converted.iterrows():
         quantity = QUANTITIES[str(row["quantity"])]
         unit = readable_unit(quantity, layer.convert_to_si(row["value"], quantity))
-        for column in ("value", "uncertainty", "theory"):
+        for column in ("value", "uncertainty", "theory", "paper"):
             number = layer.convert_to_si(row[column], quantity)
             converted.loc[index, column] = number / unit.value
         converted.loc[index, "unit"] = unit.text
