@@ -32,12 +32,16 @@ class ReadableUnit(NamedTuple):
 
 
 def readable_unit(quantity: str, numbers: object) -> ReadableUnit:
-    """Return the unit in which the largest of some numbers, in SI, is between 1 and 1000."""
+    """Return the unit in which the largest of some numbers, in SI, is between 1 and 1000.
+
+    It has no prefix if the numbers need a rarer one, or are all 0.
+    """
     unit, values = UNITS[quantity], np.abs(np.asarray(numbers, dtype=float))
     largest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
     if unit in WITHOUT_PREFIX or largest == 0.0:
         return ReadableUnit(TEXTS[unit], 1.0)
     # The largest number is often a round one, which must not fall below 1 by rounding.
     power = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
-    power = min(max(power, min(PREFIXES)), max(PREFIXES))
+    if power not in PREFIXES:
+        return ReadableUnit(TEXTS[unit], 1.0)
     return ReadableUnit(PREFIXES[power] + TEXTS[unit], 10.0**power)

@@ -89,7 +89,9 @@ def draw(table: pd.DataFrame) -> Figure:
         if len(axes.lines) > 2 and field == "slip_velocity":
             axes.legend(handles=axes.lines[1:3], loc="center")
         axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
-        axes.set_ylabel(with_unit(f"{name} at the end", roles, field))
+        # With a unit it would be longer than the panel is high.
+        end = "\nat the end" if "unit" in roles else " at the end"
+        axes.set_ylabel(with_unit(name, roles, field) + end)
         axes.set_xlim(ends["position"].min(), ends["position"].max())
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):

@@ -4,10 +4,12 @@ from ..data.point import point
 from ..data.store import load_dataset
 from ..figures.scene_animation import save_animation
 from ..figures.style import house_style
+from ..model.layer_units import Layer
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data. Outputs: gif. Settings: title."""
+    """Files: data. Outputs: gif. Settings: title, layer (or None)."""
+    layer = Layer(**settings["layer"]) if settings.get("layer") else None
     data = point(load_dataset(files["data"]), 0)
     with house_style():
-        save_animation(data, settings["title"], outputs["gif"])
+        save_animation(data, settings["title"], outputs["gif"], layer)
