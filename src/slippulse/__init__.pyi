@@ -6,6 +6,7 @@ from .figures.run import plot as plot
 from .model.friction import friction as friction
 from .model.layer_units import Layer as Layer
 from .model.prestress import Prestress as Prestress
+from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
 from .predict.one_run import measure as measure

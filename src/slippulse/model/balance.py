@@ -1,7 +1,7 @@
 """Integral of the pre-stress, and its balance, which ends a rupture under a stress boundary."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 
 import numpy as np
@@ -91,12 +91,50 @@ def _balance_position(prestress: Prestress) -> float:
     left, right = prestress.level(np.array([-distance, distance])).tolist()
     check_that(right == 0.0, "prestress.right", right, "0, or the balance integral is not finite")
     check_that(left < 0.0, "prestress.left", left, "< 0, or the pre-stress is never balanced")
+    if prestress.points:
+        return _balance_of_table(prestress, distance)
     lower, upper = -distance, 0.0
     while integral(prestress, lower, distance) > 0.0:
         lower *= 2.0
     if not integral(prestress, lower, distance) <= 0.0 <= integral(prestress, upper, distance):
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
     return root_to_last_bit(lambda x: integral(prestress, x, distance), lower, upper)
+
+
+def _balance_of_table(prestress: Prestress, distance: float) -> float:
+    """The first balance to the left of the nucleation, found from one interval to the next."""
+    x, tau = np.array(prestress.points).T
+    start = 0.0 if prestress.width is not None else float(x[np.argmax(tau)])
+    rest = integral(prestress, start, distance)
+    if not rest >= 0.0:
+        raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
+    for interval, left, right in _parts_leftwards(prestress, start):
+
+        def balance(position: float, part: tuple = (interval, right, rest)) -> float:
+            interval, right, rest = part
+            area = _linear_integral(prestress, interval, position, right)
+            for centre, amplitude, width in prestress.bumps:
+                area += amplitude * _gaussian_area(position, right, centre, width)
+            return rest + area
+
+        if left == -math.inf:
+            left = right - 1.0
+            while balance(left) >= 0.0:
+                left = right - 2.0 * (right - left)
+        rest = balance(left)
+        if rest < 0.0:
+            break
+    return root_to_last_bit(balance, left, right)
+
+
+def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[tuple[Interval, float, float]]:
+    """Parts of the intervals to the left of ``start``, on which the background keeps its sign."""
+    for interval in reversed(prestress.intervals):
+        left, right, low, high = interval
+        zero = left - low * (right - left) / (high - low) if low * high < 0.0 else right
+        for lower, upper in ((zero, right), (left, zero)):
+            if lower < min(upper, start):
+                yield interval, lower, min(upper, start)
 
 
 def root_to_last_bit(function: Callable[[float], float], lower: float, upper: float) -> float:

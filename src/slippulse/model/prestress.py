@@ -6,11 +6,12 @@ The background is two side levels with optional steps, or piecewise linear throu
 import json
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import groupby, pairwise
 from operator import itemgetter
+from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -24,7 +25,6 @@ NUMBERS = {"left": LEVEL, "right": LEVEL, "width": {"above": 0.0}, "peak": {}}
 PARTS: dict[str, dict[str, dict[str, Any]]] = {
     "steps": {"position": {}, "level": LEVEL},
     "bumps": {"centre": {}, "amplitude": {}, "width": {"above": 0.0}},
-    "points": {"x": {}, "tau": {}},
 }
 # A table of more points takes more memory than the lattice that it is for.
 MOST_POINTS = 100_000
@@ -97,6 +97,7 @@ class Prestress:
         for name, parts in PARTS.items():
             rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
             object.__setattr__(self, name, rows)
+        object.__setattr__(self, "points", _points(self.points))
         positions = [position for position, _ in self.steps]
         different = 0.0 not in positions and len({*positions}) == len(positions)
         allowed = "different positions, none of them 0 (see left, right)"
@@ -108,7 +109,7 @@ class Prestress:
 
     def _check_points(self) -> None:
         check_that(not self.steps, "prestress.steps", self.steps, "none with points")
-        x, tau = np.array(self.points).T
+        x, tau = self._table
         _check_table(x)
         for name, row in (("left", 0), ("right", -1)):
             allowed = f"{tau[row]!r}, the outermost value of the points"
@@ -152,14 +153,99 @@ class Prestress:
         >>> float(ramp.level(0.0))
         0.4
         """
-        columns = [_column(name, values) for name, values in (("x", x), ("tau", tau))]
-        positions, values = columns
-        size = positions.size
-        check_that(size == values.size, "prestress.points", values.size, f"{size} values, as of x")
-        _check_table(positions)
-        points = tuple(zip(positions.tolist(), values.tolist(), strict=True))
-        (_, left), (_, right) = points[0], points[-1]
-        return cls(left, right, width, peak, bumps=bumps, points=points)
+        positions, values = _column("x", x), _column("tau", tau)
+        size = len(positions)
+        check_that(size == len(values), "prestress.points", len(values), f"{size} values, as of x")
+        points = tuple(zip(positions, values, strict=True))
+        return cls(values[0], values[-1], width, peak, bumps=bumps, points=points)
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path,
+        x: str | None = None,
+        prestress: str | None = None,
+        width: float | None = None,
+        peak: float = 1.0,
+        bumps: tuple[tuple[float, float, float], ...] = (),
+    ) -> Self:
+        """A pre-stress through the points of a CSV or netCDF file, as by `through`.
+
+        Parameters
+        ----------
+        path : str or Path
+            A CSV file has the names of its columns in the first row, and their units in the second
+            if it gives any: H and S (the stress drop), or 1 or -. Rows that begin with # are
+            comments.
+        x, prestress : str, optional
+            Names of the two columns, or variables; by default those named x, position or distance,
+            and tau, prestress, shear_stress or stress.
+        width, peak, bumps
+            As in `through`.
+
+        Returns
+        -------
+        Prestress
+
+        Raises
+        ------
+        ValueError
+            In one line that names the file, the row and what is allowed.
+
+        Examples
+        --------
+        >>> profile = sp.Prestress.from_file("stress.csv", width=1.0)  # doctest: +SKIP
+        """
+        from .stress_file import read_dimensionless
+
+        table = read_dimensionless(path, x, prestress)
+        try:
+            return cls.through(table.x, table.prestress, width, peak, bumps)
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}") from None
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Callable[[float], float],
+        start: float,
+        stop: float,
+        tolerance: float,
+        width: float | None = None,
+        peak: float = 1.0,
+        bumps: tuple[tuple[float, float, float], ...] = (),
+    ) -> Self:
+        """A pre-stress through samples of a function, as by `through`.
+
+        Parameters
+        ----------
+        function : callable
+            Pre-stress (units of the stress drop) at a position (units of H).
+        start, stop : float, units of H
+            First and last position; the pre-stress is constant before and after them.
+        tolerance : float, units of the stress drop
+            Largest deviation of the lines between samples from the function. Features narrower than
+            1/256 of the range may be missed.
+        width, peak, bumps
+            As in `through`.
+
+        Returns
+        -------
+        Prestress
+
+        Raises
+        ------
+        ValueError
+            If the function is not finite somewhere, or needs too many samples.
+
+        Examples
+        --------
+        >>> profile = sp.Prestress.from_function(lambda x: 0.9 / (1.0 + x * x), -9.0, 9.0, 1e-3)
+        """
+        from .sampled_function import sample_function
+
+        x, tau = sample_function(function, start, stop, tolerance)
+        return cls.through(x, tau, width, peak, bumps)
 
     def __repr__(self) -> str:
         """The arguments that differ from the defaults; a long table by its size."""
@@ -271,42 +357,62 @@ def attributes_of(prestress: Prestress) -> dict[str, float | str]:
 
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
-    numbers = {name: attributes[name] for name in NUMBERS}
-    if isinstance(numbers["width"], float) and math.isnan(numbers["width"]):
-        numbers["width"] = None
+    numbers = [attributes[name] for name in NUMBERS]
     text = attributes["steps_and_bumps"]
+    plain = isinstance(text, str) and all(isinstance(number, float) for number in numbers)
+    if not plain:
+        return _from_text(text, *numbers)
+    return _cached_from_text(text, *(None if math.isnan(number) else number for number in numbers))
+
+
+def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
     try:
         given = {"points": ()} | json.loads(text)
-        parts = {name: given[name] for name in PARTS}
+        parts = {name: given[name] for name in (*PARTS, "points")}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps, and points of a table"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
     digest = isinstance(parts["points"], str)
     allowed = "the points themselves, which the data file of the run has"
     check_that(not digest, "steps_and_bumps points", parts["points"], allowed)
-    return Prestress(**numbers, **parts)
+    return Prestress(left, right, width, peak, **parts)
 
 
-def _column(name: str, values: Any) -> np.ndarray:
-    """One column of a table as numbers; ValueError names the first row that is not one."""
-    values = values.tolist() if isinstance(values, np.ndarray) else values
+# The numbers of one run are measured one after the other, and each starts from the pre-stress.
+_cached_from_text = lru_cache(maxsize=8)(_from_text)
+
+
+def _points(rows: Any) -> tuple[tuple[float, float], ...]:
+    """Points of a table as numbers; no points are no table."""
     try:
-        values = [*values]
+        pairs = [(x, tau) for x, tau in rows]
+    except (TypeError, ValueError):
+        allowed = "a list of [x, tau]"
+        raise ValueError(f"prestress.points: {short_repr(rows)}; allowed: {allowed}") from None
+    if not pairs:
+        return ()
+    x, tau = zip(*pairs, strict=True)
+    return tuple(zip(_column("x", x), _column("tau", tau), strict=True))
+
+
+def _column(name: str, values: Any) -> list[float]:
+    """One column of a table as numbers; ValueError names the first row that is not one."""
+    key, listed = f"prestress.points {name}", values
+    try:
+        listed = np.asarray(values).tolist() if hasattr(values, "__array__") else [*values]
+        size = len(listed)
     except TypeError:
-        allowed = "a sequence of numbers"
-        raise ValueError(f"prestress.points {name}: {short_repr(values)}; {allowed}") from None
-    check_that(len(values) >= 2, f"prestress.points {name}", values, "at least 2 values")
-    few = len(values) <= MOST_POINTS
-    allowed = f"at most {MOST_POINTS} points"
-    check_that(few, f"prestress.points {name}", len(values), allowed)
-    for row, value in enumerate(values, start=1):
-        check_number(f"prestress.points {name} in row {row}", value)
-    return np.array(values, dtype=float)
+        size = 0
+    check_that(2 <= size <= MOST_POINTS, key, size, f"2 to {MOST_POINTS} numbers")
+    if all(type(value) is float for value in listed) and np.all(np.isfinite(listed)):
+        return listed
+    for row, value in enumerate(listed, start=1):
+        check_number(f"{key} in row {row}", value)
+    return [*map(float, listed)]
 
 
 def _check_table(x: np.ndarray) -> None:
-    """Refuse too few or too many points, and positions that are not in order."""
-    check_that(2 <= x.size <= MOST_POINTS, "prestress.points", x.size, f"2 to {MOST_POINTS} points")
+    """Refuse positions that are not in order."""
     for row in (np.flatnonzero(np.diff(x) < 0.0) + 2)[:1].tolist():
         allowed = f">= {x[row - 2]:.10g}, the x of the row before"
         check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
