@@ -6,6 +6,8 @@ import sys
 from collections.abc import Mapping
 from dataclasses import KW_ONLY, asdict, dataclass
 from numbers import Real
+from os import PathLike
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +17,7 @@ from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 from .si_quantities import QUANTITIES, UNITS, VARIABLES, converted_numbers, converted_run
+from .si_stress_file import read_in_si
 
 # Boundary condition of a scene for each condition at the top of a layer.
 BOUNDARY_OF_TOP = {"held": "displacement", "stress": "stress"}
@@ -198,6 +201,13 @@ class Layer:
             energy=self.strength_drop * slip * self.thickness,
         )
 
+    @property
+    def units_in_words(self) -> str:
+        """The units of the model, for a refusal that is in these."""
+        length, time = f"{self.scales.length:.4g} m", f"{self.scales.time:.4g} s"
+        stresses = f"{self.kinetic_strength:.6g} and 1 at {self.static_strength:.6g} Pa"
+        return f"in units of the layer: {length}, {time}; stress is 0 at {stresses}"
+
     def convert_to_si(self, values: Any, quantity: str) -> Any:
         """Convert non-dimensional numbers to SI units.
 
@@ -307,15 +317,18 @@ class Layer:
             check_that(beta is None, "beta", beta, "nothing beside damping_ratio")
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             parameters["beta"] = damping_ratio * dx
-        return Scene(
-            boundary=self.boundary,
-            prestress=profile,
-            duration=self.convert_from_si(float(duration_in_seconds), "time"),
-            dx=dx,
-            gamma=self.gamma if self.top == "held" else 0.0,
-            friction_ratio=self.friction_ratio,
-            **parameters,
-        )
+        try:
+            return Scene(
+                boundary=self.boundary,
+                prestress=profile,
+                duration=self.convert_from_si(float(duration_in_seconds), "time"),
+                dx=dx,
+                gamma=self.gamma if self.top == "held" else 0.0,
+                friction_ratio=self.friction_ratio,
+                **parameters,
+            )
+        except ValueError as error:
+            raise ValueError(f"{error} ({self.units_in_words})") from None
 
     def prestress(
         self,
@@ -348,28 +361,14 @@ class Layer:
             level = float(self.stress_from_pascal("prestress_in_pascal", prestress_in_pascal))
             self._check_outermost("prestress_in_pascal", np.array([level]))
             return Prestress(level, level, width, peak)
-        x, stress = self._table(prestress_in_pascal)
-        tau = self.stress_from_pascal("prestress_in_pascal", stress)
-        self._check_outermost("prestress_in_pascal", tau)
+        if isinstance(prestress_in_pascal, str | PathLike):
+            key, table = str(prestress_in_pascal), read_in_si(Path(prestress_in_pascal))
+        else:
+            key, table = "prestress_in_pascal", _columns(prestress_in_pascal)
+        x, stress = table
+        tau = self.stress_from_pascal(key, stress)
+        self._check_outermost(key, tau)
         return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
-
-    def _table(self, given: Any) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and stresses of a pair of sequences, or of a file."""
-        try:
-            x, stress = given
-        except (TypeError, ValueError):
-            allowed = "a stress in Pa, a pair (positions in m, stresses in Pa), or a file"
-            raise ValueError(
-                f"prestress_in_pascal: {short_repr(given)}; allowed: {allowed}"
-            ) from None
-        columns = [
-            as_numbers(f"prestress_in_pascal {name}", column)
-            for name, column in (("positions", x), ("stresses", stress))
-        ]
-        alike = columns[0].ndim == 1 and columns[0].shape == columns[1].shape
-        allowed = "as many positions as stresses, in one row each"
-        check_that(alike, "prestress_in_pascal", [column.shape for column in columns], allowed)
-        return columns[0], columns[1]
 
     def stress_from_pascal(self, key: str, stress: Any) -> np.ndarray:
         """Convert stresses (Pa) to non-dimensional ones, and refuse those that slide backwards.
@@ -551,3 +550,18 @@ def _check_run(run: Any, unit_of_x: str, allowed: str) -> None:
     check_that(known, "run", type(run).__name__, f"{allowed}; point takes one run out of a sweep")
     unit = run["x"].attrs.get("units")
     check_that(unit == unit_of_x, "run: units of x", unit, f"{unit_of_x!r}: {allowed}")
+
+
+def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Positions and stresses of a pair of sequences."""
+    try:
+        x, stress = given
+    except (TypeError, ValueError):
+        allowed = "a stress in Pa, a pair (positions in m, stresses in Pa), or a file"
+        raise ValueError(f"prestress_in_pascal: {short_repr(given)}; allowed: {allowed}") from None
+    positions = as_numbers("prestress_in_pascal positions", x)
+    stresses = as_numbers("prestress_in_pascal stresses", stress)
+    alike = positions.ndim == 1 and positions.shape == stresses.shape and positions.size >= 2
+    allowed = "two or more positions, and as many stresses"
+    check_that(alike, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
+    return positions, stresses
