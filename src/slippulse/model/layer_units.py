@@ -121,9 +121,11 @@ class Layer:
         check_that(higher, "static_friction", self.static_friction, allowed)
         check_choice("top", self.top, tuple(BOUNDARY_OF_TOP))
         self._check_second_modulus()
-        finite = all(map(math.isfinite, self.scales)) and min(self.scales) > 0.0
-        scales = ", ".join(f"{scale:.3g}" for scale in self.scales)
-        check_that(finite, "layer", scales, "numbers whose scales are finite and above 0")
+        try:
+            usable = all(math.isfinite(scale) and scale > 0.0 for scale in self.scales)
+        except ArithmeticError:
+            usable = False
+        check_that(usable, "layer", self.mapping(), "numbers near those of a material")
 
     def _check_second_modulus(self) -> None:
         given = {"lame_parameter": self.lame_parameter, "poisson_ratio": self.poisson_ratio}
@@ -368,7 +370,10 @@ class Layer:
         x, stress = table
         tau = self.stress_from_pascal(key, stress)
         self._check_outermost(key, tau)
-        return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
+        try:
+            return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
+        except ValueError as error:
+            raise ValueError(f"{error} ({self.units_in_words})") from None
 
     def stress_from_pascal(self, key: str, stress: Any) -> np.ndarray:
         """Convert stresses (Pa) to non-dimensional ones, and refuse those that slide backwards.
@@ -384,9 +389,9 @@ class Layer:
         array
         """
         stress, lowest = as_numbers(key, stress), -self.static_strength
-        least = float(stress.min(initial=math.inf))
-        allowed = f"> {lowest:g} Pa, minus static friction, or the interface slides backwards"
-        check_that(least > lowest, key, f"{least:g} Pa", allowed)
+        if stress.min(initial=math.inf) <= lowest:
+            allowed = f"> {lowest:g} Pa, minus static friction, or the interface slides backwards"
+            raise ValueError(f"{key}: {stress.min():.6g} Pa; allowed: {allowed}")
         return np.asarray(self.convert_from_si(stress, "stress"))
 
     def level_from_pascal(self, key: str, stress: float) -> float:
@@ -404,7 +409,8 @@ class Layer:
         """
         tau = float(self.stress_from_pascal(key, stress))
         allowed = f"below static friction, {self.static_strength:g} Pa"
-        check_that(tau < 1.0 or key == "peak", key, f"{stress:g} Pa", allowed)
+        if tau >= 1.0 and key != "peak":
+            raise ValueError(f"{key}: {stress:.6g} Pa; allowed: {allowed}")
         return tau
 
     def _check_outermost(self, key: str, tau: np.ndarray) -> None:
@@ -416,7 +422,8 @@ class Layer:
             raise ValueError(f"{key}: {everywhere}; allowed: {below} somewhere")
         for name, row in (("first", 0), ("last", -1)):
             stress = self.convert_to_si(float(tau[row]), "stress")
-            check_that(tau[row] < 1.0, f"{key}, {name} value", f"{stress:g} Pa", below)
+            if tau[row] >= 1.0:
+                raise ValueError(f"{key}: {name} value {stress:.6g} Pa; allowed: {below}")
 
     def _check_that_something_moves(self, profile: Prestress, dx: float) -> None:
         """Refuse an initial stress that reaches static friction at no block."""
@@ -564,4 +571,8 @@ def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
     alike = positions.ndim == 1 and positions.shape == stresses.shape and positions.size >= 2
     allowed = "two or more positions, and as many stresses"
     check_that(alike, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
+    for row in (np.flatnonzero(np.diff(positions) < 0.0) + 1)[:1]:
+        allowed = f">= {positions[row - 1]:.10g} m, the position in the row before"
+        given = f"position {positions[row]:.10g} m in row {row + 1}"
+        raise ValueError(f"prestress_in_pascal: {given}; allowed: {allowed}")
     return positions, stresses
