@@ -360,16 +360,14 @@ class Layer:
             )
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
         if isinstance(prestress_in_pascal, Real) and not isinstance(prestress_in_pascal, bool):
-            level = float(self.stress_from_pascal("prestress_in_pascal", prestress_in_pascal))
-            self._check_outermost("prestress_in_pascal", np.array([level]))
+            (level,) = self.table_from_pascal("prestress_in_pascal", [prestress_in_pascal]).tolist()
             return Prestress(level, level, width, peak)
         if isinstance(prestress_in_pascal, str | PathLike):
             key, table = str(prestress_in_pascal), read_in_si(Path(prestress_in_pascal))
         else:
             key, table = "prestress_in_pascal", _columns(prestress_in_pascal)
         x, stress = table
-        tau = self.stress_from_pascal(key, stress)
-        self._check_outermost(key, tau)
+        tau = self.table_from_pascal(key, stress)
         try:
             return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
         except ValueError as error:
@@ -413,8 +411,23 @@ class Layer:
             raise ValueError(f"{key}: {stress:.6g} Pa; allowed: {allowed}")
         return tau
 
-    def _check_outermost(self, key: str, tau: np.ndarray) -> None:
-        """Refuse a table at static friction everywhere, or at an end, which goes on for ever."""
+    def table_from_pascal(self, key: str, stress: Any) -> np.ndarray:
+        """Convert the stresses of a table to non-dimensional ones.
+
+        They are refused if they are at static friction everywhere, or at an end, beyond which the
+        stress is constant.
+
+        Parameters
+        ----------
+        key : str
+            What a refusal names.
+        stress : array
+
+        Returns
+        -------
+        array
+        """
+        tau = self.stress_from_pascal(key, stress)
         below = f"below static friction, {self.static_strength:g} Pa"
         lowest = self.convert_to_si(float(tau.min()), "stress")
         everywhere = f"at least {lowest:g} Pa everywhere"
@@ -424,6 +437,7 @@ class Layer:
             stress = self.convert_to_si(float(tau[row]), "stress")
             if tau[row] >= 1.0:
                 raise ValueError(f"{key}: {name} value {stress:.6g} Pa; allowed: {below}")
+        return tau
 
     def _check_that_something_moves(self, profile: Prestress, dx: float) -> None:
         """Refuse an initial stress that reaches static friction at no block."""

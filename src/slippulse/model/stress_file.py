@@ -72,9 +72,8 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
     table = read_stress_file(path, x, prestress)
     units = {"x": table.x_unit, "prestress": table.prestress_unit}
     for name, unit in units.items():
-        allowed = DIMENSIONLESS[name]
-        if unit not in allowed:
-            words = ", ".join(filter(None, allowed))
+        if unit not in DIMENSIONLESS[name]:
+            words = ", ".join(filter(None, DIMENSIONLESS[name]))
             raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {words}")
     for place, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
         if not value < 1.0:

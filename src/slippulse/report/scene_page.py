@@ -71,6 +71,9 @@ def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
         return _with_unit(layer.convert_to_si(value, quantity), quantity)
 
     profile, parts = prestress_from(attributes), []
+    if profile.points:
+        first, last = (write(profile.points[row][0], "length") for row in (0, -1))
+        parts.append(f"linear between {len(profile.points)} points from x = {first} to {last}")
     for x, level in profile.steps:
         parts.append(f"step to {write(level, 'stress')} at x = {write(x, 'length')}")
     for x, amplitude, width in profile.bumps:
