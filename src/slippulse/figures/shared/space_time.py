@@ -8,7 +8,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ...model.prestress import prestress_from
 from ...model.recorded_law import law_of
-from ..style import BLACK, GREY, SMALL, Look, conditions
+from ..style import BLACK, GREY, HALO, SMALL, Look, conditions
 from .selection import spaced_indices
 from .si_tables import with_unit
 
@@ -153,14 +153,16 @@ def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
 
 def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
     """Mark static and kinetic friction on the axis of stresses."""
-    look: Look = {"rotation": 90, "va": "bottom", "color": GREY, "fontsize": SMALL}
+    look: Look = {"rotation": 90, "color": GREY, "fontsize": SMALL, "path_effects": HALO}
     look["transform"] = axes.get_xaxis_transform()
-    # Both names stand between the two lines.
-    for strength, side in zip(
-        rows.sort_values("value").itertuples(), ("left", "right"), strict=True
-    ):
+    # Both names stand between the two lines, at different heights.
+    places: list[Look] = [
+        {"y": 0.98, "ha": "left", "va": "top"},
+        {"y": 0.02, "ha": "right", "va": "bottom"},
+    ]
+    for strength, place in zip(rows.sort_values("value").itertuples(), places, strict=True):
         axes.axvline(strength.value, color=GREY, linewidth=0.6, linestyle=":")
-        axes.text(strength.value, 0.02, strength.series, ha=side, **look)
+        axes.text(x=strength.value, s=strength.series, **place, **look)
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
