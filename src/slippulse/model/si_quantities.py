@@ -98,6 +98,9 @@ def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[st
     if "steps_and_bumps" in converted:
         parts = json.loads(converted["steps_and_bumps"])
         for part, rows in parts.items():
+            if not isinstance(rows, list):
+                # A measured table has a summary of the points.
+                continue
             quantities = PROFILE_QUANTITIES[part]
             parts[part] = [[*map(convert, row, quantities)] for row in rows]
         converted["steps_and_bumps"] = json.dumps(parts)
