@@ -6,6 +6,7 @@ from itertools import product
 from typing import Any
 
 from ..data.chunks import runs_of
+from ..model.checks import check_that
 from ..model.prestress import Prestress
 from ..model.run import Run
 from .profiles import TABLES, label_of, prestress_of
@@ -89,6 +90,9 @@ def _spacing(
         return float(rule["fixed"])
     spacing = simulation["spacings"][index] if "spacings" in simulation else given
     if spacing is None:
+        known = profile.width is not None or rule["width_power"] == 0.0
+        allowed = "0 for a profile without a width"
+        check_that(known, "spacing.width_power", rule["width_power"], allowed)
         powers = (profile.width or 1.0) ** rule["width_power"] * gamma ** rule["gamma_power"]
         spacing = simulation["accuracy"]["dx"] * rule["scale"] * powers
     # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.

@@ -134,11 +134,11 @@ class Rough(Block):
 class Profile(Block):
     """One pre-stress."""
 
-    left: float | None = key("level of the pre-stress far to the left [S]", None)
-    right: float | None = key("level far to the right [S]", None)
+    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
+    right: float | None = key("level far to the right, without a table [S]", None)
     width: Positive | None = key(
-        "standard deviation W of the Gaussian at x = 0, >= dx; without it, `points` and `file` have"
-        " no Gaussian [H] (paper)",
+        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
+        " have no Gaussian [H] (paper)",
         1.0,
     )
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)

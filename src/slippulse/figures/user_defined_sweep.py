@@ -9,7 +9,7 @@ from .style import CYCLE, GREY, OPEN, PAGE, SYMBOLS, conditions, entry, legend_b
 # Columns that may vary in a sweep, and the names of those without a symbol.
 VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
 # With tables of pre-stress, their numbers say more than the levels at their ends.
-OF_TABLES = ("profile", "seed", "gamma", "damping_ratio", "width", "release", "dx")
+OF_TABLES = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
 WORDS = {"beyond": "level beyond the step", "release": "release rule"}
 WORDS |= {"profile": "profile", "seed": "seed"}
 

@@ -112,7 +112,7 @@ class Prestress:
         x, tau = self._table
         _check_table(x)
         for name, row in (("left", 0), ("right", -1)):
-            allowed = f"{tau[row]!r}, the outermost value of the points"
+            allowed = f"{float(tau[row])!r}, the outermost value of the points"
             level = getattr(self, name)
             check_that(level == tau[row], f"prestress.{name}", level, allowed)
 

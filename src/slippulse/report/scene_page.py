@@ -42,6 +42,9 @@ def scene_page(
         numbers_in_si = layer.numbers_to_si(attributes)
         for key in shown.keys() & QUANTITIES.keys():
             shown[key] = _with_unit(numbers_in_si[key], QUANTITIES[key])
+    if "width" in shown and not math.isfinite(attributes["width"]):
+        shown["width"] = "no Gaussian at x = 0"
+        shown.pop("peak", None)
     if "friction" in shown:
         law = law_of(attributes)
         words = [law.pop("law").replace("_", " ")]
