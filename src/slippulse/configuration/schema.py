@@ -287,7 +287,7 @@ class LayerKeys(Block):
     thickness: Positive = key("thickness H, from the interface to what is held on top [m]")
     shear_modulus: Positive = key("shear modulus G [Pa]")
     lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
-    poisson_ratio: float | None = key("instead of `lame_parameter`, from -1 to 0.5", None)
+    poisson_ratio: float | None = key("instead of `lame_parameter`; between -1 and 0.5", None)
     density: Positive = key("density [kg/m3]")
     static_friction: Positive = key("coefficient of static friction, above the kinetic one")
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
