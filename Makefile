@@ -18,7 +18,7 @@ export PYTHONDONTWRITEBYTECODE :=
 unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT \
     PIP_PYTHON PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
-LOCK := src/slippulse/data/lock.py
+LOCK := src/slippulse_paper/records/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
@@ -117,11 +117,11 @@ replicate: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@"$(BIN)/python" -m snakemake --workflow-profile none --logger slippulse --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
+	@"$(BIN)/python" -m snakemake --workflow-profile none --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
 	    -- $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
 
 verify: $(READY)
-	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
+	@$(if $(AGAINST),"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)

@@ -61,9 +61,9 @@ class import_module:
 
 def imitate_steps(folder: Path) -> None:
     """Let the jobs of a copy write short texts instead of running their steps."""
-    path = folder / "src/slippulse/steps/job.py"
+    path = folder / "src/slippulse_paper/steps/job.py"
     text = path.read_text(encoding="utf-8")
-    assert text.count('import_module(f"slippulse.steps.') == 1
+    assert text.count('import_module(f"slippulse_paper.steps.') == 1
     path.write_text(text + IMITATION, encoding="utf-8")
 
 

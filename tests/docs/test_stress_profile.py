@@ -10,9 +10,9 @@ import yaml
 from pipeline_copy import copy_project, made
 
 import slippulse as sp
-from slippulse.configuration.expand import expand
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, resolve, scene_simulation
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.resolve import accuracy_of, resolve, scene_simulation
 
 
 @pytest.fixture

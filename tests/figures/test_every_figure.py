@@ -14,11 +14,11 @@ from matplotlib.path import Path as Outline
 from matplotlib.text import Text
 from PIL import Image
 
-from slippulse.figures import fig02_phase_diagram as phases
-from slippulse.figures.style import PAGE, colour_scale, save_figure
 from slippulse.measurement.regime import REGIMES
+from slippulse.plotting.style import PAGE, colour_scale, save_figure
+from slippulse_paper.figures import fig02_phase_diagram as phases
 
-MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
+MODULES = Path(__file__).parents[2] / "src/slippulse_paper/figures"
 NAMES = sorted(path.stem for path in (*MODULES.glob("fig*.py"), *MODULES.glob("study*.py")))
 # Studies are among the slow tests.
 DRAWN = [name for name in NAMES if name.startswith("fig")]

@@ -13,10 +13,10 @@ from PIL import Image
 from pypdf import PdfReader
 
 from slippulse.data.files import CONFIGURATION
-from slippulse.figures import style
-from slippulse.figures.fig06_burridge_knopoff import COLOURS
-from slippulse.figures.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
-from slippulse.steps import draw_figure
+from slippulse.plotting import style
+from slippulse.plotting.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
+from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
+from slippulse_paper.steps import draw_figure
 
 # Rows of linear red, green, blue.
 VISION = {

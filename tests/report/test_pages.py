@@ -10,13 +10,13 @@ import yaml
 from PIL import Image
 from report.conftest import CLAIM, FRONT
 
-from slippulse.claims.kinds import Qualitative
-from slippulse.claims.paper import written
-from slippulse.data.provenance import provenance
-from slippulse.report import html
-from slippulse.report.claims_page import claims_page
-from slippulse.report.index_page import index_page
-from slippulse.report.texts import ERRATUM
+from slippulse_paper.claims.kinds import Qualitative
+from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.records.provenance import provenance
+from slippulse_paper.report import html
+from slippulse_paper.report.claims_page import claims_page
+from slippulse_paper.report.index_page import index_page
+from slippulse_paper.report.texts import ERRATUM
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "why": "It is *off*."}

@@ -11,12 +11,12 @@ import yaml
 from PIL import Image
 from report.conftest import DIGEST
 
-from slippulse.claims.ledger import with_texts
-from slippulse.data.numerals import with_uncertainty
-from slippulse.figures.style import FAMILY
-from slippulse.report.manuscript import DOCUMENTS, execute, names_for
-from slippulse.report.texts import read_captions
-from slippulse.steps import write_report
+from slippulse.plotting.style import FAMILY
+from slippulse_paper.claims.ledger import with_texts
+from slippulse_paper.report.manuscript import DOCUMENTS, execute, names_for
+from slippulse_paper.report.texts import read_captions
+from slippulse_paper.steps import write_report
+from slippulse_paper.text.numerals import with_uncertainty
 
 # Pages of the report; the supplement may be longer.
 MOST_PAGES = 14

@@ -7,7 +7,7 @@ import pytest
 
 import slippulse as sp
 from slippulse.theory import rate_pulse, steady_pulse, weakening_pulse
-from slippulse.theory.friction_laws import undamped_weakening_slip
+from slippulse.theory.law_pulses import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
 # tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.

@@ -15,7 +15,7 @@ from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.model.balance import integral
 from slippulse.model.cost import bound_of
-from slippulse.predict.comparison import measured_table
+from slippulse.prediction.comparison import measured_table
 
 X = [-9.0, -4.0, -4.0, -1.5, 0.5, 3.0, 3.0, 8.0]
 TAU = [0.1, 0.4, -0.2, 0.3, 1.0, 0.2, 0.6, 0.35]

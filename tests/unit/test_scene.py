@@ -13,7 +13,7 @@ from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.model.balance import integral
-from slippulse.predict.comparison import measured_table
+from slippulse.prediction.comparison import measured_table
 
 STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
 DISPLACEMENT = STRESS | {"boundary": "displacement", "gamma": 0.65, "beta": 1e-3}

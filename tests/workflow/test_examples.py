@@ -10,7 +10,7 @@ import tolerances as tol
 from pipeline_copy import copy_project, made
 
 from slippulse import Layer, Prestress, theory
-from slippulse.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.read import read_config, read_overlay
 
 FRICTION = {"static_friction": 0.6, "kinetic_friction": 0.5}
 

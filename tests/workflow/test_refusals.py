@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.configuration.limits import bound_of_sweep
-from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import LARGEST_FILE, read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.model.cost import HOW_TO_GO_ON
+from slippulse_paper.configuration.limits import bound_of_sweep
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.read import LARGEST_FILE, read_config, read_overlay
+from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
 
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]

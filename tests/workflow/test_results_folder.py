@@ -78,8 +78,8 @@ MOVES = {
 }
 OLD_SOURCES = {
     f"edit src/slippulse/{FIGURE}.py": {f"{FIGURE}.png": SOURCES},
-    "edit src/slippulse/studies/extremes.py": {"studies/extremes.csv": SOURCES},
-    "edit src/slippulse/report/templates/explorer.html": {"explorer.html": SOURCES},
+    "edit src/slippulse_paper/studies/extremes.py": {"studies/extremes.csv": SOURCES},
+    "edit src/slippulse_paper/report/templates/explorer.html": {"explorer.html": SOURCES},
     "edit manuscript/summary.yaml": {"index.html": SOURCES},
     "edit workflow/rules/common.smk": {"provenance.json": SOURCES},
     "edit src/slippulse/solver/taylor.py": {"data/one.nc": SOURCES},

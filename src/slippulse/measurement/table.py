@@ -10,7 +10,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import law_of
-from .fronts import fit_front, position_at
+from .front_paths import fit_front, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
 from .transition import transition_displacement, transition_stress

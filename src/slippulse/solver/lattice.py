@@ -7,7 +7,7 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
-from .friction import begin_to_fall, constants_of
+from .friction_terms import begin_to_fall, constants_of
 
 # A call of a kernel makes at most this number of steps, and of updates of a block, which take about
 # a tenth of a second. Between calls Python tells the progress and can be interrupted.
