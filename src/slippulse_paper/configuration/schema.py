@@ -15,6 +15,8 @@ from slippulse.model.checks import short_repr
 from slippulse.model.friction import NAMES, friction_from
 from slippulse.model.layer_units import BOUNDARY_OF_TOP, Layer
 from slippulse.model.measured_columns import RECORD_FOR
+from slippulse.model.prestress import Prestress
+from slippulse.model.rough_prestress import rough
 from slippulse.model.si_quantities import PROFILE_QUANTITIES
 
 from .problems import nearest
@@ -131,6 +133,11 @@ class Rough(Block):
     spacing: Positive = key("distance of the positions [H]")
     seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
 
+    def check(self) -> None:
+        """Raise ValueError if there is no such background."""
+        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
+        rough(**(self.plain() | {"seed": seed}))
+
 
 class Profile(Block):
     """One pre-stress."""
@@ -169,14 +176,27 @@ class Profile(Block):
             return self
         given = [*tables, *levels, *(["steps"] if self.steps else [])]
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
-        if self.rough is not None and getattr(self, "layer", None) is None:
-            level = self.rough.level
-            require(level < 1.0, f"rough.level: {level}", "a number < 1")
-        if "points" in own and "width" not in self.model_fields_set:
+        if self.points is not None and "width" not in self.model_fields_set:
             self.__dict__["width"] = None
         if "file" in own:
             require("points" in own, f"file: {short_repr(self.file)}", "in an overlay")
+        # The numbers of a scene with a layer are checked when they have no unit any more.
+        if getattr(self, "layer", None) is None:
+            self.check_table()
         return self
+
+    def check_table(self) -> None:
+        """Raise ValueError if the points or the rough background are not allowed."""
+        if self.points is not None:
+            try:
+                Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
+            except ValueError as error:
+                raise ValueError(str(error).removeprefix("prestress.")) from None
+        if self.rough is not None:
+            try:
+                self.rough.check()
+            except ValueError as error:
+                raise ValueError(f"rough.{error}") from None
 
 
 class Beyond(Block):
@@ -341,7 +361,12 @@ class NamedScene(Profile, Physics):
         agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
         require(agree, f"boundary: {self.boundary!r}", f"what layer.top = {top!r} means, or none")
         require(self.gamma is None, f"gamma: {self.gamma}", "none, since the layer has it")
-        self.in_model_units()
+        scene = self.in_model_units()
+        try:
+            scene.check_table()
+        except ValueError as error:
+            words = self.layer.layer(self.boundary).units_in_words
+            raise ValueError(f"{error} ({words})") from None
         return self
 
     def layer_parameters(self) -> dict[str, Any] | None:
@@ -391,11 +416,11 @@ class NamedScene(Profile, Physics):
             columns = layer.convert_from_si(x, "length").tolist(), tau.tolist()
             given["points"] = [*zip(*columns, strict=True)]
         if self.rough is not None:
-            rough = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
-            rough["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            changed = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
+            changed["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
             for name in ("correlation_length", "start", "stop", "spacing"):
-                rough[name] = layer.convert_from_si(getattr(self.rough, name), "length")
-            given["rough"] = self.rough.model_copy(update=rough)
+                changed[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+            given["rough"] = self.rough.model_copy(update=changed)
         return given
 
 
