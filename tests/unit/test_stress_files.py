@@ -5,7 +5,6 @@ import os
 import numpy as np
 import pytest
 import xarray as xr
-from slippulse.data.records import digest_of
 
 import slippulse as sp
 from slippulse_paper.configuration.expand import expand
@@ -13,6 +12,7 @@ from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.read import read_config, read_overlay
 from slippulse_paper.configuration.resolve import all_simulations, resolve, scene_simulation
 from slippulse_paper.configuration.runs import profile_labels
+from slippulse_paper.records.job_records import digest_of
 
 POINTS = ((-2.0, 0.3), (0.0, 1.0), (3.0, 0.4), (3.0, 0.2))
 TEXT = "x,tau\n-2,0.3\n0,1\n3,0.4\n3,0.2\n"
