@@ -337,8 +337,24 @@ def test_a_run_of_another_layer_is_refused(ruptured):
             other.to_si(run)
     with pytest.raises(ValueError, match=r"layer: .*allowed: the layer that converted the run"):
         other.from_si(layer.to_si(run))
-    with pytest.raises(ValueError, match="run: units of x: 'm'; allowed: '1'"):
+    with pytest.raises(ValueError, match="run: in SI units; allowed: a run without units"):
         layer.to_si(layer.to_si(run))
+    with pytest.raises(ValueError, match="run: without units; allowed: a run that to_si returned"):
+        layer.from_si(run)
+    in_millimetres = layer.to_si(run).assign_coords(x=layer.to_si(run)["x"] * 1e3)
+    in_millimetres["x"].attrs["units"] = "mm"
+    with pytest.raises(ValueError, match="run: units of x: 'mm'; allowed: 'm'"):
+        layer.from_si(in_millimetres)
+
+
+def test_a_run_of_a_sweep_is_converted_too(ruptured):
+    layer, scene, run = ruptured
+    sweep = sp.run_sweep([scene, scene], record=("fronts", "fields"))
+    converted, expected = layer.to_si(sp.point(sweep, 1)), layer.to_si(run)
+    assert np.array_equal(converted["slip"], expected["slip"])
+    assert converted["release_time"].attrs["units"] == "s"
+    with pytest.raises(ValueError, match="point takes one run out of a sweep"):
+        layer.to_si(sweep)
 
 
 def test_static_friction_starts_a_rupture_in_spite_of_rounding():

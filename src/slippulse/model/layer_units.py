@@ -490,7 +490,9 @@ class Layer:
         ValueError
             If `run` is no such Dataset, or a run of another boundary condition or elasticity ratio.
         """
-        _check_run(run, "1", "a Dataset that simulate returned")
+        _check_run(run)
+        if "layer" in run.attrs:
+            raise ValueError("run: in SI units; allowed: a run without units")
         self._check_same_layer(run.attrs)
         data = converted_run(run, self.convert_to_si)
         units = {name: UNITS[QUANTITIES[name]] for name in run.attrs if name in QUANTITIES}
@@ -518,9 +520,14 @@ class Layer:
         ValueError
             If `run` is no such Dataset, or was converted by another layer.
         """
-        _check_run(run, "m", "a Dataset that to_si returned")
+        _check_run(run)
         recorded = layer_of(run.attrs)
+        if recorded is None:
+            raise ValueError("run: without units; allowed: a run that to_si returned")
         check_that(recorded == self, "layer", recorded, "the layer that converted the run")
+        for name in run.variables:
+            unit, expected = run[name].attrs.get("units"), UNITS[QUANTITIES[name]]
+            check_that(unit == expected, f"run: units of {name}", unit, repr(expected))
         data = converted_run(run, self.convert_from_si)
         for name in ("units_of_attributes", "layer"):
             del data.attrs[name]
@@ -564,13 +571,12 @@ def layer_of(attributes: Mapping) -> Layer | None:
     return Layer(**json.loads(attributes["layer"])) if "layer" in attributes else None
 
 
-def _check_run(run: Any, unit_of_x: str, allowed: str) -> None:
-    """Refuse anything but one run whose positions have a given unit."""
+def _check_run(run: Any) -> None:
+    """Refuse anything but one run over x."""
     known = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
     known = known and set(run.variables) <= set(VARIABLES)
-    check_that(known, "run", type(run).__name__, f"{allowed}; point takes one run out of a sweep")
-    unit = run["x"].attrs.get("units")
-    check_that(unit == unit_of_x, "run: units of x", unit, f"{unit_of_x!r}: {allowed}")
+    allowed = "a Dataset that simulate returned; point takes one run out of a sweep"
+    check_that(known, "run", type(run).__name__, allowed)
 
 
 def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
