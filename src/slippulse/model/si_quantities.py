@@ -64,9 +64,9 @@ _NAMES = {
         friction_loss
     """,
 }
-QUANTITIES: Mapping[str, str] = {
-    name: quantity for quantity, names in _NAMES.items() for name in names.split()
-} | {name: quantity for name, (quantity, _) in VARIABLES.items()}
+QUANTITIES = {name: quantity for name, (quantity, _) in VARIABLES.items()}
+for _quantity, _names in _NAMES.items():
+    QUANTITIES |= dict.fromkeys(_names.split(), _quantity)
 # The profile as JSON: quantities of the numbers of each row.
 PROFILE_QUANTITIES = {
     "steps": ("length", "stress"),

@@ -4,6 +4,7 @@ import base64
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -36,6 +37,24 @@ def scene_page(
 
     With a layer all numbers are in SI units; ``attributes`` are those of the run, without units.
     """
+    shown = _parameters(attributes, layer)
+    return page(
+        "scene.html",
+        name=name,
+        title=title,
+        note=note,
+        picture=base64.b64encode(Path(png).read_bytes()).decode("ascii"),
+        pulse_state=attributes.get("pulse_state", "none"),
+        promised="promised" in numbers,
+        numbers=[_number(row) for row in numbers.itertuples()],
+        parameters={key.replace("_", " "): value for key, value in shown.items()},
+        layer=layer and _layer_rows(layer),
+        scales=layer and _scale_rows(layer),
+    )
+
+
+def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
+    """The parameters of the run that are shown, in SI units if there is a layer."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         shown["steps_and_bumps"] = _profile_text(attributes, layer)
@@ -51,19 +70,7 @@ def scene_page(
         words = [law.pop("law").replace("_", " ")]
         words += [f"{key} = {setting(value)}" for key, value in law.items()]
         shown["friction"] = ", ".join(words)
-    return page(
-        "scene.html",
-        name=name,
-        title=title,
-        note=note,
-        picture=base64.b64encode(Path(png).read_bytes()).decode("ascii"),
-        pulse_state=attributes.get("pulse_state", "none"),
-        promised="promised" in numbers,
-        numbers=[_number(row) for row in numbers.itertuples()],
-        parameters={key.replace("_", " "): value for key, value in shown.items()},
-        layer=layer and _layer_rows(layer),
-        scales=layer and _scale_rows(layer),
-    )
+    return shown
 
 
 def _profile_text(attributes: Mapping, layer: Layer | None) -> str:

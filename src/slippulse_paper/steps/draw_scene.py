@@ -5,11 +5,10 @@ from slippulse.data.point import point
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.model.layer_units import Layer
-from slippulse.plotting.si_tables import numbers_in_si
 from slippulse.plotting.style import house_style, save_figure
 
 from ..figures import scene_figure as scene
-from ..figures.shared.main_numbers import at_constant_levels, scene_numbers
+from ..figures.shared.main_numbers import at_constant_levels, numbers_in_si, scene_numbers
 from ..report.scene_page import scene_page
 
 
