@@ -160,12 +160,12 @@ def test_profiles_of_a_sweep_are_points_and_a_rough_one_for_each_seed(shipped):
     expected = [*rough, *tables, sp.Prestress(0.5, 0.5)]
     assert [scene.prestress for scene in scenes] == [one for one in expected for _ in range(2)]
     labels = profile_labels(sweep)
-    assert [label["profile"] for label in labels] == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
+    assert [label["profile"] for label in labels] == [1, 1, 1, 1, 2, 2, 3, 3, 4, 4]
     assert [label["seed"] for label in labels[:5]] == pytest.approx(
         [3, 3, 5, 5, np.nan], nan_ok=True
     )
     chunk = profile_labels(sweep | {"chunk": [2, 2]})
-    assert [label["profile"] for label in chunk] == [1, 2, 3, 4, 5]
+    assert [label["profile"] for label in chunk] == [1, 1, 2, 3, 4]
 
 
 def test_profiles_without_a_table_have_no_labels(shipped):

@@ -1,6 +1,7 @@
 """Pre-stress profiles of a configuration: their files, their seeds, and the `Prestress` of each."""
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -51,12 +52,13 @@ def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
 
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
     """An overlay with a change of each scene and of each profile of a simulation."""
-    out = dict(overlay)
-    if isinstance(scenes := overlay.get("scenes"), Mapping):
-        out["scenes"] = {name: change(one, f"scenes.{name}") for name, one in scenes.items()}
-    if isinstance(sweeps := overlay.get("simulations"), Mapping):
-        out["simulations"] = {name: _sweep(one, name, change) for name, one in sweeps.items()}
-    return out
+    changed = dict(overlay)
+    scenes, sweeps = overlay.get("scenes"), overlay.get("simulations")
+    if isinstance(scenes, Mapping):
+        changed["scenes"] = {name: change(one, f"scenes.{name}") for name, one in scenes.items()}
+    if isinstance(sweeps, Mapping):
+        changed["simulations"] = {name: _sweep(one, name, change) for name, one in sweeps.items()}
+    return changed
 
 
 def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
@@ -98,6 +100,19 @@ def _table(text: str) -> Prestress:
     return Prestress.through(*columns, **rest)
 
 
-def label_of(profile: Mapping[str, Any], number: int) -> dict[str, float]:
-    """Number of an expanded profile, from 1, and its seed, NaN if it has none."""
-    return {"profile": number, "seed": float(profile.get("rough", {}).get("seed", "nan"))}
+def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
+    """Number of each expanded profile, from 1, and its seed, NaN if it has none.
+
+    Rough profiles that differ in the seed alone have one number.
+    """
+    labels: list[dict[str, float]] = []
+    number, before = 0, None
+    for profile in profiles:
+        background = dict(profile.get("rough", {}))
+        seed = background.pop("seed", math.nan)
+        shape = {**profile, "rough": background}
+        if "rough" not in profile or shape != before:
+            number += 1
+        before = shape
+        labels.append({"profile": number, "seed": float(seed)})
+    return labels
