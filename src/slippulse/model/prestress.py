@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from .checks import check_number, check_that, short_repr
+from .checks import as_positions, check_number, check_that, short_repr
 
 # Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
 # without end.
@@ -296,7 +296,7 @@ class Prestress:
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
         """Background at positions x (units of H): levels with steps, or the linear table."""
-        x = np.asarray(x, dtype=float)
+        x = as_positions("x", x)
         if self.points:
             return self._linear(x)
         level = np.where(x < 0.0, self.left, self.right)
@@ -312,18 +312,18 @@ class Prestress:
         return np.where(x > 0.0, right, np.where(x < 0.0, left, np.maximum(left, right)))
 
     @cached_property
-    def intervals(self) -> list[Interval]:
+    def intervals(self) -> tuple[Interval, ...]:
         """Intervals of a linear background from left to right; the outermost are constant."""
         if self.points:
             knots = [(-math.inf, self.left), *self.points, (math.inf, self.right)]
             linear = (Interval(a, b, low, high) for (a, low), (b, high) in pairwise(knots))
-            return [interval for interval in linear if interval.left < interval.right]
+            return tuple(interval for interval in linear if interval.left < interval.right)
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
         levels = self.level(np.array([jumps[0] - 1.0, *middles, jumps[-1] + 1.0])).tolist()
         ends = [-math.inf, *jumps, math.inf]
         constant = zip(ends[:-1], ends[1:], levels, levels, strict=True)
-        return [Interval(*ends_and_values) for ends_and_values in constant]
+        return tuple(Interval(*ends_and_values) for ends_and_values in constant)
 
     @cached_property
     def interval_table(self) -> np.ndarray:
@@ -338,7 +338,7 @@ class Prestress:
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 without bumps."""
-        x = np.asarray(x, dtype=float)
+        x = as_positions("x", x)
         tau = self.level(x)
         if self.width is not None:
             # Written with 1 - exp, nothing cancels near x = 0, where the threshold is met.

@@ -8,7 +8,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..model.layer_units import layer_of
+from ..model.layer_units import Layer, layer_of
+from ..model.scene import check_run_attributes
 from . import space_time
 from .si_tables import table_in_si, with_unit
 from .style import BLUE, PAGE, by_role, house_style
@@ -48,6 +49,8 @@ def plot(run: xr.Dataset) -> Picture:
     ------
     TypeError
         If `run` is no such Dataset; `slippulse.point` takes one run out of a sweep.
+    ValueError
+        If an attribute of it is not of its kind.
 
     Examples
     --------
@@ -60,14 +63,15 @@ def plot(run: xr.Dataset) -> Picture:
     known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
     if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
-    with house_style():
-        return _draw(run)
-
-
-def _draw(run: xr.Dataset) -> Picture:
     layer = layer_of(run.attrs)
     if layer is not None:
         run = layer.from_si(run)
+    check_run_attributes(run.attrs)
+    with house_style():
+        return _draw(run, layer)
+
+
+def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     slipped = {"series": "slip", "position": run["x"].values, "value": run["slip"].values}
     rows = [space_time.prestress_profile(run), *space_time.edges(run)]
     rows.append(pd.DataFrame({"role": "profile", **slipped}))

@@ -8,6 +8,7 @@ import xarray as xr
 
 from ..model.checks import check_that
 from ..model.layer_units import layer_of
+from ..model.scene import check_run_attributes
 from .comparison import measured_row
 
 # The settings of `measure` in the shipped configuration, which is not part of the package.
@@ -75,6 +76,7 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
 
 def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     """Return the measured numbers of a run in the units of the model."""
+    check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
