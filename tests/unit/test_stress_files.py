@@ -12,7 +12,6 @@ from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.read import read_config, read_overlay
 from slippulse_paper.configuration.resolve import all_simulations, resolve, scene_simulation
 from slippulse_paper.configuration.runs import profile_labels
-from slippulse_paper.records.job_records import digest_of
 
 POINTS = ((-2.0, 0.3), (0.0, 1.0), (3.0, 0.4), (3.0, 0.2))
 TEXT = "x,tau\n-2,0.3\n0,1\n3,0.4\n3,0.2\n"
@@ -135,7 +134,7 @@ def test_the_content_of_a_file_decides_and_not_its_name_or_time(tmp_path, shippe
         (tmp_path / name).write_text(text, encoding="utf-8")
         os.utime(tmp_path / name, (seconds, seconds))
         overlay.write_text(OVERLAY.format(file=name), encoding="utf-8")
-        digests.append(digest_of(resolved_of(read_overlay(overlay), shipped)))
+        digests.append(resolved_of(read_overlay(overlay), shipped))
     assert digests[0] == digests[1] != digests[2]
 
 
