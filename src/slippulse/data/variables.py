@@ -52,6 +52,7 @@ VARIABLES = {
     "limit_time": "when it ends there",
     "limit_reason": "why it ends",
     "row_size": "blocks of a run",
+    "row_start": "number of the first block of a run",
     "x": "position, in units of the layer thickness H; in a figure's table the horizontal axis",
     "prestress": "non-dimensional pre-stress",
     "release_time": "time of the first release, NaN where never",

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .checks import check_number, check_that, short_repr
+from .removed import AnswersRemoved
 
 # Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
 # without end.
@@ -25,7 +26,7 @@ PARTS = {
 
 
 @dataclass(frozen=True)
-class Prestress:
+class Prestress(AnswersRemoved):
     """Non-dimensional pre-stress tau(x), with nucleation at x = 0.
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``, where ``level``

@@ -1,0 +1,100 @@
+"""An index of the runs of a sweep by all of their parameters at once.
+
+xarray's own indexes hold one coordinate each: two of them over one dimension cannot be selected
+by together, and before xarray 2025 no arithmetic was possible beside them.
+"""
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+from xarray.core.indexing import IndexSelResult
+
+from ..model.checks import short_repr
+
+# beta/dx is a quotient: numbers that differ by rounding are the same parameter.
+ROUNDING = 1e-9
+
+
+class ParameterIndex(xr.Index):
+    """The values of every parameter over ``point``; `sel` takes any of them, in any number."""
+
+    def __init__(self, values: Mapping[Hashable, np.ndarray]) -> None:
+        self.values = dict(values)
+
+    @classmethod
+    def from_variables(
+        cls, variables: Mapping[Any, xr.Variable], *, options: Mapping[str, Any]
+    ) -> Self:
+        """Make the index of variables over ``point``."""
+        return cls({name: variable.values for name, variable in variables.items()})
+
+    @classmethod
+    def concat(
+        cls,
+        indexes: Sequence[Self],
+        dim: Hashable,
+        positions: Any = None,
+    ) -> Self:
+        """Join indexes of the same parameters, at positions if they are given."""
+        joined = {n: np.concatenate([i.values[n] for i in indexes]) for n in indexes[0].values}
+        if positions is None:
+            return cls(joined)
+        order = np.argsort(np.concatenate([np.asarray(part) for part in positions]))
+        return cls({name: values[order] for name, values in joined.items()})
+
+    def create_variables(
+        self, variables: Mapping[Any, xr.Variable] | None = None
+    ) -> dict[Hashable, xr.Variable]:
+        """Return the coordinates, with the attributes that they had."""
+        attrs = {name: variable.attrs for name, variable in (variables or {}).items()}
+        return {n: xr.Variable("point", v, attrs.get(n)) for n, v in self.values.items()}
+
+    def rename(self, name_dict: Mapping[Any, Hashable], dims_dict: Mapping[Any, Hashable]) -> Self:
+        """Return the index with other names of parameters."""
+        return type(self)({name_dict.get(name, name): v for name, v in self.values.items()})
+
+    def equals(self, other: xr.Index, **options: Any) -> bool:
+        """Return True if another index has the same values of the same parameters."""
+        if not isinstance(other, ParameterIndex) or self.values.keys() != other.values.keys():
+            return False
+        return all(np.array_equal(v, other.values[name]) for name, v in self.values.items())
+
+    def isel(self, indexers: Mapping[Any, Any]) -> Self | None:
+        """Return the index of some runs; None for a single one, which has no dimension."""
+        rows = indexers["point"]
+        if isinstance(rows, xr.Variable):
+            if rows.dims != ("point",):
+                return None
+            rows = rows.values
+        if np.ndim(rows) == 0 and not isinstance(rows, slice):
+            return None
+        return type(self)({name: values[rows] for name, values in self.values.items()})
+
+    def sel(self, labels: dict[Any, Any], method: Any = None, tolerance: Any = None):
+        """Select the runs at values of parameters: one value, several, or a slice."""
+        chosen = np.ones(len(next(iter(self.values.values()))), dtype=bool)
+        for name, label in labels.items():
+            chosen &= self._matches(name, label, method == "nearest")
+        if not chosen.any():
+            wanted = ", ".join(f"{name} = {short_repr(label)}" for name, label in labels.items())
+            present = {name: np.unique(self.values[name]).tolist() for name in labels}
+            raise KeyError(f"{wanted}: no such run; the runs have {short_repr(present)}")
+        return IndexSelResult({"point": np.flatnonzero(chosen)})
+
+    def _matches(self, name: Hashable, label: Any, nearest: bool) -> np.ndarray:
+        values = self.values[name]
+        if isinstance(label, slice):
+            above = True if label.start is None else values >= label.start
+            below = True if label.stop is None else values <= label.stop
+            return np.broadcast_to(np.logical_and(above, below), values.shape)
+        matches = np.zeros(values.shape, dtype=bool)
+        for value in np.atleast_1d(np.asarray(label)).tolist():
+            if values.dtype.kind not in "if" or isinstance(value, str):
+                matches |= values == value
+                continue
+            if nearest:
+                value = values[np.argmin(np.abs(values - value))]
+            matches |= np.isclose(values, value, rtol=ROUNDING, atol=0.0)
+        return matches

@@ -1,0 +1,146 @@
+"""Sweeps as xarray users expect them: parameters as coordinates, and full products as grids."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..model.checks import check_that
+from ..model.scene import ATTRIBUTES
+from .parameter_index import ParameterIndex
+from .variables import VARIABLES
+
+# Names of the axes of a full product, in the attributes of a sweep.
+AXES = "sweep_axes"
+# In this order parameters are tried as axes. Those that follow from earlier ones are none.
+ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
+FROM_SWEEP = "a Dataset that run_sweep or open_sweep returned"
+
+
+def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
+    """Return a sweep with its parameters as coordinates over ``point``, and the rows of its runs.
+
+    ``row_start`` is the first of the ``row_size`` blocks of each run, so that a selection of runs
+    still has its blocks.
+    """
+    names = [name for name in ATTRIBUTES.split() if name in sweep]
+    coordinates = [*names]
+    if "row_size" in sweep:
+        size = sweep["row_size"].values
+        about = {"units": "1", "long_name": VARIABLES["row_start"]}
+        sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, about))
+        coordinates.append("row_size")
+    return sweep.set_coords(coordinates).set_xindex(names, ParameterIndex)
+
+
+def open_sweep(path: str | Path) -> xr.Dataset:
+    """Open a data file of a sweep, with its parameters as coordinates.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of ``results/data``, or one to which a sweep of `run_sweep` was written by
+        ``to_netcdf``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The sweep in memory, as `run_sweep` returns it: ``sweep.sel(gamma=0.3)`` selects runs.
+
+    Raises
+    ------
+    ValueError
+        If the file is not that of a sweep.
+    FileNotFoundError
+        If there is no such file.
+
+    Examples
+    --------
+    >>> sweep = sp.run_sweep([sp.Scene("stress", sp.Prestress(0.6, 0.6), 1.0, 0.1)])
+    >>> sweep.to_netcdf("sweep.nc")
+    >>> sp.open_sweep("sweep.nc").sel(left=0.6).sizes["point"]
+    1
+    """
+    data = xr.load_dataset(path, engine="h5netcdf")
+    check_that(is_sweep(data), "path", str(path), "the data file of a sweep, such as results/data")
+    return with_parameters(data.drop_vars("row_start", errors="ignore"))
+
+
+def is_sweep(data: object) -> bool:
+    """Return True if a Dataset has the runs of a sweep over ``point``."""
+    if not isinstance(data, xr.Dataset) or "point" not in data.dims:
+        return False
+    return all(name in data.variables for name in ("boundary", "dx", "duration"))
+
+
+def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
+    """Return a sweep that is a full product of parameters with these as its axes.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of `sweep`, `run_sweep` or `open_sweep`, or a selection of its runs.
+    over : sequence of str, optional
+        Parameters that become axes; by default the lists given to `sweep`, else those that differ
+        between runs and do not follow from each other.
+
+    Returns
+    -------
+    xarray.Dataset
+        Every number over the axes in place of ``point``. The blocks are as they were: `point`
+        takes a run out by its number, and `measure` takes the grid.
+
+    Raises
+    ------
+    ValueError
+        If some combination of the values of the axes is no run, or several.
+
+    Examples
+    --------
+    >>> runs = sp.sweep(boundary="stress", left=[-0.4, -0.2], right=0.0, width=[1.0, 2.0],
+    ...                 duration=2.0, dx=0.1)
+    >>> sp.as_grid(runs)["releases"].sel(left=-0.4, width=2.0).item() > 0
+    True
+    """
+    check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
+    if over is None:
+        axes = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
+        axes = axes or independent_parameters(sweep)
+    else:
+        axes = [over] if isinstance(over, str) else list(over)
+    known = bool(axes) and all(name in sweep.coords for name in axes)
+    check_that(known, "over", axes, "parameters of the sweep, at least one")
+    values = {name: np.unique(sweep[name].values) for name in axes}
+    runs = sweep.sizes["point"]
+    combinations = len(np.unique(_codes(sweep, axes), axis=0))
+    product = math.prod(len(one) for one in values.values())
+    allowed = f"a full product: {product} combinations of {', '.join(axes)}, each one run"
+    check_that(combinations == product == runs, "sweep", f"{runs} runs", allowed)
+    bare = sweep.drop_indexes([name for name in sweep.xindexes if "point" in sweep[name].dims])
+    # Parameters that are the same in all runs are no functions of the axes.
+    parameters = [name for name in ATTRIBUTES.split() if name in bare.coords]
+    same = [name for name in parameters if len(np.unique(bare[name].values)) == 1]
+    bare = bare.assign_coords({n: bare[n].variable[0] for n in same if n not in axes})
+    if len(axes) == 1:
+        return bare.swap_dims(point=axes[0]).set_xindex(axes[0]).sortby(axes[0])
+    return bare.set_index(point=axes).unstack("point")
+
+
+def independent_parameters(sweep: xr.Dataset) -> list[str]:
+    """Return the parameters that differ between the runs and do not follow from earlier ones."""
+    axes: list[str] = []
+    count = 1
+    for name in dict.fromkeys(ORDER):
+        if name not in sweep.coords:
+            continue
+        found = len(np.unique(_codes(sweep, [*axes, name]), axis=0))
+        if found > count:
+            axes, count = [*axes, name], found
+    return axes
+
+
+def _codes(sweep: xr.Dataset, names: Sequence[str]) -> np.ndarray:
+    """Number the values of parameters, in a row for each run."""
+    return np.stack([np.unique(sweep[name].values, return_inverse=True)[1] for name in names], -1)
