@@ -20,7 +20,7 @@ def test_a_removed_attribute_answers_with_the_new_way(owner):
         with pytest.raises(AttributeError) as answer:
             getattr(OWNERS[owner], name)
         assert str(answer.value) == f"{owner}: {name} was removed; write {instead}"
-    with pytest.raises(AttributeError, match="has no attribute|No slippulse.theory attribute"):
+    with pytest.raises(AttributeError, match=r"has no attribute|No slippulse\.theory attribute"):
         _ = OWNERS[owner].no_such_name
 
 

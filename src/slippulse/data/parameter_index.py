@@ -8,17 +8,25 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from xarray.core.indexing import IndexSelResult
 
 from ..model.checks import short_repr
+from ..model.scene import ATTRIBUTES
 
+# In this order parameters are tried as names of runs. Those that follow from earlier ones are none.
+ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
 # beta/dx is a quotient: numbers that differ by rounding are the same parameter.
 ROUNDING = 1e-9
 
 
 class ParameterIndex(xr.Index):
-    """The values of every parameter over ``point``; `sel` takes any of them, in any number."""
+    """The values of every parameter over ``point``; `sel` takes any of them, in any number.
+
+    It is the index of the dimension, too: in tables of pandas the runs are named by the parameters
+    that differ between them.
+    """
 
     def __init__(self, values: Mapping[Hashable, np.ndarray]) -> None:
         self.values = dict(values)
@@ -54,6 +62,13 @@ class ParameterIndex(xr.Index):
     def rename(self, name_dict: Mapping[Any, Hashable], dims_dict: Mapping[Any, Hashable]) -> Self:
         """Return the index with other names of parameters."""
         return type(self)({name_dict.get(name, name): v for name, v in self.values.items()})
+
+    def to_pandas_index(self) -> pd.Index:
+        """Return the parameters that name the runs, or their numbers if none differs."""
+        names = independent_parameters(self.values) or ["point"]
+        if len(names) == 1:
+            return pd.Index(self.values[names[0]], name=names[0])
+        return pd.MultiIndex.from_arrays([self.values[name] for name in names], names=names)
 
     def equals(self, other: xr.Index, **options: Any) -> bool:
         """Return True if another index has the same values of the same parameters."""
@@ -98,3 +113,20 @@ class ParameterIndex(xr.Index):
                 value = values[np.argmin(np.abs(values - value))]
             matches |= np.isclose(values, value, rtol=ROUNDING, atol=0.0)
         return matches
+
+
+def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
+    """Return the parameters that differ between the runs and do not follow from earlier ones."""
+    names: list[str] = []
+    count = 1
+    for name in filter(values.__contains__, dict.fromkeys(ORDER)):
+        found = len(combinations(values, [*names, name]))
+        if found > count:
+            names, count = [*names, name], found
+    return names
+
+
+def combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
+    """Return the different combinations of some parameters, by the numbers of their values."""
+    codes = [np.unique(values[name], return_inverse=True)[1] for name in names]
+    return np.unique(np.stack(codes, axis=-1), axis=0)

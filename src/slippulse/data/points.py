@@ -35,6 +35,7 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
     size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
     start = numbers.pop("row_start", None)
+    numbers.pop("point", None)
     length = blocks.get("x", size[:0]).size
     if start is None:
         start = np.cumsum(size) - size

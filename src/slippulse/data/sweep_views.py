@@ -9,13 +9,11 @@ import xarray as xr
 
 from ..model.checks import check_that
 from ..model.scene import ATTRIBUTES
-from .parameter_index import ParameterIndex
+from .parameter_index import ParameterIndex, combinations, independent_parameters
 from .variables import VARIABLES
 
 # Names of the axes of a full product, in the attributes of a sweep.
 AXES = "sweep_axes"
-# In this order parameters are tried as axes. Those that follow from earlier ones are none.
-ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
 FROM_SWEEP = "a Dataset that run_sweep or open_sweep returned"
 
 
@@ -25,14 +23,16 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     ``row_start`` is the first of the ``row_size`` blocks of each run, so that a selection of runs
     still has its blocks.
     """
-    names = [name for name in ATTRIBUTES.split() if name in sweep]
-    coordinates = [*names]
+    number = {"units": "1", "long_name": VARIABLES["point"]}
+    sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), number))
+    names = [name for name in ("point", *ATTRIBUTES.split()) if name in sweep]
+    coordinates = names[1:]
     if "row_size" in sweep:
         size = sweep["row_size"].values
         about = {"units": "1", "long_name": VARIABLES["row_start"]}
         sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, about))
         coordinates.append("row_size")
-    return sweep.set_coords(coordinates).set_xindex(names, ParameterIndex)
+    return sweep.drop_indexes("point").set_coords(coordinates).set_xindex(names, ParameterIndex)
 
 
 def open_sweep(path: str | Path) -> xr.Dataset:
@@ -63,9 +63,9 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     >>> sp.open_sweep("sweep.nc").sel(left=0.6).sizes["point"]
     1
     """
-    data = xr.load_dataset(path, engine="h5netcdf")
+    data = xr.load_dataset(path)
     check_that(is_sweep(data), "path", str(path), "the data file of a sweep, such as results/data")
-    return with_parameters(data.drop_vars("row_start", errors="ignore"))
+    return with_parameters(data.drop_vars(["row_start", "point"], errors="ignore"))
 
 
 def is_sweep(data: object) -> bool:
@@ -105,20 +105,20 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     True
     """
     check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
+    coordinates = {name: sweep[name].values for name in sweep.coords}
     if over is None:
         axes = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
-        axes = axes or independent_parameters(sweep)
+        axes = axes or independent_parameters(coordinates)
     else:
         axes = [over] if isinstance(over, str) else list(over)
     known = bool(axes) and all(name in sweep.coords for name in axes)
     check_that(known, "over", axes, "parameters of the sweep, at least one")
-    values = {name: np.unique(sweep[name].values) for name in axes}
-    runs = sweep.sizes["point"]
-    combinations = len(np.unique(_codes(sweep, axes), axis=0))
-    product = math.prod(len(one) for one in values.values())
-    allowed = f"a full product: {product} combinations of {', '.join(axes)}, each one run"
-    check_that(combinations == product == runs, "sweep", f"{runs} runs", allowed)
+    runs, found = sweep.sizes["point"], len(combinations(coordinates, axes))
+    product = math.prod(len(np.unique(coordinates[name])) for name in axes)
+    allowed = f"{product}, one for each combination of {', '.join(axes)}"
+    check_that(found == product == runs, "number of runs", runs, allowed)
     bare = sweep.drop_indexes([name for name in sweep.xindexes if "point" in sweep[name].dims])
+    bare = bare.drop_vars("point", errors="ignore")
     # Parameters that are the same in all runs are no functions of the axes.
     parameters = [name for name in ATTRIBUTES.split() if name in bare.coords]
     same = [name for name in parameters if len(np.unique(bare[name].values)) == 1]
@@ -126,21 +126,3 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     if len(axes) == 1:
         return bare.swap_dims(point=axes[0]).set_xindex(axes[0]).sortby(axes[0])
     return bare.set_index(point=axes).unstack("point")
-
-
-def independent_parameters(sweep: xr.Dataset) -> list[str]:
-    """Return the parameters that differ between the runs and do not follow from earlier ones."""
-    axes: list[str] = []
-    count = 1
-    for name in dict.fromkeys(ORDER):
-        if name not in sweep.coords:
-            continue
-        found = len(np.unique(_codes(sweep, [*axes, name]), axis=0))
-        if found > count:
-            axes, count = [*axes, name], found
-    return axes
-
-
-def _codes(sweep: xr.Dataset, names: Sequence[str]) -> np.ndarray:
-    """Number the values of parameters, in a row for each run."""
-    return np.stack([np.unique(sweep[name].values, return_inverse=True)[1] for name in names], -1)

@@ -51,6 +51,7 @@ VARIABLES = {
     "limit_position": "where the construction of the exact solution ends, in units of H",
     "limit_time": "when it ends there",
     "limit_reason": "why it ends",
+    "point": "number of the run in its simulation, from 0",
     "row_size": "blocks of a run",
     "row_start": "number of the first block of a run",
     "x": "position, in units of the layer thickness H; in a figure's table the horizontal axis",

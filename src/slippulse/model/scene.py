@@ -64,7 +64,7 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
             check_that(beta is None, "damping_ratio", damping_ratio, allowed)
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             check_number("dx", dx, **NUMBERS["dx"])
-            values["beta"] = damping_ratio * dx
+            values["beta"] = damping_ratio * float(dx)  # type: ignore[arg-type]
         by_fields(self, *given, **values)
 
     own = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)

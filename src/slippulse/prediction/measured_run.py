@@ -72,18 +72,20 @@ def measure(run: xr.Dataset) -> Any:
     >>> scene = sp.Scene("displacement", layer, duration=8.0, dx=0.05, gamma=0.65)
     >>> numbers = sp.measure(sp.simulate(scene))
     >>> round(numbers["transition_time"], 1), numbers["run_flags"]
-    (4.2, '')
+    (3.8, '')
     >>> sweep = sp.sweep(boundary="displacement", gamma=[0.5, 1.0], left=0.5, dx=0.05, duration=8.0)
     >>> sp.measure(sweep)[["gamma", "transition_time"]].round(1).to_numpy().tolist()
-    [[0.5, 4.7], [1.0, 3.6]]
+    [[0.5, 4.4], [1.0, 3.1]]
     """
     check_that(isinstance(run, xr.Dataset), "run", run, "a Dataset that simulate returned")
     if "point" in run.dims or "run_flags" in run.variables:
-        check_that(is_sweep(over_points(run)), "run", run, "a run, or a sweep with its parameters")
+        run = over_points(run)
+        check_that(is_sweep(run), "run", run, "a run, or a sweep with its parameters")
         known = {"release_time", "stick_time"} <= set(run)
         check_that(known, "run", run, "a sweep that was recorded with 'fronts'")
         rows = [_measured(one.dataset()) for one in runs_in(run)]
-        return pd.DataFrame(rows).rename_axis("point")
+        numbers = run["point"].values if "point" in run.variables else None
+        return pd.DataFrame(rows, index=numbers).rename_axis("point")
     return _measured(run)
 
 

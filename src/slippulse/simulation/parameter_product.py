@@ -56,7 +56,7 @@ def sweep(
     >>> runs = sp.sweep(boundary="displacement", gamma=[0.3, 0.6], left=[0.4, 0.5],
     ...                 damping_ratio=0.1, dx=0.1, duration=8.0)
     >>> runs.sel(gamma=0.3, left=0.5)["first_stick_time"].round(1).item()
-    6.1
+    5.7
     >>> sp.as_grid(runs)["first_stick_time"].sizes
     Frozen({'gamma': 2, 'left': 2})
     """
@@ -71,8 +71,10 @@ def sweep(
         threads=threads,
         progress=progress,
     )
-    axes = [name for name, values in lists.items() if len(values) > 1 and name in data.coords]
-    return data.assign_attrs({AXES: " ".join(axes)}) if axes else data
+    axes = [name for name, values in lists.items() if len(values) > 1]
+    # A listed pre-stress is no coordinate, but its levels and width are.
+    known = bool(axes) and all(name in data.coords for name in axes)
+    return data.assign_attrs({AXES: " ".join(axes)}) if known else data
 
 
 _NAMES = (*SCENE, *PROFILE, *OTHER_PARTS)
