@@ -50,7 +50,8 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
         rows = slice(start[index], start[index] + size[index])
         arrays = {name: values[rows] for name, values in blocks.items()}
         arrays |= {name: values[index] for name, values in samples.items()}
-        attrs = {name: values[index].item() for name, values in numbers.items()}
+        # Texts from a file may be objects of Python.
+        attrs = {name: np.asarray(values[index]).item() for name, values in numbers.items()}
         yield Recorded(arrays, attrs | versions)
 
 

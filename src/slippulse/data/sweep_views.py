@@ -124,5 +124,5 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     same = [name for name in parameters if len(np.unique(bare[name].values)) == 1]
     bare = bare.assign_coords({n: bare[n].variable[0] for n in same if n not in axes})
     if len(axes) == 1:
-        return bare.swap_dims(point=axes[0]).set_xindex(axes[0]).sortby(axes[0])
+        return bare.swap_dims(point=axes[0]).sortby(axes[0])
     return bare.set_index(point=axes).unstack("point")
