@@ -57,7 +57,15 @@ def run_tests(packages: str, wheel: Path, folder: Path, python: str) -> int:
     variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     variables["SLIPPULSE_CACHE"] = str(folder / f"cache-{packages}")
     # The fixtures of the other tests need the replication.
-    options = ["-q", "--noconftest", "--disable-warnings", "-p", "no:cacheprovider", "-c", str(PROJECT / "pyproject.toml")]
+    options = [
+        "-q",
+        "--noconftest",
+        "--disable-warnings",
+        "-p",
+        "no:cacheprovider",
+        "-c",
+        str(PROJECT / "pyproject.toml"),
+    ]
     command = [interpreter, "-m", "pytest", *options, *tests]
     return subprocess.run(command, cwd=folder, env=variables, check=False).returncode
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .checks import check_number, check_that, short_repr
+from .checks import as_positions, check_number, check_that, short_repr
 from .removed import AnswersRemoved
 
 # Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
@@ -87,24 +87,24 @@ class Prestress(AnswersRemoved):
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
         """Side level at positions x (units of H), with the steps, without Gaussian and bumps."""
-        x = np.asarray(x, dtype=float)
+        x = as_positions("x", x)
         level = np.where(x < 0.0, self.left, self.right)
         for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
             level = np.where(x * math.copysign(1.0, position) >= abs(position), value, level)
         return level
 
     @cached_property
-    def intervals(self) -> list[tuple[float, float, float]]:
+    def intervals(self) -> tuple[tuple[float, float, float], ...]:
         """Left end, right end and level of each interval of constant side level, left to right."""
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
         levels = self.level(np.array([jumps[0] - 1.0, *middles, jumps[-1] + 1.0])).tolist()
         ends = [-math.inf, *jumps, math.inf]
-        return list(zip(ends[:-1], ends[1:], levels, strict=True))
+        return tuple(zip(ends[:-1], ends[1:], levels, strict=True))
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 without bumps."""
-        x = np.asarray(x, dtype=float)
+        x = as_positions("x", x)
         # Written with 1 - exp, nothing cancels near x = 0, where the threshold is met.
         tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps:

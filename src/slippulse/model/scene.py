@@ -277,3 +277,15 @@ class Scene:
         except KeyError as error:
             allowed = "every attribute of a run"
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
+
+
+# Numbers of a run that everything that reads it computes with.
+COUNTED = ("end_time", "releases", "re_releases", "half_lattice_used", "first_stick_time")
+
+
+def check_run_attributes(attributes: Mapping) -> None:
+    """Refuse attributes of a run, such as those of a file, that are not of their kind."""
+    Scene.from_attributes(attributes)
+    for name in COUNTED:
+        value = attributes.get(name)
+        check_that(isinstance(value, Real), name, value, "a number, as simulate returns it")

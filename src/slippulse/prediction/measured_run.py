@@ -13,6 +13,7 @@ from ..data.sweep_views import is_sweep
 from ..measurement.transition import first_stick
 from ..model.checks import check_that
 from ..model.prestress import prestress_from
+from ..model.scene import check_run_attributes
 from ..theory.prestress_pieces import nucleations
 from .comparison import measured_row
 
@@ -92,6 +93,7 @@ def measure(run: xr.Dataset) -> Any:
 def _measured(run: xr.Dataset) -> dict[str, Any]:
     known = {"release_time", "stick_time"} <= set(run) and "point" not in run.dims
     check_that(known, "run", run, "a Dataset that simulate returned")
+    check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)

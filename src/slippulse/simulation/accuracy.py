@@ -118,9 +118,11 @@ def settings_for(
     check_that(isinstance(fields, bool), "fields", fields, "true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
+    # Numbers of other types would be computed with as such.
+    gamma, damping_ratio = float(gamma), float(damping_ratio)
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     peak_width = min([prestress.width, *(width for *_, width in prestress.bumps)])
-    error = SPACING_FRACTION * accuracy
+    error = SPACING_FRACTION * float(accuracy)
     demand = Demand(error, levels, peak_width, gamma, damping_ratio, release, fields)
     if gamma:
         spacings = _spacings_with_springs(demand)

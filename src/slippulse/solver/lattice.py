@@ -50,7 +50,7 @@ class Lattice:
         scaled = given.positions / scene.dx
         number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
         self.sampled = np.abs(number) if self.mirror else number
-        self.recorder = arrays.Recorder(given.times, number, *recorded)
+        self.recorder = arrays.Recorder(given.times.copy(), number, *recorded)
         self._extend(1 if self.mirror else FIRST_BLOCKS + 1, FIRST_BLOCKS + 1)
         # All blocks that are released at t = 0 are on it, those of distant bumps included.
         bumps = scene.prestress.bumps

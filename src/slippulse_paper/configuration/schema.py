@@ -14,6 +14,7 @@ from slippulse.model.checks import short_repr
 from slippulse.model.friction import NAMES, friction_from
 from slippulse.model.measured_columns import RECORD_FOR
 
+from ..text.markdown import harmless
 from .problems import nearest
 
 T = TypeVar("T")
@@ -85,11 +86,15 @@ def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
 Friction = Annotated[
     dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
 ]
+# A text for pages and the report, in which formulas and links to the web are all that acts.
+Statement = Annotated[str, AfterValidator(harmless)]
 # Rows of numbers, which are lists in YAML.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
 NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+LABEL_WORDS = "a name of letters, digits, underscores and dashes"
+Label = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,60}$")]
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 
 TITLE = "one line of at most 120 printable characters, not blank"
@@ -301,7 +306,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("name of the simulation whose run is compared with it")
     quantity: str = key("which of its measured numbers: a column of the measured table")
-    statement: str = key("what was read off (figure)", min_length=1)
+    statement: Statement = key("what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("of reading by pixel")
     arrow: bool = key("whether it is a drawn arrow: the fit is made with and without", False)
@@ -311,7 +316,7 @@ class Configuration(Block):
     """The whole configuration."""
 
     preset: str = key("which of `presets` is used", words="the name of a preset")
-    presets: dict[str, Preset] = key("trades of speed for accuracy, by name", min_length=1)
+    presets: dict[Label, Preset] = key("trades of speed for accuracy, by name", min_length=1)
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
         "largest relative numerical error, instead of a preset's spacing and step", None
     )
@@ -323,7 +328,7 @@ class Configuration(Block):
     measure: Measure = key("how numbers are read off a run")
     figures: Figures = key("of figures that draw no simulation")
     claims: dict[str, Claim] = key("tolerances other than in manuscript/claims.yaml, by claim", {})
-    published: dict[str, Reading] = key("numbers read off a published figure, by name")
+    published: dict[Label, Reading] = key("numbers read off a published figure, by name")
     studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
 
     def key_of(self, name: str) -> str:
