@@ -46,7 +46,9 @@ class ParameterIndex(xr.Index):
         positions: Any = None,
     ) -> Self:
         """Join indexes of the same parameters, at positions if they are given."""
-        joined = {n: np.concatenate([i.values[n] for i in indexes]) for n in indexes[0].values}
+        joined = {}
+        for name in indexes[0].values:
+            joined[name] = np.concatenate([index.values[name] for index in indexes])
         if positions is None:
             return cls(joined)
         order = np.argsort(np.concatenate([np.asarray(part) for part in positions]))
@@ -120,9 +122,9 @@ def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
     names: list[str] = []
     count = 1
     for name in filter(values.__contains__, dict.fromkeys(ORDER)):
-        found = len(combinations(values, [*names, name]))
-        if found > count:
-            names, count = [*names, name], found
+        number = len(combinations(values, [*names, name]))
+        if number > count:
+            names, count = [*names, name], number
     return names
 
 

@@ -105,24 +105,38 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     True
     """
     check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
-    coordinates = {name: sweep[name].values for name in sweep.coords}
     if over is None:
-        axes = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
-        axes = axes or independent_parameters(coordinates)
+        axes = _axes_of(sweep)
     else:
         axes = [over] if isinstance(over, str) else list(over)
     known = bool(axes) and all(name in sweep.coords for name in axes)
     check_that(known, "over", axes, "parameters of the sweep, at least one")
-    runs, found = sweep.sizes["point"], len(combinations(coordinates, axes))
-    product = math.prod(len(np.unique(coordinates[name])) for name in axes)
-    allowed = f"{product}, one for each combination of {', '.join(axes)}"
-    check_that(found == product == runs, "number of runs", runs, allowed)
+    _check_product(sweep, axes)
     bare = sweep.drop_indexes([name for name in sweep.xindexes if "point" in sweep[name].dims])
-    bare = bare.drop_vars("point", errors="ignore")
-    # Parameters that are the same in all runs are no functions of the axes.
-    parameters = [name for name in ATTRIBUTES.split() if name in bare.coords]
-    same = [name for name in parameters if len(np.unique(bare[name].values)) == 1]
-    bare = bare.assign_coords({n: bare[n].variable[0] for n in same if n not in axes})
+    bare = _with_constants(bare.drop_vars("point", errors="ignore"), axes)
     if len(axes) == 1:
         return bare.swap_dims(point=axes[0]).sortby(axes[0])
     return bare.set_index(point=axes).unstack("point")
+
+
+def _axes_of(sweep: xr.Dataset) -> list[str]:
+    """Return the parameters that were listed, or else those that differ between the runs."""
+    listed = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
+    return listed or independent_parameters({n: sweep[n].values for n in sweep.coords})
+
+
+def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
+    values = {name: sweep[name].values for name in axes}
+    product = math.prod(len(np.unique(one)) for one in values.values())
+    runs = sweep.sizes["point"]
+    full = len(combinations(values, axes)) == product == runs
+    check_that(
+        full, "number of runs", runs, f"{product}, one for each combination of {', '.join(axes)}"
+    )
+
+
+def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
+    """Return a sweep in which parameters that are the same in all runs are single numbers."""
+    parameters = [name for name in ATTRIBUTES.split() if name in sweep.coords and name not in axes]
+    constant = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
+    return sweep.assign_coords({name: sweep[name].variable[0] for name in constant})

@@ -57,19 +57,19 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
     ) -> None:
         for name in values.keys() - signature.parameters:
             answer_removed("Scene", name)
+        arguments = signature.bind_partial(self, *given, **values).arguments
         if damping_ratio is not None:
-            known = signature.bind_partial(self, *given, **values).arguments
-            beta, dx = known.get("beta"), known.get("dx")
-            allowed = f"damping_ratio or beta (here {short_repr(beta)}), not both"
-            check_that(beta is None, "damping_ratio", damping_ratio, allowed)
+            allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
+            check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
             check_number("damping_ratio", damping_ratio, at_least=0.0)
-            check_number("dx", dx, **NUMBERS["dx"])
-            values["beta"] = damping_ratio * float(dx)  # type: ignore[arg-type]
-        by_fields(self, *given, **values)
+            spacing = arguments.get("dx")
+            check_number("dx", spacing, **NUMBERS["dx"])
+            arguments["beta"] = damping_ratio * float(spacing)  # type: ignore[arg-type]
+        by_fields(**arguments)
 
-    own = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)
-    parameters = [*signature.parameters.values(), own]
-    initialise.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    added = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)
+    shown = signature.replace(parameters=[*signature.parameters.values(), added])
+    initialise.__signature__ = shown  # type: ignore[attr-defined]
     scene.__init__ = initialise  # type: ignore[method-assign]
     return scene
 

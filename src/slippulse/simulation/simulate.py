@@ -136,12 +136,7 @@ def run_sweep(
     >>> sweep.sel(dx=0.05)["releases"].sizes["point"]
     1
     """
-    listed = isinstance(scenes, Sequence) and len(scenes) > 0
-    known = listed and all(isinstance(scene, Scene) for scene in scenes)
-    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
-    schemes = sorted({scene.scheme for scene in scenes})
-    alike = "continuum" not in schemes or len(schemes) == 1
-    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
+    _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
     listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
     allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
@@ -158,6 +153,15 @@ def run_sweep(
     with announced_compilation():
         data = solve_sweep(_solve, scenes, samples, record, int(threads), progress)
     return with_parameters(described(data))
+
+
+def _check_scenes(scenes: Sequence[Scene]) -> None:
+    listed = isinstance(scenes, Sequence) and len(scenes) > 0
+    known = listed and all(isinstance(scene, Scene) for scene in scenes)
+    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
+    schemes = sorted({scene.scheme for scene in scenes})
+    alike = "continuum" not in schemes or len(schemes) == 1
+    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
 
 
 def _usable_cores() -> int:
