@@ -4,7 +4,9 @@ from .data.point import point as point
 from .data.sweep_views import as_grid as as_grid
 from .data.sweep_views import open_sweep as open_sweep
 from .model.friction import friction as friction
+from .model.layer_units import Layer as Layer
 from .model.prestress import Prestress as Prestress
+from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
 from .plotting.run_plot import plot as plot

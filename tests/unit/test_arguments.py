@@ -231,6 +231,9 @@ def test_an_argument_that_is_no_number_is_refused(argument, call):
         # The number of threads is chosen if it is None.
         if value is None and argument == "threads":
             continue
+        # Without a width there is no Gaussian at x = 0.
+        if value is None and argument == "prestress.width":
+            continue
         with pytest.raises((ValueError, TypeError)) as refusal:
             call(value)
         assert re.fullmatch(rf"{argument}[ \w]*: .*; allowed: .+", str(refusal.value)), value

@@ -76,7 +76,11 @@ class ParameterIndex(xr.Index):
         """Return True if another index has the same values of the same parameters."""
         if not isinstance(other, ParameterIndex) or self.values.keys() != other.values.keys():
             return False
-        return all(np.array_equal(v, other.values[name]) for name, v in self.values.items())
+        for name, values in self.values.items():
+            number = values.dtype.kind == "f" and other.values[name].dtype.kind == "f"
+            if not np.array_equal(values, other.values[name], equal_nan=number):
+                return False
+        return True
 
     def isel(self, indexers: Mapping[Any, Any]) -> Self | None:
         """Return the index of some runs; None for a single one, which has no dimension."""

@@ -105,10 +105,8 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     True
     """
     check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
-    if over is None:
-        axes = _axes_of(sweep)
-    else:
-        axes = [over] if isinstance(over, str) else list(over)
+    named = [over] if isinstance(over, str) else over
+    axes = _axes_of(sweep) if named is None else list(named)
     known = bool(axes) and all(name in sweep.coords for name in axes)
     check_that(known, "over", axes, "parameters of the sweep, at least one")
     _check_product(sweep, axes)

@@ -12,6 +12,7 @@ from ..data.points import over_points, runs_in
 from ..data.sweep_views import is_sweep
 from ..measurement.transition import first_stick
 from ..model.checks import check_that
+from ..model.layer_units import layer_of
 from ..model.prestress import prestress_from
 from ..model.scene import check_run_attributes
 from ..theory.prestress_pieces import nucleations
@@ -41,16 +42,18 @@ def measure(run: xr.Dataset) -> Any:
     ----------
     run : xarray.Dataset
         A run of a lattice or of the exact solution, which `simulate` returned or `point` took out
-        of a sweep; or a sweep, a selection of its runs or a grid of them, with "fronts" recorded.
-        With `Samples` at two positions or more the regime is classified as well.
+        of a sweep, or which `Layer.to_si` converted; or a sweep, a selection of its runs or a grid
+        of them, with "fronts" recorded. With `Samples` at two positions or more the regime is
+        classified as well.
 
     Returns
     -------
     dict of str to float or str, or pandas.DataFrame
         Of a sweep, a table with one row for each run. Numbers by the names in docs/columns.md, in
-        units of H and of H over the wave speed, among
-        them ``transition_time`` and ``transition_length`` (T_trans and L_trans; if one is NaN,
-        ``transition_reason`` says why), ``front_speed_left`` and ``front_speed_right``,
+        units of H and of H over the wave speed, or in SI units if the run is (then without
+        ``trailing_edge_*``, whose names have times), among them ``transition_time`` and
+        ``transition_length`` (T_trans and L_trans; if one is NaN, ``transition_reason`` says why),
+        ``front_speed_left`` and ``front_speed_right``,
         ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the leading pulse on the
         right at the end, ``pulse_state`` (steady, or several, stopped, ... : what was measured),
         ``run_flags`` ("" or a comma-separated list), and the parameters of the scene. A number
@@ -93,11 +96,19 @@ def measure(run: xr.Dataset) -> Any:
 def _measured(run: xr.Dataset) -> dict[str, Any]:
     known = {"release_time", "stick_time"} <= set(run) and "point" not in run.dims
     check_that(known, "run", run, "a Dataset that simulate returned")
+    layer = layer_of(run.attrs)
+    if layer is not None:
+        return layer.numbers_to_si(_numbers(layer.from_si(run), {"trailing_times": []}))
+    return _numbers(run, {})
+
+
+def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
+    """Return the measured numbers of a run in the units of the model."""
     check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
-    row = unknown | measured_row(run, SETTINGS)
+    row = unknown | measured_row(run, SETTINGS | settings)
     profile = prestress_from(run.attrs)
     held = run.attrs["boundary"] == "displacement"
     if held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
