@@ -67,6 +67,10 @@ def imitate_steps(folder: Path) -> None:
     path.write_text(text + IMITATION, encoding="utf-8")
 
 
+# What make gives to tests that it starts, which a run that a test starts must not take as its own.
+OF_MAKE = ("MAKELEVEL", "MAKEFLAGS", "CORES", "PRESET", "OVERLAY", "TARGET", "ALLOW_LARGE")
+
+
 def snakemake(
     folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
 ):
@@ -76,7 +80,8 @@ def snakemake(
         options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
     library = {"PYTHONPATH": str((folder / "src").resolve())}
     how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
-    how["env"] = os.environ | library | (environment or {})
+    around = {name: value for name, value in os.environ.items() if name not in OF_MAKE}
+    how["env"] = around | library | (environment or {})
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 

@@ -9,9 +9,9 @@ from functools import cache
 from pathlib import Path
 
 import grimp
+from slippulse_paper.steps.reach import needs_of
 
 from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
-from slippulse_paper.steps.reach import needs_of
 
 PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE, TEXTS = PROJECT / "src/slippulse_paper", PROJECT / "manuscript"

@@ -7,6 +7,8 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 from selection import small_sweep
+from slippulse_paper.steps.reach import declared
+from slippulse_paper.steps.targets import selected
 
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
@@ -17,8 +19,6 @@ from slippulse.simulation.simulate import run_sweep
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.runs import runs
 from slippulse_paper.steps.predict import predictions
-from slippulse_paper.steps.reach import declared
-from slippulse_paper.steps.targets import selected
 
 CHOICES = [
     {"release": "total", "deviation": 0.24, "solution": "lattice"},

@@ -11,6 +11,9 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
+from slippulse_paper.records.tree import Tree
+from slippulse_paper.steps.origins import Job, jobs_of, origins_of
+from slippulse_paper.steps.targets import Plan, unlike
 
 from slippulse.data.files import write_text
 from slippulse_paper.configuration.problems import ConfigError
@@ -29,9 +32,6 @@ from slippulse_paper.records.provenance import (
     provenance,
     source_files,
 )
-from slippulse_paper.records.tree import Tree
-from slippulse_paper.steps.origins import Job, jobs_of, origins_of
-from slippulse_paper.steps.targets import Plan, unlike
 
 DATA, TABLE = "data/a.nc", "measurements/a.csv"
 PAGE, OTHER = "index.html", "scenes/other.html"

@@ -11,10 +11,10 @@ import grimp
 import pytest
 from pipeline_copy import edges, made, planned, snakemake
 from rules_by_imports import DRAWN, EVERY_SOURCE, FILES, MODULES, PACKAGE, RULES, rules_of
+from slippulse_paper.steps.reach import sources
 from workflow.conftest import NAMES, TARGETS
 
 from slippulse_paper.steps.predict import TOPICS
-from slippulse_paper.steps.reach import sources
 
 LOCK = "requirements.lock"
 # One file of each folder: a test above covers them all.

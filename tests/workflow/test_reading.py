@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, refused
+from slippulse_paper.steps.processes import JobFailed, Jobs
 
 from slippulse.data.files import write_text
 from slippulse_paper.records.job_records import Origin, file_digest, read_record, write_record
-from slippulse_paper.steps.processes import JobFailed, Jobs
 
 FIGURE = "results/figures/fig07_damage_zone.png"
 # A job that reads a file while it is another one, and puts it back.

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..model.scene import check_run_attributes
 from . import space_time
 from .style import BLUE, PAGE, by_role, house_style
 
@@ -42,6 +43,8 @@ def plot(run: xr.Dataset) -> Picture:
     ------
     TypeError
         If `run` is no such Dataset; `slippulse.point` takes one run out of a sweep.
+    ValueError
+        If an attribute of it is not of its kind.
 
     Examples
     --------
@@ -54,6 +57,7 @@ def plot(run: xr.Dataset) -> Picture:
     known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
     if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
+    check_run_attributes(run.attrs)
     with house_style():
         return _draw(run)
 

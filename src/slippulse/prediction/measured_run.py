@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..model.checks import check_that
+from ..model.scene import check_run_attributes
 from .comparison import measured_row
 
 # The settings of `measure` in the shipped configuration, which is not part of the package.
@@ -64,6 +65,7 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     check_that(known, "run", run, "a Dataset that simulate returned")
     allowed = "one run; point(sweep, index) takes it out of a sweep"
     check_that("point" not in run.dims, "run", run, allowed)
+    check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)

@@ -13,7 +13,10 @@ from pydantic_core import PydanticCustomError
 from slippulse.model.checks import short_repr
 from slippulse.model.friction import NAMES, friction_from
 from slippulse.model.measured_columns import RECORD_FOR
+from slippulse.model.prestress import Prestress
+from slippulse.model.rough_prestress import rough
 
+from ..text.markdown import harmless
 from .problems import nearest
 
 T = TypeVar("T")
@@ -68,6 +71,7 @@ Distinct = Annotated[
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
+Seed = Annotated[int, Field(ge=0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Boundary = Literal["displacement", "stress"]
@@ -85,15 +89,22 @@ def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
 Friction = Annotated[
     dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
 ]
+# A text for pages and the report, in which formulas and links to the web are all that acts.
+Statement = Annotated[str, AfterValidator(harmless)]
 # Rows of numbers, which are lists in YAML.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
 NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+LABEL_WORDS = "a name of letters, digits, underscores and dashes"
+Label = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,60}$")]
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 
 TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
+POINTS = "a list of [x, tau] from left to right, at least two"
+ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop, spacing and seed"
+SEEDS = "a whole number >= 0, or a list of different ones"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
@@ -106,15 +117,82 @@ KEPT = "what is kept: release and stick times; slip, velocity, acceleration at t
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
 
+class Rough(Block):
+    """A rough background, as `sp.rough` makes it."""
+
+    level: Annotated[float, Field(lt=1.0)] = key("mean [S]")
+    deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
+    correlation_length: Positive = key("length above which nothing is correlated [H]")
+    hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
+    start: float = key("first position; the pre-stress is constant before it [H]")
+    stop: float = key("last position; the pre-stress is constant beyond it [H]")
+    spacing: Positive = key("distance of the positions [H]")
+    seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
+
+    @model_validator(mode="after")
+    def _positions(self) -> Self:
+        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
+        rough(**(self.plain() | {"seed": seed}))
+        return self
+
+
 class Profile(Block):
     """One pre-stress."""
 
-    left: float = key("level of the pre-stress far to the left [S]")
-    right: float = key("level far to the right [S]")
-    width: Positive = key("standard deviation W of the Gaussian at x = 0, >= dx [H] (paper)", 1.0)
+    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
+    right: float | None = key("level far to the right, without a table [S]", None)
+    width: Positive | None = key(
+        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
+        " have no Gaussian [H] (paper)",
+        1.0,
+    )
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
     steps: list[Step] = key("levels beyond positions, away from x = 0 [H, S]", [], STEPS)
     bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
+    points: list[Step] | None = key(
+        "instead of levels: linear between these points, constant beyond; a position twice is a"
+        " jump [H, S]",
+        None,
+        POINTS,
+    )
+    file: str | None = key(
+        "instead of levels: a CSV or netCDF file with such points, relative to the overlay", None
+    )
+    rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
+
+    @model_validator(mode="after")
+    def _background(self) -> Self:
+        # A file that was read has its points beside it.
+        tables = self._given_ones("file", "points", "rough")
+        if tables == ["file", "points"]:
+            tables = ["file"]
+        levels = self._given_ones("left", "right")
+        if not tables:
+            missing = [name for name in ("left", "right") if name not in levels]
+            allowed = "levels on both sides, or points, file or rough"
+            require(not missing, f"{', '.join(missing)}: missing", allowed)
+            return self
+        given = [*tables, *levels]
+        if self.steps:
+            given.append("steps")
+        require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
+        if self.file is not None:
+            require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
+        self._check_points()
+        return self
+
+    def _given_ones(self, *names: str) -> list[str]:
+        return [name for name in names if getattr(self, name) is not None]
+
+    def _check_points(self) -> None:
+        """Refuse points out of order. They have no Gaussian unless they have a width."""
+        if self.points is not None:
+            if "width" not in self.model_fields_set:
+                self.__dict__["width"] = None
+            try:
+                Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
+            except ValueError as error:
+                raise ValueError(str(error).removeprefix("prestress.")) from None
 
 
 class Beyond(Block):
@@ -229,6 +307,12 @@ class NamedScene(Profile, Physics):
     release: Release | None = key("by default the model's", None)
     duration: Positive = key("how long the run is [H/c]")
 
+    @model_validator(mode="after")
+    def _one_seed(self) -> Self:
+        seed = self.rough.seed if self.rough is not None else 0
+        require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
+        return self
+
 
 class Preset(Block):
     dx: Spacing = key("block spacing where a simulation does not scale it [H]")
@@ -301,7 +385,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("name of the simulation whose run is compared with it")
     quantity: str = key("which of its measured numbers: a column of the measured table")
-    statement: str = key("what was read off (figure)", min_length=1)
+    statement: Statement = key("what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("of reading by pixel")
     arrow: bool = key("whether it is a drawn arrow: the fit is made with and without", False)
@@ -311,7 +395,7 @@ class Configuration(Block):
     """The whole configuration."""
 
     preset: str = key("which of `presets` is used", words="the name of a preset")
-    presets: dict[str, Preset] = key("trades of speed for accuracy, by name", min_length=1)
+    presets: dict[Label, Preset] = key("trades of speed for accuracy, by name", min_length=1)
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
         "largest relative numerical error, instead of a preset's spacing and step", None
     )
@@ -323,7 +407,7 @@ class Configuration(Block):
     measure: Measure = key("how numbers are read off a run")
     figures: Figures = key("of figures that draw no simulation")
     claims: dict[str, Claim] = key("tolerances other than in manuscript/claims.yaml, by claim", {})
-    published: dict[str, Reading] = key("numbers read off a published figure, by name")
+    published: dict[Label, Reading] = key("numbers read off a published figure, by name")
     studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
 
     def key_of(self, name: str) -> str:

@@ -16,6 +16,11 @@ NEEDS = {
     "studies": ["exact_space_time"],
     "settings": ["measure.share"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "space_time_displacement": "boundary displacement and equal levels above 0",
+    "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 PANELS = {"displacement": "a", "stress": "b"}
 COLUMNS = ["panel", "role", "series", "time", "position", "value"]
