@@ -16,9 +16,9 @@ from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.runs import runs
+from slippulse_paper.configuration.selected import selected
+from slippulse_paper.steps.needs import declared
 from slippulse_paper.steps.predict import predictions
-from slippulse_paper.steps.reach import declared
-from slippulse_paper.steps.targets import selected
 
 CHOICES = [
     {"release": "total", "deviation": 0.24, "solution": "lattice"},

@@ -8,8 +8,11 @@ from functools import cache
 from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
-# The code is the one beside this file, whatever is installed or on PYTHONPATH.
+# The code is the one beside this file, whatever is installed or on PYTHONPATH; so in the workers.
 sys.path.insert(0, str(PROJECT / "src"))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(PROJECT / "src"), os.environ.get("PYTHONPATH")])
+)
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
@@ -24,9 +27,9 @@ from slippulse_paper.records.job_records import RecordedFiles
 from slippulse_paper.records.lock import take
 from slippulse_paper.records.packages import package_problem
 from slippulse_paper.records.sources import modules_reached, sources_of
-from slippulse_paper.steps.job import Job, JobFailed, run_job
+from slippulse_paper.steps.job import Job, JobFailed
 from slippulse_paper.steps.needs import declared, needs_of
-from slippulse_paper.steps.worker_pool import WorkerPool
+from slippulse_paper.steps.worker_pool import WorkerPool, run_here
 
 # In a module of another workflow, `config` is what the module is given, and paths may get a prefix.
 IS_MODULE = not workflow.modifier.is_main_snakefile()
@@ -166,7 +169,7 @@ def run_step(step, wildcards, input, output, params, threads, log):
         sources=SOURCES_BY_DIGEST[params.code],
     )
     try:
-        WORKERS.run(job) if workflow.is_main_process else run_job(job)
+        WORKERS.run(job, workflow.cores) if workflow.is_main_process else run_here(job)
     except JobFailed as reason:
         # Snakemake reads the log of a failed job, which a process that never began has not written.
         with suppress(OSError):
