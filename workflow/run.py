@@ -76,23 +76,19 @@ def take_over() -> None:
     held.close()
 
 
-def remove_changed_results() -> None:
-    """Remove results that are not what their jobs wrote, so that Snakemake makes them again."""
+def changed_results() -> list[str]:
+    """List results that are not what their jobs wrote, which Snakemake does not notice."""
     from slippulse_paper.records.job_records import RecordedFiles
 
-    recorded = RecordedFiles(RESULTS)
-    problems = dict(recorded.problems())
-    if recorded.records and not (STATE / "metadata").exists():
-        reason = "Snakemake's own records (.snakemake) are gone"
-        problems = dict.fromkeys(recorded.states(), reason)
+    problems = dict(RecordedFiles(RESULTS).problems())
     for name in problems:
         if Path(name).is_dir():
             sys.exit(f"{name} is a folder; remove or rename it: a file of that name is needed")
-        Path(name).unlink(missing_ok=True)
     if problems:
         name, reason = next(iter(problems.items()))
         count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
-        print(f"{count} renewed: {name}: {reason}", file=sys.stderr)
+        print(f"{count} renewed where needed: {name}: {reason}", file=sys.stderr)
+    return [*problems]
 
 
 def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
@@ -158,7 +154,8 @@ def replicate(given: Mapping[str, str]) -> int:
     if given.get("OVERLAY"):
         check_overlay(given["OVERLAY"])
     take_over()
-    remove_changed_results()
+    if changed := changed_results():
+        options += ["--forcerun", *changed]
     run = Run(["--cores", given.get("CORES") or "2", *options, "--", *targets])
 
     def stop(number: int, _frame: object) -> None:

@@ -237,21 +237,13 @@ def check_packages_and_lock():
 
 def report_changed_results():
     """Print one line if results are not what their jobs wrote, which Snakemake does not notice."""
-    recorded = RecordedFiles("results")
-    problems = dict(recorded.problems())
-    if recorded.records and not Path(".snakemake/metadata").exists():
-        print(
-            f"{len(recorded.records)} jobs have results here, but Snakemake's own records"
-            " (.snakemake) are gone: `make replicate` renews the results,"
-            " and so does `snakemake --forceall`",
-            file=sys.stderr,
-        )
-    if problems:
+    if problems := dict(RecordedFiles("results").problems()):
         name, reason = next(iter(problems.items()))
-        count = f"1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        more = " ..." if len(problems) > 5 else ""
         print(
-            f"{count} not as made: {', '.join([*problems][:5])} ({name}: {reason}). Renew:"
-            f" make replicate, or delete and run again",
+            f"{count} not as made: {', '.join([*problems][:5])}{more} ({name}: {reason})."
+            " Renew: make replicate, or snakemake --forcerun and their names",
             file=sys.stderr,
         )
 
