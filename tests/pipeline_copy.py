@@ -101,6 +101,16 @@ def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
     return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
 
 
+def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
+    """Jobs of a dry run, with the name of the figure or study in place of these two rules."""
+    jobs = planned(result)
+    text = result.stdout + result.stderr
+    names = re.findall(r"^Job \d+: Drawing (?!scene )(\S+)$", text, re.M)
+    names += [f"study_of_{name}" for name in re.findall(r"^Job \d+: Studying (\S+)$", text, re.M)]
+    assert jobs.pop("figure", 0) + jobs.pop("study", 0) == len(names)
+    return jobs | dict.fromkeys(names, 1)
+
+
 def edges(graph: str) -> set[tuple[str, str]]:
     """Pairs of rules, by name, of which the first feeds the second, in a mermaid graph."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))

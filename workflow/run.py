@@ -178,17 +178,23 @@ def replicate(given: Mapping[str, str]) -> int:
     return code
 
 
-def verify(given: Mapping[str, str]) -> int:
-    """Print each result that is not as a run would make it now. Returns the exit code."""
+def wanted(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
+    """Return the options and targets to verify: without options, those of the last run."""
+    options = {name: given[name] for name in OPTIONS if given.get(name)}
     targets = [*map(full_target, given.get("TARGET", "").split())]
-    if not any(given.get(name) for name in OPTIONS):
-        # Without options, the results are compared with what the last run was to make.
+    if not options:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             last = json.loads(LAST_RUN.read_text(encoding="utf-8"))
-            given = {name: str(value) for name, value in last["options"].items()}
-            targets = targets or [*{"everything"} & {*last["targets"]}]
+            last_options = {name: str(value) for name, value in last["options"].items()}
+            options, targets = last_options, targets or [*{"everything"} & {*last["targets"]}]
+    return options, targets
+
+
+def verify(given: Mapping[str, str]) -> int:
+    """Print each result that is not as a run would make it now. Returns the exit code."""
+    options, targets = wanted(given)
     look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
-    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), "--", *targets]
+    command = [sys.executable, "-m", "snakemake", *look, *options_of(options), "--", *targets]
     summary = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if summary.returncode:
         return summary.returncode

@@ -12,7 +12,6 @@ from workflow.conftest import FIGURE, SMALL
 from workflow.test_edits import DRAWING, edit, times
 
 OVERLAY = {"overlay": "overlay.yaml"}
-TABLE = FIGURE.replace(".png", ".csv")
 # Rules that a user adds in a file of their own.
 OWN_RULES = """
 rule mine_by_shell:
@@ -67,7 +66,9 @@ def test_a_look_changes_no_file_and_no_time(small, options):
     assert times(small) == before
     if options.endswith("params"):
         # The outputs of the job whose sources have changed.
-        assert {*listed.stdout.split()} == {TABLE.replace("csv", end) for end in "csv pdf png".split()}
+        assert {*listed.stdout.split()} == {
+            FIGURE.replace("png", end) for end in ("csv", "pdf", "png")
+        }
 
 
 @pytest.mark.slow
@@ -142,7 +143,8 @@ def test_jobs_run_without_the_profile_in_processes_of_snakemake(small):
 
 @pytest.mark.slow
 def test_an_archive_has_each_file_once_and_no_compiled_module(small):
-    for command in ("init -q", "add -A -- . :!results", "-c user.name=a -c user.email=b commit -qm a"):
+    author = "-c user.name=a -c user.email=b"
+    for command in ("init -q", "add -A -- . :!results", f"{author} commit -qm a"):
         subprocess.run(["git", *command.split()], cwd=small, check=True)
     made(small, "--archive", "archive.tar.gz", "--", FIGURE, **OVERLAY)
     with tarfile.open(small / "archive.tar.gz") as archive:

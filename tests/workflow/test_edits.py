@@ -152,7 +152,10 @@ def test_a_result_edited_by_hand_is_named_by_a_look_and_renewed_by_make(small):
     reason = "results/data/one.nc: not what its job wrote"
     assert f"1 result is renewed where needed: {reason}" in said
     assert {*re.findall(r"^  (.+): [0-9.]+ s$", said, re.M)} == {
-        "simulate one", "measure one", "study_grid one", "draw_scene one"
+        "simulate one",
+        "measure one",
+        "study_grid one",
+        "draw_scene one",
     }
     assert digests(small) == before
 

@@ -139,12 +139,8 @@ def code_of(step, *modules, texts=()):
 def templates(*names):
     """Templates of pages, with those that every page is made with."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
-    paths = [
-        path
-        for name in ("base.html", "style.css", "parts.html", *names)
-        for path in folder.glob(name)
-    ]
-    return [path.relative_to(PROJECT).as_posix() for path in sorted({*paths})]
+    paths = [path for name in ("base.html", "style.css", *names) for path in folder.glob(name)]
+    return [path.relative_to(PROJECT).as_posix() for path in paths]
 
 
 def run_step(step, wildcards, input, output, params, threads, log):

@@ -74,7 +74,7 @@ rule draw_scene:
             "title": TITLES[wildcards.scene],
             "altered": note_of({"data": [wildcards.scene]}),
         },
-        code=code_of("draw_scene", texts=templates("scene.html")),
+        code=code_of("draw_scene", texts=templates("scene.html", "parts.html")),
     message:
         "Drawing scene {wildcards.scene}"
     run:
