@@ -64,6 +64,9 @@ try:
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
+if Path("results").is_file():
+    sys.exit("results is a file; remove or rename it: a folder of that name is needed")
+
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)

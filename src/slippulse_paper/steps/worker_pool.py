@@ -12,6 +12,7 @@ import sys
 import tempfile
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from threading import Lock, Thread
 
 from .job import Job, JobFailed, run_job
@@ -30,16 +31,20 @@ class WorkerPool:
 
     def start(self, workers: int) -> None:
         """Start the first of some workers, which loads the libraries before a job comes."""
-        self._submit(workers, os.getpid)
+        # If that is impossible, the first job says why.
+        with suppress(EOFError, OSError):
+            self._submit(workers, os.getpid)
 
     def run(self, job: Job, workers: int) -> None:
         """Run a job in one of some workers. Raises JobFailed with the reason in one line."""
         try:
             self._submit(workers, run_job, job).result()
         except BrokenProcessPool:
-            with self._turn:
-                self._executor = None
+            self._executor = None
             raise JobFailed("its process was killed") from None
+        except (EOFError, OSError) as error:
+            self._executor = None
+            raise JobFailed(f"its process could not be started: {error}") from None
         except SystemExit:
             raise JobFailed("stopped") from None
 
