@@ -65,9 +65,7 @@ def test_a_file_in_place_of_the_results_fails_in_one_line(project, tmp_path):
     folder = copy_project(project, tmp_path / "copy", link=True)
     (folder / "results").write_text("mine")
     said = refused(folder, "--", FIGURE)
-    assert said.strip().endswith(
-        "results is a file; remove or rename it: a folder of that name is needed"
-    )
+    assert "results is a file; remove or rename it: a folder of that name is needed" in said
     assert (folder / "results").read_text() == "mine"
 
 
