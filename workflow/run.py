@@ -127,6 +127,12 @@ class Run:
         surroundings = {
             key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"
         }
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        try:
+            cache.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            # Snakemake needs a folder for its caches, and there may be no home on a cluster.
+            surroundings["XDG_CACHE_HOME"] = str((STATE / "caches").resolve())
         command = [sys.executable, "-m", "snakemake", "--profile", "none", *arguments]
         self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
         # The shell waits for the other end of this pipe, which the system closes with this process.

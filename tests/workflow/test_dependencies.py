@@ -25,11 +25,13 @@ from workflow.conftest import NAMES, TARGETS
 
 from slippulse_paper.records.job_records import Record, RecordedFiles, digest_of, file_digest
 from slippulse_paper.records.provenance import source_files
-from slippulse_paper.steps.predict import TOPICS
+from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
 
 LOCK = "requirements.lock"
 # One file of each folder: a test above covers them all.
-EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TOPICS}.values()
+EDITED = {
+    Path(file).parent: file for file in FILES if Path(file).stem not in TOPIC_MODULES.values()
+}.values()
 
 
 @pytest.fixture(scope="module")

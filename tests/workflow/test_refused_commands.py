@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from pipeline_copy import BY_PROFILE, copy_project, made, refused
+from pipeline_copy import copy_project, made, refused
 
 from slippulse.model.cost import HOW_TO_GO_ON
 
@@ -43,21 +43,21 @@ def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal)
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
-@pytest.mark.parametrize(
-    ("arguments", "caches", "refusal"),
-    [
-        pytest.param("--config x", "", "name=value pairs", id="option"),
-        pytest.param("-- fig07", "/proc/none", "Error", id="caches that cannot be written"),
-    ],
-)
-def test_what_snakemake_itself_refuses_is_one_line_by_the_profile(
-    folder, arguments, caches, refusal
-):
-    environment = {"XDG_CACHE_HOME": caches}
-    text = refused(folder, *arguments.split(), environment=environment, command=BY_PROFILE)
-    # Snakemake also names the profile that it uses.
-    (line,) = (line for line in text.splitlines() if not line.startswith("Using "))
-    assert refusal in line and caches in line
+@pytest.mark.slow
+def test_odd_surroundings_of_the_user_do_not_stop_a_run(folder, tmp_path_factory):
+    """A long TMPDIR, a time without a value, no home, and a profile that only touches files."""
+    long = tmp_path_factory.mktemp("t") / ("x" * 110)
+    long.mkdir()
+    profile = tmp_path_factory.mktemp("profile")
+    (profile / "config.yaml").write_text("touch: true\n", encoding="utf-8")
+    target = "results/figures/fig07_damage_zone.png"
+    odd = {"TMPDIR": str(long), "SOURCE_DATE_EPOCH": "", "HOME": "/proc/none", "TARGET": target}
+    odd |= {"XDG_CACHE_HOME": "", "SNAKEMAKE_PROFILE": str(profile), "PRESET": "draft"}
+    command = [sys.executable, "workflow/run.py", "replicate"]
+    how = {"cwd": folder, "env": os.environ | odd, "capture_output": True, "text": True}
+    result = subprocess.run(command, check=False, timeout=300, **how)
+    assert result.returncode == 0, result.stderr
+    assert f"Made: {target}" in result.stdout and (folder / target).stat().st_size > 0
 
 
 @pytest.mark.slow
