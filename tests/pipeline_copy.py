@@ -63,6 +63,10 @@ def imitate_steps(folder: Path) -> None:
     (steps / "worker_libraries.py").write_text("", encoding="utf-8")
 
 
+# What make gives to tests that it starts, which a run that a test starts must not take as its own.
+OF_MAKE = ("MAKELEVEL", "MAKEFLAGS", "CORES", "PRESET", "OVERLAY", "TARGET", "ALLOW_LARGE")
+
+
 def snakemake(
     folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
 ):
@@ -71,7 +75,8 @@ def snakemake(
     if overlay:
         options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
     how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
-    how["env"] = os.environ | (environment or {})
+    around = {name: value for name, value in os.environ.items() if name not in OF_MAKE}
+    how["env"] = around | (environment or {})
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 

@@ -1,6 +1,6 @@
 """Run Snakemake for make: short names of targets, results renewed, and the verdicts at the end.
 
-    python workflow/run.py replicate|verify
+    python workflow/run.py replicate|verify|rulegraph
 
 The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE. A signal
 ends the run at once, with all of its processes and with one line. Everything else is Snakemake's.
@@ -33,6 +33,7 @@ def options_of(given: Mapping[str, str]) -> list[str]:
     names = [name for name in ("PRESET", "ALLOW_LARGE") if given.get(name)]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
     if given.get("OVERLAY"):
+        check_overlay(given["OVERLAY"])
         options += ["--configfile", given["OVERLAY"]]
     return options
 
@@ -157,8 +158,6 @@ def replicate(given: Mapping[str, str]) -> int:
     began = time.monotonic()
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
-    if given.get("OVERLAY"):
-        check_overlay(given["OVERLAY"])
     take_over()
     if changed := changed_results():
         options += ["--forcerun", *changed]
@@ -214,6 +213,16 @@ def verify(given: Mapping[str, str]) -> int:
     return int(bool(problems))
 
 
+def rulegraph(given: Mapping[str, str]) -> int:
+    """Print which rules make what, as a mermaid graph. Returns the exit code."""
+    targets = [*map(full_target, given.get("TARGET", "").split())]
+    targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
+    look = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
+    graph = ["--rulegraph", "mermaid-js", "--", *targets]
+    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), *graph]
+    return subprocess.run(command, check=False).returncode
+
+
 def outdated(summary: str) -> Iterable[tuple[str, str]]:
     """Yield the files that Snakemake would make again, with its reason, from its summary."""
     for line in summary.splitlines()[1:]:
@@ -238,4 +247,5 @@ def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
 
 
 if __name__ == "__main__":
-    sys.exit({"replicate": replicate, "verify": verify}[sys.argv[1]](os.environ))
+    commands = {"replicate": replicate, "verify": verify, "rulegraph": rulegraph}
+    sys.exit(commands[sys.argv[1]](os.environ))

@@ -245,3 +245,14 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
     deviations = (runs["length"] / runs["paper_length"] - 1.0).abs()
     medians = deviations.groupby(runs["damping_ratio"]).median()
     assert medians[1.0] > 2.0 * medians[0.0]
+
+
+@pytest.mark.parametrize("name", ["fig05_scaling", "fig10_damping_displacement"])
+def test_a_collapse_without_any_transition_says_so(draw, name):
+    drawn = draw(name)
+    nothing = drawn.table.assign(length=np.nan, time=np.nan)
+    figure = drawn.module.draw(nothing)
+    figure.draw_without_rendering()
+    assert [text.get_text() for text in figure.axes[0].texts] == [
+        r"no run reaches $L_\text{trans}$"
+    ]

@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 
 from slippulse.model.cost import HOW_TO_GO_ON
+from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep
 from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.read import LARGEST_FILE, read_config, read_overlay
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse_paper.steps.needs import declared, needs_of
 
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]
@@ -37,15 +39,28 @@ SAID = {
     "word for a switch": ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
     "number for a switch": ({"allow_large": "2"}, "allow_large: 2; allowed: true or false"),
     "word for a number": ({"model": {"damping_ratio": "much"}}, "'much'; allowed: a number >= 0"),
+    "number for a preset": ({"preset": "01"}, "preset: '01'; allowed: draft, paper, reference"),
     "anchor": ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
 }
 # Files that are no overlay at all.
 FILES = {
     "text": (b"just some text\n", "'just some text'", "a mapping of keys"),
     "list": (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
-    "nothing": (b"# nothing\n", "None", "a mapping of keys"),
-    "key without value": (b"model: {damping_ratio: }", "line 1", "no value", "null, which removes"),
-    "open bracket": (b"preset: [draft\n", "not YAML", "line 2"),
+    "nothing": (b"# nothing\n", "empty", "a mapping of keys"),
+    "key without value": (
+        b"model:\n  damping_ratio:\n# a comment\n\nmeasure: {}\n",
+        "line 2: damping_ratio: no value",
+        "null, which removes",
+    ),
+    "entry without value": (b"simulations: {}\nstudies:\n  -\n  - layer\n", "line 3: no value"),
+    "decimal comma in braces": (
+        b"model:\n  {release: total, damping_ratio: 0,1}\n",
+        "line 2: damping_ratio: 0,1",
+        "write 0.1",
+    ),
+    "open bracket": (b"preset: [draft\nmodel: {}\n", "not YAML", "line 1"),
+    "open quote": (b"model: {}\npreset: 'draft\nmeasure: {}\n", "not YAML", "line 2"),
+    "line without a colon": (b"model: {}\npreset\nmeasure: {}\n", "not YAML", "line 2"),
     "picture": (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
     "older YAML": (b"# as it was\n%YAML 1.1\n---\nallow_large: yes\n", "'%YAML 1.1'", "YAML 1.2"),
     "python tag": (b"preset: !!python/object/apply:os.system [touch x]\n", "line 1", "no tags"),
@@ -56,6 +71,53 @@ FILES = {
     "two documents": (b"preset: draft\n---\npreset: paper\n", "line 2", "another document"),
     "deep nesting": (b"[" * 1000, "nested too deeply"),
     "large file": (b"# " + b"x" * LARGEST_FILE, f"more than {LARGEST_FILE} bytes"),
+}
+# A scene in SI units, and changes of it with their refusals.
+BLOCK = {
+    "title": "A block",
+    "layer": {
+        "thickness": 0.01,
+        "shear_modulus": 2.1e9,
+        "poisson_ratio": 0.33,
+        "density": 1170.0,
+        "static_friction": 0.6,
+        "kinetic_friction": 0.5,
+        "normal_stress": 5e6,
+        "top": "held",
+    },
+    "points": [[-0.1, 1e6], [-0.08, 2.7e6], [0.08, 2.7e6], [0.1, 1e6]],
+    "width": 0.005,
+    "duration": 40e-6,
+    "dx": 2e-4,
+}
+EVERYWHERE, BACKWARDS = [[-0.1, 3.1e6], [0.1, 3.2e6]], [[-0.1, 2e6], [0.1, -3.1e6]]
+LAYERS = {
+    "layer.shear_modulus: 0; allowed: a number > 0": {"layer": {"shear_modulus": 0}},
+    "layer.poisson_ratio: 0.5; allowed: a finite number and > -1 and < 0.5": {
+        "layer": {"poisson_ratio": 0.5}
+    },
+    "layer.static_friction: 0.5; allowed: a number above kinetic_friction = 0.5": {
+        "layer": {"static_friction": 0.5}
+    },
+    "layer.lame_parameter, poisson_ratio: missing": {"layer": {"poisson_ratio": None}},
+    "layer.top: 'free'; allowed: held, stress": {"layer": {"top": "free"}},
+    "layer.density: missing": {"layer": {"density": None}},
+    "points: at least 3.1e+06 Pa everywhere; allowed: below static friction": {
+        "points": EVERYWHERE
+    },
+    "points: -3.1e+06 Pa; allowed: > -3e+06 Pa": {"points": BACKWARDS},
+    "gamma: 0.6; allowed: none, since the layer has it": {"gamma": 0.6},
+    "boundary: 'stress'; allowed: what layer.top = 'held' means": {"boundary": "stress"},
+    "dx: 0.02; allowed: a number > 0 and <= the thickness, 0.01 m": {"dx": 0.02},
+    "peak: 1, and the pre-stress of a block is at most 0.4": {
+        "points": [[-0.1, 2.7e6], [0.1, 2.7e6]],
+        "width": None,
+    },
+    "left: 3e+06 Pa; allowed: below static friction, 3e+06 Pa": {
+        "points": None,
+        "left": 3e6,
+        "right": 2.7e6,
+    },
 }
 # Values that are put in place of any other.
 ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
@@ -77,6 +139,15 @@ def assert_clear(message: str, parts: Sequence[str] = ()) -> None:
     for line in message.splitlines():
         assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
         assert len(line) < 400 and "http" not in line, line
+
+
+@pytest.mark.parametrize(("line", "change"), LAYERS.items())
+def test_a_mistake_in_a_layer_is_refused_in_si_units(shipped, line, change):
+    layer, changes = change.get("layer", {}), {**change}
+    scene = BLOCK | changes | {"layer": BLOCK["layer"] | layer}
+    with pytest.raises(ConfigError) as refusal:
+        read_config(shipped, [{"scenes": {"block": scene}}])
+    assert_clear(str(refusal.value), [f"scenes.block.{line}"])
 
 
 @pytest.mark.parametrize("case", MISTAKES)
@@ -108,7 +179,7 @@ def mutated(value, chance: random.Random) -> object:
 def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
     chance, counts = random.Random(41), Counter()
     scene = shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}
-    small = shipped | {"published": {}, "scenes": {"one": scene}}
+    small = shipped | {"published": {}, "scenes": {"one": scene, "block": BLOCK}}
     for _ in range(2000):
         overlay = mutated(small, chance)
         if not isinstance(overlay, dict):
@@ -181,3 +252,36 @@ def test_the_command_line_is_refused(shipped, case):
     values, refusal = SAID[case]
     with pytest.raises(ConfigError, match=re.escape(refusal)):
         read_config(shipped, (), values)
+
+
+# Changes of a simulation that a figure draws: the figure, the simulation, the change, its refusal.
+EQUAL = "at least one run with boundary displacement and equal levels above 0"
+BALANCED = "at least one run with boundary stress, left level below 0, right level 0 and no steps"
+OTHER = "; or another name for the simulation"
+NOW = {"time": 5.0, "balance_distances": None}
+STRESS_PROFILE = {"profiles": [{"left": -0.3, "right": 0.1}]}
+NOT_DRAWN = [
+    ("fig05_scaling", "scaling_displacement", {"left": [0.3], "right": [0.5]}, EQUAL),
+    ("fig05_scaling", "scaling_stress", {"right": [0.1], "duration": NOW}, BALANCED),
+    ("fig10_damping_displacement", "damping_displacement", {"left": [-0.3]}, EQUAL),
+    ("fig09_steady_state_stress", "steady_stress", STRESS_PROFILE, BALANCED),
+]
+
+
+@pytest.mark.parametrize(("figure", "name", "changes", "allowed"), NOT_DRAWN)
+def test_a_sweep_that_a_figure_cannot_draw_is_refused(project, figure, name, changes, allowed):
+    whole = read_overlay(project / "config/config.yaml")
+    config = read_config(whole, [{"simulations": {name: changes}}], every_run=False)
+    draws = {figure: declared(f"figures.{figure}", "DRAWS")}
+    (line,) = drawing_problems(config, draws)
+    assert line == f"simulations.{name}: no run that {figure} can draw; allowed: {allowed}{OTHER}"
+
+
+def test_every_figure_says_what_it_draws_and_draws_what_is_shipped(project):
+    config = read_config(read_overlay(project / "config/config.yaml"), every_run=False)
+    needs = needs_of("figures")
+    draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs}
+    assert drawing_problems(config, draws) == []
+    for name, drawn in draws.items():
+        read = {*needs[name].get("measured", {}), *needs[name].get("data", ())}
+        assert {*drawn} <= read and (name.startswith("study") or {*drawn} == read), name

@@ -16,6 +16,7 @@ os.environ["PYTHONPATH"] = os.pathsep.join(
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
+from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
 from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.promised_spacings import promised
@@ -46,7 +47,11 @@ try:
     # `configfile:` reads YAML 1.1 and names no line.
     SHIPPED = read_overlay(PROJECT / "config/config.yaml")
     OVERLAYS = [] if IS_MODULE else [*map(read_overlay, workflow.overwrite_configfiles)]
-    GIVEN = dict(config) if IS_MODULE else workflow.config_settings.config
+    GIVEN = dict(config if IS_MODULE else workflow.config_settings.config)
+    if not IS_MODULE:
+        # Snakemake reads the name of a preset such as 01 as a number.
+        texts = dict(text.split("=", 1) for text in workflow.config_settings.config_args or ())
+        GIVEN |= {name: texts[name] for name in ("preset",) if texts.get(name)}
     # A job on another node starts Snakemake again; its scenes were checked here.
     CONFIG = read_config(SHIPPED, OVERLAYS, GIVEN, workflow.is_main_process)
     # Changes from the shipped configuration; None where nothing can have changed.
@@ -56,6 +61,9 @@ try:
         if workflow.is_main_process and not CONFIG.allow_large:
             if problems := cost_problems(CONFIG, ALTERED):
                 raise ConfigError("\n".join(problems))
+        draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs_of("figures")}
+        if problems := drawing_problems(CONFIG, draws):
+            raise ConfigError("\n".join(problems))
     if CONFIG.claims:
         read_entries(PROJECT / "manuscript/claims.yaml", CONFIG.given()["claims"])
     STUDY_NEEDS = needs_of("studies")
@@ -70,6 +78,8 @@ if Path("results").is_file():
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
+# Parameters of the layers of scenes in SI units.
+LAYERS = {name: scene.layer_parameters() for name, scene in CONFIG.scenes.items()}
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 # Inputs of each figure and study, as its module says: names by kind of file, and keys.

@@ -1,7 +1,8 @@
 """The look of every figure, in one place."""
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from textwrap import fill
 from typing import Any, TypeAlias
@@ -115,8 +116,28 @@ RC: dict[Any, Any] = {
     # Names of objects in a PDF would otherwise be random.
     "svg.hashsalt": "slippulse",
 }
-# Figures are made and saved in this context, which leaves settings of the caller as they are.
-house_style = partial(matplotlib.rc_context, RC)
+# Only the fonts that Matplotlib brings along are used, and no variable of the user gives a date.
+ENVIRONMENT = {"MPL_IGNORE_SYSTEM_FONTS": "1", "SOURCE_DATE_EPOCH": "0"}
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Make and save figures in the house style, whatever the settings of the user.
+
+    It starts from Matplotlib's own defaults, and restores the settings of the caller at its end.
+    """
+    before = {name: os.environ.get(name) for name in ENVIRONMENT}
+    with matplotlib.rc_context():
+        os.environ.update(ENVIRONMENT)
+        try:
+            matplotlib.rcdefaults()
+            matplotlib.rcParams.update(RC)
+            yield
+        finally:
+            for name, value in before.items():
+                os.environ.pop(name)
+                if value is not None:
+                    os.environ[name] = value
 
 
 def as_given(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -229,7 +250,8 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
         bottom = added / (height + added)
         figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
         look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL, "color": ORANGE}
-        figure.text(0.995, 0.005, text, **look).set_in_layout(False)
+        # A note names values of the user, whose dollars begin no formula.
+        figure.text(0.995, 0.005, text, parse_math=False, **look).set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     # The layout is that of the PNG: with an engine the PDF would be drawn twice.

@@ -137,6 +137,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, above=0.0)
     check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
+    tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
     def too_fast(v: float) -> float:
         end, tail = _tail(v, tau0, gamma, beta, weakening)

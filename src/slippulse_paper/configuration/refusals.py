@@ -1,5 +1,6 @@
 """Refusals in words: each problem that pydantic reports, as one line about its key."""
 
+import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -10,7 +11,7 @@ from pydantic import BaseModel
 from slippulse.model.checks import short_repr
 
 from .problems import nearest
-from .schema import NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
+from .schema import LABEL_WORDS, NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
 
 # A refusal has this number of lines at most: a reader mends a few mistakes at a time.
 LINES = 20
@@ -43,7 +44,8 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     if path[-1] == "[key]":
-        return f"{dotted(path[:-2])}: {short_repr(path[-2])}; allowed: {NAME_WORDS}"
+        allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
+        return f"{dotted(path[:-2])}: {short_repr(path[-2])}; allowed: {allowed}"
     known_path, schema, value = _deepest(path, config)
     if kind == "extra_forbidden":
         known = [*schema["properties"]]
@@ -51,7 +53,9 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
         hint = nearest(path[-1], known) or _elsewhere(path[-1])
         return f"{dotted(path)}: unknown key{hint}; allowed: {allowed}"
     allowed = "a finite number" if kind == "finite_number" else words(schema)
-    return f"{dotted(known_path)}: {short_repr(value)}; allowed: {allowed}{_remedy(value)}"
+    # Words of YAML, not of Python.
+    given = json.dumps(value) if value is None or isinstance(value, bool) else short_repr(value)
+    return f"{dotted(known_path)}: {given}; allowed: {allowed}{_remedy(value)}"
 
 
 def _elsewhere(key: str | int) -> str:

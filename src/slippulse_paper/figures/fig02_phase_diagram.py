@@ -31,6 +31,12 @@ NEEDS = {
     },
     "studies": ["regime_plane"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "regimes_displacement": "boundary displacement",
+    "regimes_displacement_asymmetric": "boundary displacement",
+    "regimes_stress": "boundary stress",
+}
 
 BOUNDARIES = {"displacement": r"$\Gamma = 1$, any $\gamma$", "stress": r"$\Gamma = 0$"}
 # Colour of each regime, and its label in the planes.

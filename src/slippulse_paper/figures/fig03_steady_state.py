@@ -20,6 +20,11 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "steady_displacement": "boundary displacement and a level above 0",
+    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:

@@ -16,6 +16,11 @@ NEEDS = {
     "studies": ["exact_space_time"],
     "settings": ["measure.share"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "space_time_displacement": "boundary displacement and equal levels above 0",
+    "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 PANELS = {"displacement": "a", "stress": "b"}
 COLUMNS = ["panel", "role", "series", "time", "position", "value"]
@@ -60,7 +65,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
         roles = style.by_role(table[table["panel"] == panel])
-        space_time.draw_profile(profile, roles["prestress"])
+        space_time.draw_profile(profile, roles)
         space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
         style.panel_letter(profile, letter)

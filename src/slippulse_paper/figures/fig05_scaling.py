@@ -11,6 +11,11 @@ from .shared.pulse_panels import draw_prestress
 from .shared.scaling import DRAWN, OTHER, QUANTITIES, transition_table
 
 NEEDS = {"measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]}}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "scaling_displacement": "boundary displacement and equal levels above 0",
+    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 

@@ -21,6 +21,11 @@ from slippulse.plotting.style import (
 )
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "burridge_knopoff_displacement": "boundary displacement and equal levels above 0",
+    "burridge_knopoff_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 # Panels, with the distance between their rows of blocks in spacings.
 PITCH = {"displacement": 1.62, "stress": 0.86}

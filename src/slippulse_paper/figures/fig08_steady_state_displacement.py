@@ -9,3 +9,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "steady_displacement": "boundary displacement and a level above 0",
+}

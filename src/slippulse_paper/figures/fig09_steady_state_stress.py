@@ -9,3 +9,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}

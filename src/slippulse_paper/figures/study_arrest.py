@@ -15,6 +15,10 @@ NEEDS = {
     "studies": ["arrest_path"],
     "settings": ["measure.share"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "arrest": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 PATH_POINTS = 150
 PALE: Look = {"linewidth": 3.0, "alpha": 0.35}

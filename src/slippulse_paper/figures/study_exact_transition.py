@@ -17,6 +17,11 @@ NEEDS = {
     },
     "studies": ["gaussian_transition"],
 }
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "scaling_displacement": "boundary displacement and equal levels above 0",
+    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
 
 KINDS = {"displacement": (BLUE, r"$\Gamma = 1$"), "stress": (ORANGE, r"$\Gamma = 0$")}
 REFERENCES = {"exact": ("from exact theory", "-"), "paper": ("from the paper's formula", "--")}

@@ -45,7 +45,10 @@ def source_files(root: str | Path) -> list[Path]:
 
 def git_state(root: str | Path) -> dict | None:
     """Commit, and files that differ from it; None outside a repository or without git."""
-    git = partial(subprocess.check_output, stderr=subprocess.DEVNULL, timeout=30, cwd=root)
+    # A variable of git would name another repository than the one that these files are in.
+    around = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    options = {"stderr": subprocess.DEVNULL, "timeout": 30, "cwd": root, "env": around}
+    git = partial(subprocess.check_output, **options)
     try:
         commit = git(["git", "rev-parse", "HEAD"], text=True).strip()
         status = git(["git", "status", "--porcelain", "--untracked-files=no"], text=True)

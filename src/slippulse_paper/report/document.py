@@ -15,7 +15,8 @@ from PIL import Image
 
 from slippulse.data.files import configuration, write_text, write_whole
 
-from .html import TEMPLATES, page, pandoc
+from ..text.markdown import pandoc
+from .html import TEMPLATES, page
 
 # The fonts of the figures, which Matplotlib brings along.
 FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
@@ -84,6 +85,7 @@ def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Seque
     common = ["--standalone", "--number-sections", "--citeproc"]
     common += [
         f"--template={template}",
+        f"--csl={TEMPLATES / 'report.csl'}",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
         f"--variable=configuration:{configuration()}",

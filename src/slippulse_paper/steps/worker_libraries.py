@@ -6,9 +6,9 @@ import os
 
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
-# Figures are files, whatever display the user has chosen.
-os.environ["MPLBACKEND"] = "agg"
-# Files have no times, whatever time the user has chosen for them.
+# Figures are files in the house style, whatever display and style the user has chosen.
+os.environ |= {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
+# Results carry no date, and some libraries cannot be loaded if this one is not a number.
 os.environ.pop("SOURCE_DATE_EPOCH", None)
 
 import h5py

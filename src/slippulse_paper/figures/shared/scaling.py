@@ -34,12 +34,15 @@ def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
     """Draw measured against predicted; ``colours`` of the runs are c (face) and edgecolors."""
     x, y = runs[f"paper_{quantity}"], runs[quantity]
+    symbol = QUANTITIES[quantity]
+    axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
+    if (x.isna() | y.isna()).all():
+        axes.text(0.5, 0.5, f"no run reaches ${symbol}$", ha="center", transform=axes.transAxes)
+        return
     width = 1.0 if "edgecolors" in colours else 0.3
     _scatter(axes, runs, x, y, colours, s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
-    symbol = QUANTITIES[quantity]
-    axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
