@@ -80,7 +80,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) -s --no-print-directory LOCKED=yes $(READY)
 else
 $(READY): requirements-build.lock requirements.lock pyproject.toml
-	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) results/.run.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
+	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/slippulse.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
