@@ -9,10 +9,10 @@ THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
 
 # Constants of studies in tests: the ends of lists, and runs that are long enough.
 SMALL_STUDIES = {
-    "barriers": {"LENGTHS": (0.95, 1.05)},
+    "barriers": {"RELATIVE_LENGTHS": (0.95, 1.05)},
     "friction_laws": {"LEVELS": (0.2, 0.5, 0.8), "DURATION": 28.0},
-    "front_law": {"SPACINGS": 5},
-    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
+    "front_law": {"SPACING_COUNT": 5},
+    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "OTHER_LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
     | {"FRACTURE_ENERGIES": (0.05, 0.42, 0.9)},
     "published_figure": {
         "DAMPING_RATIOS": {
