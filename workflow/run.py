@@ -138,7 +138,8 @@ class Run:
         self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
         # The shell waits for the other end of this pipe, which the system closes with this process.
         end_group = f"read _; kill -KILL -{self.process.pid}"
-        self.guard = subprocess.Popen(["sh", "-c", end_group], stdin=subprocess.PIPE)
+        how = {"stdin": subprocess.PIPE, "start_new_session": True}
+        self.guard = subprocess.Popen(["sh", "-c", end_group], **how)
 
     def end(self) -> None:
         """End all processes of the run."""
