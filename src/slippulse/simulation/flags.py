@@ -69,14 +69,18 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
     """True if another law of friction than the paper's let nothing stick for 2 pi/sqrt(gamma)."""
     if scene.friction == COULOMB or scene.gamma == 0.0:
         return False
-    if not np.any(solution.slip_velocity > 0.0):
+    # The velocity is NaN where the exact solution does not know it.
+    if not np.any(solution.slip_velocity > 0.0) or np.isnan(solution.slip_velocity).any():
         return False
     last = np.max(solution.stick_time, initial=0.0, where=np.isfinite(solution.stick_time))
     return scene.duration - last > 2.0 * math.pi / math.sqrt(scene.gamma)
 
 
 def narrowest_pulse(scene: Scene, solution: Solution) -> int:
-    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation."""
+    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation.
+
+    It is 0 without a pulse, and where the exact solution does not know all of the end.
+    """
     if scene.boundary == "stress":
         profile = scene.prestress
         widths = [profile.width]
@@ -84,6 +88,8 @@ def narrowest_pulse(scene: Scene, solution: Solution) -> int:
             if level < 0.0 < profile.peak:
                 widths.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
         return int(min(widths) / scene.dx)
+    if np.isnan(solution.slip_velocity).any():
+        return 0
     sliding = np.isfinite(solution.release_time) & ~np.isfinite(solution.stick_time)
     edges = np.flatnonzero(np.diff(sliding, prepend=False, append=False))
     lengths = edges[1::2] - edges[0::2]

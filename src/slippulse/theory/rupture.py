@@ -159,7 +159,7 @@ class Rupture:
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """Time at which x sticks.
+        """Time at which x first sticks; it may be released again beyond the horizon.
 
         Parameters
         ----------
@@ -193,13 +193,15 @@ class Rupture:
 
         Returns
         -------
-        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``
+        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``, and where
+        the horizon comes until then
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
         slip = self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
-        return np.where(slides, np.nan, slip)
+        unknown = slides | self._is_beyond_horizon(x, self.duration)
+        return np.where(unknown, np.nan, slip)
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
