@@ -5,6 +5,7 @@ from .data.point import point as point
 from .figures.run import plot as plot
 from .model.friction import friction as friction
 from .model.prestress import Prestress as Prestress
+from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
 from .predict.one_run import measure as measure

@@ -18,7 +18,9 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
     length = between_fronts(run, time)
     out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
     # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
-    for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
+    same = run.attrs["left"] == run.attrs["right"]
+    background = run.attrs["left"] if same else np.nan
+    for name, tau in (("background", background), ("nucleation", run.attrs["peak"])):
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
     return out

@@ -2,7 +2,8 @@
 
 from ..data.join import join_datasets, join_grid_studies, join_tables
 from ..data.saving import save_dataset
-from ..measurement.table import PARAMETERS
+from ..data.tables import load_table
+from ..measurement.table import LABELS, PARAMETERS
 from ..measurement.uncertainty import quantities
 
 
@@ -13,6 +14,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     if kind == "data":
         save_dataset(join_datasets(chunks, settings["record"]), joined)
     elif kind == "uncertainties":
-        join_grid_studies(chunks, files["finest"][0], PARAMETERS, quantities, joined)
+        finest = files["finest"][0]
+        keys = [*PARAMETERS, *(name for name in LABELS if name in load_table(finest))]
+        join_grid_studies(chunks, finest, keys, quantities, joined)
     else:
         join_tables(chunks, joined)

@@ -5,7 +5,9 @@ from collections import Counter
 from pkgutil import resolve_name
 
 from ..configuration.expand import expand
+from ..configuration.runs import profile_labels
 from ..data.saving import save_dataset
+from ..data.sweeps import labelled
 from ..data.variables import described
 from ..simulation.sweep import solve_sweep
 
@@ -23,6 +25,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     scenes, samples = expand(sweep)
     how = settings["threads"], settings.get("progress")
     data = solve_sweep(solve, scenes, samples, sweep["record"], *how)
+    data = labelled(data, profile_labels(sweep), sweep["record"])
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
         flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"

@@ -40,7 +40,7 @@ def gaussians(prestress: Prestress) -> list[tuple[float, float]]:
 def pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     """The pieces from left to right; one where tau only touches the value has no length."""
     out = []
-    for left, right, level in prestress.intervals:
+    for left, right, level, _ in prestress.intervals:
         above, changes = _changes(prestress, (left, right, level), value)
         for start, end in pairwise([left, *changes, right]):
             out.append(Piece(start, end, level, above))
