@@ -100,10 +100,9 @@ class Rupture:
         self._parts = []
         for stretch in self.stretches:
             curve, law = stretch.curve(), self.law
-            kinks = [piece.right for piece in law.pieces if np.isfinite(piece.right)]
             restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
             ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-            marks = np.unique([0.0, *kinks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+            marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
             marks = marks[curve.covers(marks)]
             keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
             self._parts.append(SolvedPart(*keys))

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..model.prestress import Prestress
+from ..model.prestress import Interval, Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
 from .prestress_pieces import analytic
 from .riemann import decay, kernel_of, partial_weights
@@ -176,7 +176,7 @@ class SlowFront:
 
     curve: Curve
     prestress: Prestress
-    level: float  # of the side where the front is
+    background: Interval  # where the front is
     gamma: float
     alpha: float = 0.0
 
@@ -243,7 +243,7 @@ class SlowFront:
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""
-        return analytic(self.prestress, self.level, x)
+        return analytic(self.prestress, self.background, x)
 
     def entry(self, entered: float, negligible: float) -> Entry | None:
         """The next entry after the position of the last one; None where it is not known.

@@ -132,7 +132,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
-    front = SlowFront(stretch.curve(side), law.prestress, piece.level, law.gamma, law.alpha)
+    front = SlowFront(stretch.curve(side), law.prestress, piece.background, law.gamma, law.alpha)
     panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
