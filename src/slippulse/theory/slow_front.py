@@ -267,14 +267,14 @@ class SlowFront:
             last = int(np.argmin(np.append(np.abs(gain + moves) <= most * self.size, False))) - 1
             gain, passed = gain + float(moves[last]), passed or last > 0
             if last < FRACTIONS.size - 1:
-                if passed and moves[last + 1] < moves[last]:
-                    break
+                if passed and np.min(source) < 0.0 and moves[last + 1] < moves[last]:
+                    # What comes next does not move the front on.
+                    return Entry(-1, 1.0)
                 return Entry(int(panel), float(parameters[last]), passed * max(gain, self.least))
             panel, s = panel - 1, 1.0
-        if passed:
-            # What comes next, if anything, does not move the front on.
-            return Entry(-1, 1.0)
-        return self.entry_behind_slow_front() if panel >= 0 else None
+        if panel >= 0:
+            return self.entry_behind_slow_front()
+        return Entry(-1, 1.0) if passed else None
 
     @property
     def least(self) -> float:

@@ -243,8 +243,20 @@ class EdgedPart(Part):
         knots = self.knots
         ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
         slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
+        slow = np.union1d(slow, self._undone_stops()).astype(int)
         points = np.stack([knots.x, knots.stick], axis=1)[slow].tolist()
         return [Point(*point) for point in points]
+
+    def _undone_stops(self) -> list[int]:
+        """Knots where a front stops, but no trailing edge that outruns the waves begins."""
+        knots, told = self.knots, np.flatnonzero(self.knots.kind != BRIEF)
+        undone = []
+        for end, nearest in ((0, told[:1]), (knots.x.size - 1, told[-1:])):
+            if knots.kind[end] == BRIEF and nearest.size:
+                change = np.abs([knots.x[nearest] - knots.x[end], knots.stick[nearest] - knots.stick[end]])
+                if change[1] > change[0] * (1.0 + SAME):
+                    undone.append(end)
+        return undone
 
     def first_stick(self) -> FirstStick | None:
         """The first sticking; None where nothing sticks before the end."""
