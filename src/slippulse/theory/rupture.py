@@ -102,7 +102,9 @@ class Rupture:
             curve, law = stretch.curve(), self.law
             restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
             ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-            marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+            marks = np.unique(
+                [0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features]
+            )
             marks = marks[curve.covers(marks)]
             keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
             self._parts.append(SolvedPart(*keys))

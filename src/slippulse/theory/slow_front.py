@@ -139,9 +139,14 @@ class FreeBoundary:
         later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         self.weight = np.concatenate([cut, later], axis=1)
         self.d_xi = self.early[:, None] - np.append(curve.early[panel:], self.early)
+        # Without leaf springs and drag the kernel is 1.
+        self.is_plain = front.stiffness == front.alpha == 0.0
+        self.plain_sum = self.weight.sum(axis=1) if self.is_plain else np.zeros(0)
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
         """The step to subtract from positions; None where the front would not be stable."""
+        if self.is_plain:
+            return self.plain_step(x)
         k, alpha = self.front.stiffness, self.front.alpha
         eta = self.early + 2.0 * x
         d_eta = eta[:, None] - np.append(self.late, eta)
@@ -156,9 +161,7 @@ class FreeBoundary:
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
         # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
         # nodes.
-        half = 0.5 * (x - self.front.x0)
-        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
-        area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
+        area, tau = self.crossed_by_front(x)
         fall = tau + growth
         if not np.all(fall < 0.0):
             return None
@@ -168,6 +171,17 @@ class FreeBoundary:
         matrix = (excess * tau) @ SLOPE + excess * (SLOPE @ tau) - turn
         matrix += np.diag(fall + turn.sum(axis=1))
         return np.linalg.solve(matrix, entered + area + excess @ (tau * slopes))
+
+    def plain_step(self, x: np.ndarray) -> np.ndarray | None:
+        """The same with a kernel of 1."""
+        area, tau = self.crossed_by_front(x)
+        return (self.plain_sum + area) / tau if np.all(tau < 0.0) else None
+
+    def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Integral of the pre-stress from the start of the chunk to positions, and its values."""
+        half = 0.5 * (x - self.front.x0)
+        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+        return half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
 
 
 @dataclass

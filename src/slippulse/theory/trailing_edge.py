@@ -253,7 +253,9 @@ class EdgedPart(Part):
         undone = []
         for end, nearest in ((0, told[:1]), (knots.x.size - 1, told[-1:])):
             if knots.kind[end] == BRIEF and nearest.size:
-                change = np.abs([knots.x[nearest] - knots.x[end], knots.stick[nearest] - knots.stick[end]])
+                change = np.abs(
+                    [knots.x[nearest] - knots.x[end], knots.stick[nearest] - knots.stick[end]]
+                )
                 if change[1] > change[0] * (1.0 + SAME):
                     undone.append(end)
         return undone
