@@ -25,9 +25,12 @@ def undamped_time(tau: np.ndarray) -> np.ndarray:
 
 
 def random_table(number: int) -> sp.Prestress:
-    """A dozen points, with a jump; each second table has a Gaussian at x = 0 in place of a peak."""
+    """A dozen points, with a jump; each second table has a Gaussian at x = 0 in place of a peak.
+
+    They are blocks of all lattices, so that the jump has the same place in each.
+    """
     rng = np.random.default_rng((number, 53))
-    x = np.sort(np.append(rng.uniform(-14.0, 14.0, 10), 0.0))
+    x = SPACINGS[0] * np.unique(np.append(rng.integers(-175, 176, 10), 0))
     tau = rng.uniform(0.25, 0.9, x.size)
     jump = int(rng.integers(8, 10))
     x, tau = np.insert(x, jump, x[jump]), np.insert(tau, jump, rng.uniform(0.25, 0.9))
