@@ -10,15 +10,19 @@ TARGET ?=
 ALLOW_LARGE ?=
 AGAINST ?=
 KILLS ?= 24
-# The options go through the environment: no value is read as a command.
-export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
+# No option is read as a command: make would expand $(shell ...) in a value that it uses or exports,
+# so each value is taken as it was written, and goes through the environment.
+OPTIONS := PYTHON CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
+GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+$(foreach name,$(OPTIONS) $(GIVEN),$(eval override $(name) := $$(value $(name))))
+export $(OPTIONS)
 # Without compiled modules each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
 # Settings of the user for other places to install do not apply to this environment.
 unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT \
     PIP_PYTHON PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
-LOCK := src/slippulse/data/lock.py
+LOCK := src/slippulse_paper/records/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
@@ -117,11 +121,10 @@ replicate: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@"$(BIN)/python" -m snakemake --workflow-profile none --logger slippulse --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
-	    -- $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
+	@"$(BIN)/python" workflow/run.py rulegraph
 
 verify: $(READY)
-	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
+	@$(if $(AGAINST),"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)

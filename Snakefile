@@ -1,33 +1,45 @@
-# The whole paper from one configuration: simulate, measure, draw.
+# The whole paper from one configuration: simulate, measure, draw, judge, report.
 #   snakemake --cores 2                                        everything
 #   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and its inputs
 #   snakemake --cores 2 --configfile mine.yaml                 with an overlaid configuration
 
+from snakemake.utils import min_version
+
+min_version("9.0")
+
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
+include: "workflow/rules/chunks.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/pages.smk"
+
+
+report: "workflow/report/workflow.rst"
 
 
 rule all:
     default_target: True
     input:
-        # All files that they are made from are targets too: a missing one is made again.
-        lambda wildcards: [f"results/{name}" for name in PLAN.wanted(["all"])],
+        EVERYTHING if ACCURACY.get("whole", True) else DRAFT,
 
 
-rule verify:
+rule everything:
     input:
-        environment,
+        EVERYTHING,
 
 
-include: "workflow/rules/targets.smk"
+rule scenes:
+    input:
+        made("scenes", SCENES),
+        made("animations", SCENES),
+        "results/scenes/index.html",
 
 
-onsuccess:
-    end()
+onstart:
+    check_packages_and_lock()
+    WORKERS.start(workflow.cores)
 
 
 onerror:
-    sys.stderr.write("".join(f"{reason}\n" for reason in FAILED))
+    print(*FAILED, sep="\n", file=sys.stderr)

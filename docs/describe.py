@@ -11,8 +11,8 @@ from typing import Any
 
 import yaml
 
-from slippulse.configuration.read import read_overlay
-from slippulse.configuration.refusals import json_schema, resolved, words
+from slippulse_paper.configuration.read import read_overlay
+from slippulse_paper.configuration.refusals import json_schema, resolved, words
 
 README = "config/README.md"
 SCHEMA = "workflow/schemas/config.schema.yaml"
@@ -29,7 +29,7 @@ def schema_text() -> str:
     text = yaml.safe_dump(
         json_schema(), sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
     )
-    source = "src/slippulse/configuration/schema.py, for editors and catalogues"
+    source = "src/slippulse_paper/configuration/schema.py, for editors and catalogues"
     standard = "https://json-schema.org/draft/2020-12/schema"
     return f"# Written by `make describe` from {source}.\n$schema: {standard}\n{text}"
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 import yaml
 from selection import SMALL_STUDIES, small_sweep
+from slippulse_paper.steps.reach import declared
+from slippulse_paper.steps.targets import selected
 
-from slippulse.data.lock import take
 from slippulse.data.tables import load_table, save_table
-from slippulse.steps.inputs import given
-from slippulse.steps.reach import declared
-from slippulse.steps.targets import selected
+from slippulse_paper.records.lock import take
+from slippulse_paper.steps.inputs import given
 
 # Two workers share two cores.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -82,7 +82,7 @@ def study(project, shipped, shared):
                 settings = selected(shipped, needs.get("settings", ()), {})
                 sweeps = {sweep: small_sweep(shipped, sweep) for sweep in needs.get("sweeps", ())}
                 settings |= {"sweeps": sweeps} if sweeps else {}
-                module = import_module(f"slippulse.studies.{name}")
+                module = import_module(f"slippulse_paper.studies.{name}")
                 lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
                 with pytest.MonkeyPatch.context() as patch:
                     for constant, value in SMALL_STUDIES.get(name, {}).items():

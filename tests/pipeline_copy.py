@@ -61,10 +61,14 @@ class import_module:
 
 def imitate_steps(folder: Path) -> None:
     """Let the jobs of a copy write short texts instead of running their steps."""
-    path = folder / "src/slippulse/steps/job.py"
+    path = folder / "src/slippulse_paper/steps/job.py"
     text = path.read_text(encoding="utf-8")
-    assert text.count('import_module(f"slippulse.steps.') == 1
+    assert text.count('import_module(f"slippulse_paper.steps.') == 1
     path.write_text(text + IMITATION, encoding="utf-8")
+
+
+# What make gives to tests that it starts, which a run that a test starts must not take as its own.
+OF_MAKE = ("MAKELEVEL", "MAKEFLAGS", "CORES", "PRESET", "OVERLAY", "TARGET", "ALLOW_LARGE")
 
 
 def snakemake(
@@ -76,7 +80,8 @@ def snakemake(
         options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
     library = {"PYTHONPATH": str((folder / "src").resolve())}
     how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
-    how["env"] = os.environ | library | (environment or {})
+    around = {name: value for name, value in os.environ.items() if name not in OF_MAKE}
+    how["env"] = around | library | (environment or {})
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 

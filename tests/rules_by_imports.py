@@ -9,12 +9,13 @@ from functools import cache
 from pathlib import Path
 
 import grimp
+from slippulse_paper.steps.reach import needs_of
 
-from slippulse.steps.predict import TOPICS
-from slippulse.steps.reach import needs_of
+from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
 
 PROJECT = Path(__file__).resolve().parents[1]
-PACKAGE, TEXTS = PROJECT / "src/slippulse", PROJECT / "manuscript"
+PACKAGE, TEXTS = PROJECT / "src/slippulse_paper", PROJECT / "manuscript"
+LIBRARY = PROJECT / "src/slippulse"
 
 
 def modules_in(folder: str, *patterns: str) -> set[str]:
@@ -26,16 +27,16 @@ DRAWN = modules_in("figures", "fig*.py", "study_*.py")
 STUDIED = {f"study_of_{name}": name for name in needs_of("studies")}
 # Modules that steps share, and steps whose rules are those of figures and studies.
 SHARED = {"__init__", "inputs", "job", "libraries", "origins", "processes", "reach", "reading"}
-SHARED |= {"targets", "draw_figure", "run_study"}
+SHARED |= {"targets", "draw_figure", "run_study", "joined_files"}
 # Modules that a rule runs.
 MODULES = {step: [f"steps.{step}"] for step in modules_in("steps", "*.py") - SHARED}
 MODULES |= {name: ["steps.draw_figure", f"figures.{name}"] for name in DRAWN}
 MODULES |= {rule: ["steps.run_study", f"studies.{study}"] for rule, study in STUDIED.items()}
 MODULES["sweep_mine"] = ["steps.draw_figure", "figures.user_defined_sweep"]
-MODULES["predict"] += [f"predict.{topic}" for topic in TOPICS]
+MODULES["predict"] += [f"slippulse.prediction.{name}" for name in TOPIC_MODULES.values()]
 # Most simulations are solved by this scheme.
 for solving in ("simulate", "study_grid"):
-    MODULES[solving].append("solver.solution")
+    MODULES[solving].append("slippulse.solver.solution")
 RULES = {*MODULES}
 # The templates that pages begin with, by the rules that write them.
 PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer", "index")}
@@ -48,7 +49,9 @@ READ_BY["open_choices.yaml"] = {"study_of_open_choices"}
 # The rule that notes a digest of every source.
 EVERY_SOURCE = {"write_index"}
 # All files of the package and all texts.
-PATHS = [path for path in [*PACKAGE.rglob("*"), *TEXTS.rglob("*")] if path.is_file()]
+PATHS = [
+    path for path in [*PACKAGE.rglob("*"), *LIBRARY.rglob("*"), *TEXTS.rglob("*")] if path.is_file()
+]
 FILES = [path.relative_to(PROJECT).as_posix() for path in PATHS if "__pycache__" not in path.parts]
 FILES.sort()
 
@@ -58,11 +61,15 @@ def module_file(name: str) -> str:
     return f"{path}/__init__.py" if (PROJECT / path).is_dir() else f"{path}.py"
 
 
+def full_name(module: str) -> str:
+    return module if module.startswith("slippulse.") else f"slippulse_paper.{module}"
+
+
 @cache
 def imports() -> grimp.ImportGraph:
     """Graph of imports, in which a module imports the packages that it is in."""
-    graph = grimp.build_graph("slippulse", cache_dir=None)
-    modules = graph.modules - {"slippulse"}
+    graph = grimp.build_graph("slippulse", "slippulse_paper", cache_dir=None)
+    modules = graph.modules - {"slippulse", "slippulse_paper"}
     for name in modules:
         graph.add_import(importer=name, imported=name.rpartition(".")[0])
     return graph
@@ -71,7 +78,7 @@ def imports() -> grimp.ImportGraph:
 @cache
 def templates_of(page: str) -> set[str]:
     """A template and those that it is made with."""
-    path = f"src/slippulse/report/templates/{page}"
+    path = f"src/slippulse_paper/report/templates/{page}"
     text = (PROJECT / path).read_text(encoding="utf-8")
     others = re.findall(r'{% (?:extends|include|import) "(.+?)"', text)
     return {path}.union(*map(templates_of, others))
@@ -80,7 +87,7 @@ def templates_of(page: str) -> set[str]:
 @cache
 def expected(rule: str) -> set[str]:
     """Files of the package and texts that a rule depends on."""
-    modules = {f"slippulse.{name}" for name in MODULES[rule]}
+    modules = {full_name(name) for name in MODULES[rule]}
     modules = modules.union(*map(imports().find_upstream_modules, modules))
     files = set(map(module_file, modules)).union(*map(templates_of, PAGES_OF.get(rule, ())))
     names = [path.name for path in TEXTS.iterdir()]

@@ -2,7 +2,7 @@
 
 import copy
 
-from slippulse.configuration.resolve import resolve
+from slippulse_paper.configuration.resolve import resolve
 
 # A few points of each list are enough to draw.
 THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}

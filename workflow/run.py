@@ -1,8 +1,9 @@
-"""Run Snakemake for make. A signal ends the run at once, with all of its jobs and with one line.
+"""Run Snakemake for make: short names of targets, results renewed, and the verdicts at the end.
 
-    python workflow/run.py replicate|verify
+    python workflow/run.py replicate|verify|rulegraph
 
-The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
+The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE. A signal
+ends the run at once, with all of its processes and with one line. Everything else is Snakemake's.
 """
 
 import json
@@ -12,48 +13,45 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
 
-CALL = Path("results/records/.call")
+PROJECT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(PROJECT / "src"))
+RESULTS, STATE = Path("results"), Path(".snakemake")
+LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
+# Folders of results in which no rule makes the files.
+OTHER_FOLDERS = ("logs", "benchmarks", "reference", "tutorial")
 
 
-def arguments(command: str) -> list[str]:
-    """Arguments of Snakemake for a command of the Makefile."""
-    given = {name: value for name, value in os.environ.items() if value}
-    targets = [full_target(target) for target in given.get("TARGET", "").split()]
-    names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
+def options_of(given: Mapping[str, str]) -> list[str]:
+    """Return Snakemake's options for the options of make."""
+    names = [name for name in ("PRESET", "ALLOW_LARGE") if given.get(name)]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
-    options += ["--configfile", checked(given["OVERLAY"])] if "OVERLAY" in given else []
-    if command == "replicate":
-        return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
-    if not options:
-        # Without options, the results are compared with what the last run was to make.
-        with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
-            called = json.loads(CALL.read_text(encoding="utf-8"))
-            targets = [*{"everything"} & {*called["targets"]}]
-            options = [str(option) for option in called["options"]]
-    look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
-    return [*look, "--cores", "1", *options, "--", "verify", *targets]
+    if given.get("OVERLAY"):
+        check_overlay(given["OVERLAY"])
+        options += ["--configfile", given["OVERLAY"]]
+    return options
 
 
-def checked(overlay: str) -> str:
+def check_overlay(path: str) -> None:
     """Refuse an overlay that is no plain data, since Snakemake obeys templates."""
-    from slippulse.configuration.read import ConfigError, read_overlay
+    from slippulse_paper.configuration.read import ConfigError, read_overlay
 
     try:
-        read_overlay(overlay)
+        read_overlay(path)
     except ConfigError as error:
         sys.exit(f"The configuration is refused:\n{error}")
-    return overlay
 
 
 def full_target(target: str) -> str:
     """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
     name, _, ending = target.removeprefix("results/figures/").partition(".")
-    modules = Path("src/slippulse/figures")
+    modules = PROJECT / "src/slippulse_paper/figures"
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
         paths = modules.glob(f"fig{int(numbered[1]):02d}_*.py")
@@ -63,62 +61,182 @@ def full_target(target: str) -> str:
     return f"results/figures/{name}.{ending or 'png'}" if known else target
 
 
-def answer() -> str:
-    """Say what to open when a run has ended, with the verdicts if it made or kept them."""
-    called = json.loads(CALL.read_text(encoding="utf-8"))
-    text = ""
-    if called["judged"]:
-        from slippulse.claims.ledger import Ledger
-        from slippulse.claims.reading import read_text
+def take_over() -> None:
+    """Remove what a killed run has left, unless another run is at work in this folder."""
+    from slippulse.data.files import UNFINISHED
+    from slippulse_paper.records.lock import take
 
+    held = take(STATE / "slippulse.lock")
+    if held is None:
+        sys.exit("Another run is at work in this folder: wait for it, or stop it.")
+    locks = [*STATE.glob("locks/*.lock")]
+    if locks:
+        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED}*")]:
+            path.unlink(missing_ok=True)
+        print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
+    held.close()
+
+
+def remove_changed_results() -> None:
+    """Remove results that are not what their jobs wrote, so that Snakemake makes them again."""
+    from slippulse_paper.records.job_records import RecordedFiles
+
+    recorded = RecordedFiles(RESULTS)
+    problems = dict(recorded.problems())
+    if recorded.records and not (STATE / "metadata").exists():
+        reason = "Snakemake's own records (.snakemake) are gone"
+        problems = dict.fromkeys(recorded.states(), reason)
+    for name in problems:
+        if Path(name).is_dir():
+            sys.exit(f"{name} is a folder; remove or rename it: a file of that name is needed")
+        Path(name).unlink(missing_ok=True)
+    if problems:
+        name, reason = next(iter(problems.items()))
+        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        print(f"{count} renewed: {name}: {reason}", file=sys.stderr)
+
+
+def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
+    """Return what to open when a run has ended, with the verdicts if it made or kept them."""
+    from slippulse_paper.claims.claim_texts import read_text
+    from slippulse_paper.claims.ledger import Ledger
+    from slippulse_paper.configuration.read import read_config, read_overlay
+    from slippulse_paper.records.provenance import changes
+
+    shipped = read_overlay(PROJECT / "config/config.yaml")
+    overlays = [read_overlay(given["OVERLAY"])] if given.get("OVERLAY") else []
+    preset = {"preset": given["PRESET"]} if given.get("PRESET") else {}
+    config = read_config(shipped, overlays, preset, every_run=False)
+    draft = targets in ([], ["all"]) and not config.presets[config.preset].whole
+    whole = not draft and {*targets} <= {"all", "everything", "results/index.html"}
+    text = ""
+    if whole or any(target.startswith("results/claims.") for target in targets):
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
         text = f"{ledger.summary()}\n"
-        if called["altered"]:
+        if changes(shipped, {**config.given(), "preset": shipped["preset"]}):
             line = "Differs from the shipped: {key}: {shipped} -> {here}\n".format
-            shipped = read_text("manuscript/shipped_verdicts.yaml")
-            text += "".join(line(**change) for change in ledger.differences(shipped))
-    if called["page"]:
+            verdicts = read_text(PROJECT / "manuscript/shipped_verdicts.yaml")
+            text += "".join(line(**change) for change in ledger.differences(verdicts))
+    if whole:
         return f"{text}Open results/index.html"
-    if called["targets"] == ["all"]:
-        return "Open results/figures; TARGET=everything makes studies, ledger and report too"
-    return f"{text}Made: {', '.join(called['targets'])}"
+    if draft:
+        return "Open results/figures; TARGET=everything makes studies, claims and report too"
+    return f"{text}Made: {', '.join(targets)}"
 
 
-def main(command: str) -> int:
-    """Run Snakemake in a group of processes of its own; returns the exit code."""
+class Run:
+    """Snakemake in a group of processes of its own, which ends with this process."""
+
+    def __init__(self, arguments: list[str]) -> None:
+        # A profile of the user may change what is made, or that anything is made.
+        surroundings = {
+            key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"
+        }
+        command = [sys.executable, "-m", "snakemake", "--profile", "none", *arguments]
+        self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
+        # The shell waits for the other end of this pipe, which the system closes with this process.
+        end_group = f"read _; kill -KILL -{self.process.pid}"
+        self.guard = subprocess.Popen(["sh", "-c", end_group], stdin=subprocess.PIPE)
+
+    def end(self) -> None:
+        """End all processes of the run."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+
+    def wait(self) -> int:
+        """Wait for Snakemake and return its exit code."""
+        code = self.process.wait()
+        self.guard.kill()
+        self.end()
+        return code if code >= 0 else 128 - code
+
+
+def replicate(given: Mapping[str, str]) -> int:
+    """Make the targets, and print what to open. Returns the exit code."""
     began = time.monotonic()
-    # When this process ends, however that happens, the other end of this pipe tells Snakemake.
-    leash, _held = os.pipe()
-    process = None
-
-    def end() -> None:
-        with suppress(ProcessLookupError, AttributeError):
-            os.killpg(process.pid, signal.SIGKILL)
+    targets = [*map(full_target, given.get("TARGET", "").split())]
+    options = options_of(given)
+    take_over()
+    remove_changed_results()
+    run = Run(["--cores", given.get("CORES") or "2", *options, "--", *targets])
 
     def stop(number: int, _frame: object) -> None:
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
-        end()
+        run.end()
         cursor = b"\x1b[?25h" if sys.stderr.isatty() else b""
         os.write(2, cursor + b"\nStopped; the next run goes on from what is there.\n")
         sys.exit(128 + number)
 
     for number in SIGNALS:
         signal.signal(number, stop)
-    process = subprocess.Popen(
-        [sys.executable, "-m", "snakemake", *arguments(command)],
-        env=os.environ | {"SLIPPULSE_LEASH": str(leash)},
-        pass_fds=[leash],
-        start_new_session=True,
-    )
-    os.close(leash)
-    code = process.wait()
-    # Jobs would go on after a server of jobs that has died.
-    end()
-    if code == 0 and command == "replicate":
-        print(f"{answer()}. It took {timedelta(seconds=round(time.monotonic() - began))}.")
-    return code if code >= 0 else 128 - code
+    code = run.wait()
+    if code == 0:
+        last = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
+        last["targets"] = ["everything"] if "everything" in targets else []
+        LAST_RUN.write_text(json.dumps(last), encoding="utf-8")
+        time_taken = timedelta(seconds=round(time.monotonic() - began))
+        print(f"{closing_line(targets, given)}. It took {time_taken}.")
+    return code
+
+
+def verify(given: Mapping[str, str]) -> int:
+    """Print each result that is not as a run would make it now. Returns the exit code."""
+    targets = [*map(full_target, given.get("TARGET", "").split())]
+    if not any(given.get(name) for name in OPTIONS):
+        # Without options, the results are compared with what the last run was to make.
+        with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            last = json.loads(LAST_RUN.read_text(encoding="utf-8"))
+            given = {name: str(value) for name, value in last["options"].items()}
+            targets = targets or [*{"everything"} & {*last["targets"]}]
+    look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
+    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), "--", *targets]
+    summary = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    if summary.returncode:
+        return summary.returncode
+    problems = dict(outdated(summary.stdout))
+    problems |= dict(unrecorded(problems))
+    for name, reason in sorted(problems.items()):
+        print(f"{name}: {reason}")
+    if not problems:
+        files = summary.stdout.count("\n") - 1
+        print(f"{files} files are as a run would make them now")
+    return int(bool(problems))
+
+
+def rulegraph(given: Mapping[str, str]) -> int:
+    """Print which rules make what, as a mermaid graph. Returns the exit code."""
+    targets = [*map(full_target, given.get("TARGET", "").split())]
+    targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
+    look = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
+    graph = ["--rulegraph", "mermaid-js", "--", *targets]
+    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), *graph]
+    return subprocess.run(command, check=False).returncode
+
+
+def outdated(summary: str) -> Iterable[tuple[str, str]]:
+    """Yield the files that Snakemake would make again, with its reason, from its summary."""
+    for line in summary.splitlines()[1:]:
+        name, *_, status, plan = line.split("\t")
+        if plan != "no update" or status == "missing":
+            yield name, status if status != "ok" else "made from files that are not up to date"
+
+
+def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
+    """Yield the files that are not what their jobs wrote, and those that no job wrote."""
+    from slippulse_paper.records.job_records import RecordedFiles
+
+    recorded = RecordedFiles(RESULTS)
+    yield from recorded.problems()
+    known = recorded.states()
+    for path in sorted(RESULTS.rglob("*")):
+        parts = path.relative_to(RESULTS).parts
+        hidden = any(part.startswith(".") for part in parts)
+        ours = path.is_file() and not hidden and parts[0] not in OTHER_FOLDERS
+        if ours and str(path) not in known and str(path) not in outdated:
+            yield str(path), "no job has recorded it"
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    commands = {"replicate": replicate, "verify": verify, "rulegraph": rulegraph}
+    sys.exit(commands[sys.argv[1]](os.environ))

@@ -1,14 +1,14 @@
 # The public names, which the package loads when they are used.
 from . import theory as theory
-from .configuration.accuracy import settings_for as settings_for
 from .data.point import point as point
-from .figures.run import plot as plot
 from .model.friction import friction as friction
 from .model.prestress import Prestress as Prestress
 from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
-from .predict.one_run import measure as measure
+from .plotting.run_plot import plot as plot
+from .prediction.measured_run import measure as measure
+from .simulation.accuracy import settings_for as settings_for
 from .simulation.simulate import UnresolvedRun as UnresolvedRun
 from .simulation.simulate import run_sweep as run_sweep
 from .simulation.simulate import simulate as simulate

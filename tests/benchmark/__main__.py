@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 import yaml
 
-from slippulse.data.provenance import machine_class
 from slippulse.data.sweeps import versions
-from slippulse.measurement.fronts import fit_front
+from slippulse.measurement.front_paths import fit_front
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
@@ -23,6 +22,7 @@ from slippulse.solver.lattice import Lattice
 from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed as exact_speed
+from slippulse_paper.records.provenance import machine_class
 
 from . import stencils
 

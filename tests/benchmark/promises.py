@@ -15,8 +15,8 @@ from slippulse.measurement.promise import judged
 from slippulse.measurement.table import PARAMETERS
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.model.stability import chosen_step
-from slippulse.predict.comparison import measured_row
-from slippulse.predict.one_run import SETTINGS
+from slippulse.prediction.comparison import measured_row
+from slippulse.prediction.measured_run import SETTINGS
 
 # The first three are the grid study, the others look for the cheapest spacing that is enough.
 FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)

@@ -10,8 +10,8 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, sync_playwright
 
-from slippulse.report.explorer_page import explorer_page
-from slippulse.studies import explorer_law
+from slippulse_paper.report.explorer_page import explorer_page
+from slippulse_paper.studies import explorer_law
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS, SCHEMES = (390, 1280), ("light", "dark")

@@ -7,9 +7,9 @@ from browser.conftest import RUN, settled
 from tolerances import EXPLORER, EXPLORER_SPEED
 
 from slippulse.model.prestress import Prestress
-from slippulse.report.explorer_page import simulated_runs
-from slippulse.studies import explorer_law
 from slippulse.theory import Rupture, front_speed, steady_pulse
+from slippulse_paper.report.explorer_page import simulated_runs
+from slippulse_paper.studies import explorer_law
 
 pytestmark = pytest.mark.slow
 

@@ -75,13 +75,22 @@ def test_schema_and_tables_are_those_of_the_definition(project, config, tmp_path
 
 # Modules of a job of simulation and of Snakemake's plan, and libraries that they need not load.
 UNLOADED = {
-    "configuration.expand, slippulse.steps.simulate": {"pydantic", "ruamel.yaml", "jsonschema"},
-    "configuration.altered, slippulse.steps.targets": {"pandas", "xarray", "numba", "matplotlib"},
+    "configuration.expand, slippulse_paper.steps.simulate": {
+        "pydantic",
+        "ruamel.yaml",
+        "jsonschema",
+    },
+    "configuration.altered, slippulse_paper.steps.targets": {
+        "pandas",
+        "xarray",
+        "numba",
+        "matplotlib",
+    },
 }
 
 
 @pytest.mark.parametrize("modules", UNLOADED)
 def test_nothing_is_loaded_that_is_not_needed(modules):
     loaded = f"sorted({UNLOADED[modules]} & set(sys.modules))"
-    program = f"import sys, slippulse.{modules}; print({loaded})"
+    program = f"import sys, slippulse_paper.{modules}; print({loaded})"
     assert subprocess.check_output([sys.executable, "-c", program], text=True).strip() == "[]"

@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 from selection import small_sweep
+from slippulse_paper.steps.reach import declared
+from slippulse_paper.steps.targets import selected
 
-from slippulse.configuration.expand import expand
-from slippulse.configuration.runs import runs
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.figures.style import house_style
-from slippulse.predict.comparison import measured_table
+from slippulse.plotting.style import house_style
+from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
-from slippulse.steps.predict import predictions
-from slippulse.steps.reach import declared
-from slippulse.steps.targets import selected
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.runs import runs
+from slippulse_paper.steps.predict import predictions
 
 CHOICES = [
     {"release": "total", "deviation": 0.24, "solution": "lattice"},
@@ -80,7 +80,7 @@ def draw(shipped, shared, tmp_path_factory, study):
     @cache
     def drawn(name: str) -> SimpleNamespace:
         """Table and Figure, what they were drawn from, and the module."""
-        module = import_module(f"slippulse.figures.{name}")
+        module = import_module(f"slippulse_paper.figures.{name}")
         needs = declared(f"figures.{name}", "NEEDS")
         options = shipped["figures"].get(name, {})
         data, tables = inputs(needs)

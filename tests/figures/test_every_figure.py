@@ -14,11 +14,11 @@ from matplotlib.path import Path as Outline
 from matplotlib.text import Text
 from PIL import Image
 
-from slippulse.figures import fig02_phase_diagram as phases
-from slippulse.figures.style import PAGE, colour_scale, save_figure
 from slippulse.measurement.regime import REGIMES
+from slippulse.plotting.style import PAGE, colour_scale, save_figure
+from slippulse_paper.figures import fig02_phase_diagram as phases
 
-MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
+MODULES = Path(__file__).parents[2] / "src/slippulse_paper/figures"
 NAMES = sorted(path.stem for path in (*MODULES.glob("fig*.py"), *MODULES.glob("study*.py")))
 # Studies are among the slow tests.
 DRAWN = [name for name in NAMES if name.startswith("fig")]
@@ -245,3 +245,14 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
     deviations = (runs["length"] / runs["paper_length"] - 1.0).abs()
     medians = deviations.groupby(runs["damping_ratio"]).median()
     assert medians[1.0] > 2.0 * medians[0.0]
+
+
+@pytest.mark.parametrize("name", ["fig05_scaling", "fig10_damping_displacement"])
+def test_a_collapse_without_any_transition_says_so(draw, name):
+    drawn = draw(name)
+    nothing = drawn.table.assign(length=np.nan, time=np.nan)
+    figure = drawn.module.draw(nothing)
+    figure.draw_without_rendering()
+    assert [text.get_text() for text in figure.axes[0].texts] == [
+        r"no run reaches $L_\text{trans}$"
+    ]

@@ -11,17 +11,17 @@ from matplotlib.collections import QuadMesh
 from PIL import Image
 
 import slippulse as sp
-from slippulse.configuration.expand import expand
-from slippulse.configuration.resolve import resolve, scene_simulation
-from slippulse.configuration.runs import runs
-from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.figures import scene as figure
-from slippulse.figures import user_defined_sweep
-from slippulse.figures.scene_animation import FRAMES, save_animation
-from slippulse.predict.comparison import measured_table
-from slippulse.steps import draw_scene, measure, predict, simulate, study_grid
+from slippulse.prediction.comparison import measured_table
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.resolve import resolve, scene_simulation
+from slippulse_paper.configuration.runs import runs
+from slippulse_paper.configuration.schema import Model, NamedScene
+from slippulse_paper.figures import scene_figure as figure
+from slippulse_paper.figures import user_defined_sweep
+from slippulse_paper.figures.scene_animation import FRAMES, save_animation
+from slippulse_paper.steps import draw_scene, measure, predict, simulate, study_grid
 
 TITLE = "A <scene> & its $title"
 HELD = {"boundary": "displacement", "gamma": 0.65}

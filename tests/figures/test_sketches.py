@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
-from slippulse.figures import fig01_system_sketch
-from slippulse.figures import fig06_burridge_knopoff as figure
-from slippulse.studies import damage_zone
+from slippulse_paper.figures import fig01_system_sketch
+from slippulse_paper.figures import fig06_burridge_knopoff as figure
+from slippulse_paper.studies import damage_zone
 
 SYMBOLS = ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$", "$y$")
 texts = lambda axes: " ".join(text.get_text() for text in axes.texts)

@@ -3,20 +3,25 @@
 Colour vision is simulated after Machado et al. (2009).
 """
 
+import os
+import subprocess
+import sys
+from dataclasses import replace
 from itertools import combinations
 
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib import font_manager
 from matplotlib.colors import to_rgb
 from PIL import Image
 from pypdf import PdfReader
 
 from slippulse.data.files import CONFIGURATION
-from slippulse.figures import style
-from slippulse.figures.fig06_burridge_knopoff import COLOURS
-from slippulse.figures.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
-from slippulse.steps import draw_figure
+from slippulse.plotting import style
+from slippulse.plotting.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
+from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
+from slippulse_paper.steps import draw_figure
 
 # Rows of linear red, green, blue.
 VISION = {
@@ -102,3 +107,36 @@ def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):
         assert picture.info["dpi"] == pytest.approx((300.0, 300.0), abs=0.1)
     fonts = PdfReader(outputs["pdf"]).pages[0]["/Resources"]["/Font"].values()
     assert any(FAMILY in font.get_object().get("/BaseFont", font) for font in fonts)
+
+
+def test_settings_fonts_and_dates_of_the_user_change_no_byte_of_a_figure(tmp_path, monkeypatch):
+    def written(name: str) -> list[bytes]:
+        paths = [tmp_path / f"{name}.{ending}" for ending in ("png", "pdf")]
+        with style.house_style():
+            figure, (axes,) = style.new_panels(COLUMN, 2.0, "a")
+            axes.plot([0.0, 1.5], [0.0, 1e4], label=r"$\tau_0$")
+            axes.set(xlabel="position", title="costs $5")
+            style.save_figure(figure, *paths, "altered: published.a.statement = $\\frac{1}{$")
+        return [path.read_bytes() for path in paths]
+
+    expected = written("defaults")
+    theirs = {"text.usetex": True, "axes.grid": True, "lines.linestyle": ":", "figure.dpi": 50.0}
+    theirs |= {"font.family": "monospace", "pdf.compression": 0, "axes.formatter.use_locale": True}
+    theirs |= {"savefig.bbox": "tight", "axes.xmargin": 0.5, "path.sketch": (1.0, 100.0, 2.0)}
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "")
+    with matplotlib.rc_context(theirs):
+        # A font of the user that has the name of ours.
+        fonts = font_manager.fontManager
+        other = replace(fonts.ttflist[0], fname=str(tmp_path / "none.ttf"), name=FAMILY)
+        monkeypatch.setattr(fonts, "ttflist", [replace(other, weight=400), *fonts.ttflist])
+        assert written("theirs") == expected
+        assert matplotlib.rcParams["text.usetex"] and os.environ["SOURCE_DATE_EPOCH"] == ""
+
+
+def test_the_libraries_of_jobs_load_whatever_the_user_has_set(tmp_path):
+    (tmp_path / "matplotlibrc").write_bytes(b"text.usetex: True\nbackend: none\n\xff\xfe")
+    theirs = {"MPLCONFIGDIR": str(tmp_path), "MPLBACKEND": "none", "SOURCE_DATE_EPOCH": ""}
+    program = "import slippulse_paper.steps.worker_libraries, matplotlib\n"
+    program += "assert not matplotlib.rcParams['text.usetex']"
+    command = [sys.executable, "-W", "error", "-c", program]
+    subprocess.run(command, env=os.environ | theirs, check=True)

@@ -10,12 +10,12 @@ import pytest
 import yaml
 from pypdf import PdfReader
 
-from slippulse.claims.kinds import Approximate, Equation, Qualitative
-from slippulse.claims.paper import written
 from slippulse.data.files import CONFIGURATION
-from slippulse.figures.style import new_panels
-from slippulse.report.manuscript import DOCUMENTS, Inputs
-from slippulse.steps import write_report
+from slippulse.plotting.style import new_panels
+from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative
+from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.report.manuscript import DOCUMENTS, Inputs
+from slippulse_paper.steps import write_report
 
 DIGEST = "0123456789abcdef"
 # A claim that is simply reproduced.

@@ -2,6 +2,8 @@
 
 import json
 import re
+from base64 import b64encode
+from hashlib import sha256
 from html.parser import HTMLParser
 from itertools import pairwise, product
 
@@ -10,13 +12,13 @@ import yaml
 from PIL import Image
 from report.conftest import CLAIM, FRONT
 
-from slippulse.claims.kinds import Qualitative
-from slippulse.claims.paper import written
-from slippulse.data.provenance import provenance
-from slippulse.report import html
-from slippulse.report.claims_page import claims_page
-from slippulse.report.index_page import index_page
-from slippulse.report.texts import ERRATUM
+from slippulse_paper.claims.kinds import Qualitative
+from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.records.provenance import provenance
+from slippulse_paper.report import html
+from slippulse_paper.report.claims_page import claims_page
+from slippulse_paper.report.index_page import index_page
+from slippulse_paper.report.texts import ERRATUM
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "why": "It is *off*."}
@@ -183,3 +185,18 @@ def test_the_ledger_has_a_page_with_failures_first():
     assert links == [TABLES[0], TABLES[1], TABLES[3]] * len(CLAIMS) + [TABLES[2]]
     made = " ".join(f"results/{path}" for path in links[:3])
     assert f"make replicate TARGET=&#34;{made}&#34;" in text
+
+
+def test_the_policy_of_a_page_allows_its_own_script_and_no_other():
+    pages = {"scenes.html": {"scenes": {}}, "explorer.html": {"data": "{}", "largest_ratio": 2.0}}
+    for template, data in pages.items():
+        text = html.page(template, **data)
+        policies = Outline(text).all("meta")
+        (policy,) = [meta["content"] for meta in policies if "http-equiv" in meta]
+        rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+        assert rules["default-src"] == rules["base-uri"] == rules["form-action"] == "'none'"
+        scripts = re.findall(r"<script>(.*?)</script>", text, re.S)
+        digests = [b64encode(sha256(script.encode()).digest()).decode() for script in scripts]
+        sources = [f"'sha256-{digest}'" for digest in digests] or ["'none'"]
+        assert rules["script-src"].split() == sources
+        assert len(scripts) == (template == "explorer.html")

@@ -11,12 +11,13 @@ import yaml
 from PIL import Image
 from report.conftest import DIGEST
 
-from slippulse.claims.ledger import with_texts
-from slippulse.data.numerals import with_uncertainty
-from slippulse.figures.style import FAMILY
-from slippulse.report.manuscript import DOCUMENTS, execute, names_for
-from slippulse.report.texts import read_captions
-from slippulse.steps import write_report
+from slippulse.plotting.style import FAMILY
+from slippulse_paper.claims.ledger import with_texts
+from slippulse_paper.configuration.read import read_config
+from slippulse_paper.report.manuscript import DOCUMENTS, execute, names_for
+from slippulse_paper.report.texts import read_captions
+from slippulse_paper.steps import write_report
+from slippulse_paper.text.numerals import with_uncertainty
 
 # Pages of the report; the supplement may be longer.
 MOST_PAGES = 14
@@ -158,3 +159,19 @@ def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path,
     monkeypatch.setattr(write_report, "given", lambda files: ({}, inputs.tables))
     names = names_for(inputs, print, DOCUMENTS[0])
     assert set(write_report.by_hand(DOCUMENTS[0], print)) == set(names)
+
+
+def test_a_hostile_text_of_an_overlay_is_only_shown(make_inputs, build, shipped):
+    text = "[x](javascript:alert(4)) [y]{onmouseover=alert(1)} <b id=z> `w`{=html} | @v"
+    text += " ![u](secret.png)"
+    overlay = {"published": {"intercept": {"statement": text}}}
+    config = read_config(shipped, [overlay], every_run=False).given()
+    built = build(make_inputs(config))
+    for html in built.pages:
+        opened = "".join(re.findall(r"<[a-z][^>]*>", html))
+        assert not re.search(r"javascript:|onmouseover|id=.?z\b|secret", opened)
+        assert html.count('http-equiv="Content-Security-Policy"') == 1
+    assert any("[x](javascript:alert(4))" in " ".join(html.split()) for html in built.pages)
+    for page in [page for pdf in built.pdfs for page in pdf.pages]:
+        links = [note.get_object().get("/A", {}) for note in page.get("/Annots", [])]
+        assert not any("javascript" in str(link).lower() for link in links)

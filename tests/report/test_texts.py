@@ -18,11 +18,11 @@ import yaml
 from PIL import Image
 from report.conftest import read
 
-from slippulse.claims.ledger import KINDS, Ledger
-from slippulse.claims.reading import REASONS, claims_of, coverage
-from slippulse.report import texts
-from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
-from slippulse.report.texts import Caption, read_captions, read_errata
+from slippulse_paper.claims.claim_texts import REASONS, claims_of, coverage
+from slippulse_paper.claims.ledger import KINDS, Ledger
+from slippulse_paper.report import texts
+from slippulse_paper.report.manuscript import DOCUMENTS, NAMED, Gallery
+from slippulse_paper.report.texts import Caption, read_captions, read_errata
 
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
 AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
@@ -158,7 +158,7 @@ def test_a_text_that_is_not_whole_is_refused(reader, tmp_path):
 
 def test_every_figure_has_one_position_and_a_caption(source, captions, project, manuscript):
     placed = NAMED.findall(source)
-    modules = (project / "src/slippulse/figures").glob("*.py")
+    modules = (project / "src/slippulse_paper/figures").glob("*.py")
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "user_defined_sweep"]) == sorted(captions)
     assert len(figures) >= 17 and figures <= set(placed)

@@ -5,11 +5,11 @@ from unittest.mock import Mock
 
 import pytest
 
-from slippulse.report.tables import edges
 from slippulse.solver.lattice import UnstableRun
-from slippulse.studies import extremes
-from slippulse.studies.extreme_cases import Case
-from slippulse.studies.extremes import Outcome
+from slippulse_paper.report.report_tables import edges
+from slippulse_paper.studies import extremes
+from slippulse_paper.studies.extreme_cases import Case
+from slippulse_paper.studies.extremes import Outcome
 
 WRONG = "WRONG WITHOUT A FLAG"
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from slippulse.configuration.resolve import resolve
-from slippulse.steps.inputs import given
-from slippulse.studies import open_choices
+from slippulse_paper.configuration.resolve import resolve
+from slippulse_paper.steps.inputs import given
+from slippulse_paper.studies import open_choices
 
 # Medians of L_trans under leaf springs in percent, by release rule and damping ratio.
 LENGTHS = {("total", 0.0): 13.6, ("total", 0.058): 20.4, ("total", 0.08): 22.2}

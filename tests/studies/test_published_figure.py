@@ -7,8 +7,8 @@ from scipy.optimize import least_squares
 
 from slippulse.measurement.inference import curve, inference, likely
 from slippulse.model.prestress import Prestress
-from slippulse.studies import published_figure as study_module
-from slippulse.studies.published_figure import BETA, NEAR, LeftPanel
+from slippulse_paper.studies import published_figure as study_module
+from slippulse_paper.studies.published_figure import BETA, NEAR, LeftPanel
 
 # How many readings are fitted: all, or all but the two arrows.
 READINGS = {"profile": 10, "arrows": 12}

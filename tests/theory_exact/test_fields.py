@@ -9,8 +9,8 @@ from scipy.special import j0, jn_zeros
 import slippulse as sp
 from slippulse.model.balance import integral
 from slippulse.theory import Rupture, uniform_transition_time
-from slippulse.theory.fronts import fast_fronts
 from slippulse.theory.part import Part
+from slippulse.theory.two_fronts import fast_fronts
 
 PUBLISHED = (sp.Prestress(0.25, 0.25), 0.55, 0.1)
 # Positions, stick times and slips of the published scene. Lattices of dx = 0.01, 0.005 and 0.0025,

@@ -8,7 +8,7 @@ import pytest
 from slippulse.measurement.regime import REGIMES
 from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
-from slippulse.predict.final_regime import UNDECIDED, final_regime, predictions
+from slippulse.prediction.predicted_regime import UNDECIDED, final_regime, predictions
 from slippulse.theory.rupture import Rupture
 
 STILL, RATIO = 0.05, 0.1

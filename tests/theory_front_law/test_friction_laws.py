@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.theory import friction_laws, rate_pulse, steady_pulse, weakening_pulse
-from slippulse.theory.friction_laws import undamped_weakening_slip
+from slippulse.theory import law_pulses, rate_pulse, steady_pulse, weakening_pulse
+from slippulse.theory.law_pulses import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
 # tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.
@@ -110,7 +110,7 @@ def test_laws_without_a_pulse_are_refused(law, refusal):
 def test_a_stiff_law_beside_weak_leaf_springs_ends_in_one_line(monkeypatch):
     """The work is 2.4 s at gamma = 1e-6, and a thousand times that at 1e-12."""
     law = sp.friction("bounded_rate", limit=0.3, v_0=0.2)
-    monkeypatch.setattr(friction_laws, "MOST_EVALUATIONS", 20_000)
+    monkeypatch.setattr(law_pulses, "MOST_EVALUATIONS", 20_000)
     with pytest.raises(ValueError, match=r"^gamma: 1e-12, where .*; allowed: [^\n]*$"):
         rate_pulse(0.5, 1e-12, 0.5, law)
     assert rate_pulse(0.5, 0.1, 0.5, law).sticks

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.measurement.fronts import fit_front
+from slippulse.measurement.front_paths import fit_front
 from slippulse.theory import front_speed, lattice_front_speed, prestress_for_speed
 from slippulse.theory.front_motion import steady_front
 

@@ -3,9 +3,9 @@
 import matplotlib.image
 import pytest
 
-from slippulse.configuration.altered import Alterations
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.figures.style import new_panels, save_figure
+from slippulse.plotting.style import new_panels, save_figure
+from slippulse_paper.configuration.altered import Alterations
+from slippulse_paper.configuration.read import read_config, read_overlay
 
 SHIPPED = read_overlay("config/config.yaml")
 

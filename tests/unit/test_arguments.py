@@ -2,6 +2,7 @@
 
 import math
 import re
+from fractions import Fraction
 from functools import partial
 
 import numpy as np
@@ -41,6 +42,7 @@ TAKE_A_NUMBER = [
     ("tau0", lambda x: theory.front_speed(x, 0.1)),
     ("damping_ratio", lambda x: theory.lattice_front_speed(0.5, 0.5, 0.1, x)),
     ("gamma", lambda x: theory.steady_pulse(0.5, x, 0.01, 1.2)),
+    ("damping_ratio", lambda x: theory.steady_pulse(0.5, 1.0, damping_ratio=x or str(x))),
     ("tau0", lambda x: theory.paper_pulse(x, 0.5)),
     ("dx", lambda x: theory.lattice_front_speed(0.5, 0.5, x)),
     ("tau_barrier", lambda x: theory.barrier_depth(0.5, x, 0.5)),
@@ -73,6 +75,8 @@ SCENES = {
     "resolved_blocks: 0; allowed: a whole number and >= 1": {"resolved_blocks": 0},
     "half_lattice: 'no'; allowed: a bool": {"half_lattice": "no"},
     "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
+    "friction: 0.5; allowed: a Friction": {"friction": 0.5},
+    "dx: array([0.1, 0.2]); allowed: a finite number": {"dx": np.array([0.1, 0.2])},
     "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip runs": linear(-1.62),
     "friction.alpha: -0.01; allowed: >= 0 without leaf springs, or slip runs": WITHOUT_SPRINGS
     | linear(-0.01),
@@ -110,6 +114,9 @@ ATTRIBUTES = {
     "order: 4.7; allowed: 3, 4, 5, 6, 7, 8": {"order": 4.7},
     "half_lattice: 'no'; allowed": {"half_lattice": "no"},
     "steps_and_bumps: '{'; allowed": {"steps_and_bumps": "{"},
+    "friction: 0.5; allowed: a JSON object with a law": {"friction": 0.5},
+    "friction: 'coulomb'; allowed: a JSON object with a law": {"friction": "coulomb"},
+    "dx: '0.1'; allowed: a finite number": {"dx": "0.1"},
 }
 RUPTURES = {
     "gamma: -1.0; allowed: a finite number and >= 0": {"gamma": -1.0},
@@ -170,6 +177,11 @@ CALLS = [
     ("allowed: numbers of blocks whose sum", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: Dataset; allowed: a Dataset that simulate returned", sp.plot, SWEEP),
     ("attributes: 3; allowed: a mapping", sp.Scene.from_attributes, 3),
+    ("x: 'a'; allowed: numbers", PLAIN, "a"),
+    ("x: {}; allowed: numbers", PLAIN.level, {}),
+    ("dx: 'x'; allowed: a finite number", sp.measure, RUN.assign_attrs(dx="x")),
+    ("dx: None; allowed: a finite number", sp.plot, sp.simulate(EXACT).assign_attrs(dx=None)),
+    ("releases: 'x'; allowed: a number", sp.measure, RUN.assign_attrs(releases="x")),
     ("tau0: 1.0; allowed: a finite number and > 0 and < 1", theory.front_speed, [0.5, 1.0], 0.1),
     (LARGEST, theory.front_speed, 0.5, -1.0),
     ("damping_ratio: inf; allowed: a finite number", theory.front_speed, 0.5, [0.1, math.inf]),
@@ -228,3 +240,15 @@ def test_a_refusal_names_the_argument_its_value_and_what_is_allowed(named, call)
     with pytest.raises((ValueError, TypeError)) as refusal:
         call()
     assert named in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+def test_an_exact_fraction_is_a_number():
+    half = Fraction(1, 2)
+    settings = GOOD_SETTINGS | {"gamma": half, "damping_ratio": half}
+    expected = sp.settings_for(**GOOD_SETTINGS | {"gamma": 0.5, "damping_ratio": 0.5})
+    assert sp.settings_for(**settings) == expected
+    assert sp.Scene(**HELD | {"gamma": half, "dx": half}) == sp.Scene(
+        **HELD | {"gamma": 0.5, "dx": 0.5}
+    )
+    with pytest.raises(ValueError, match=r"weakening: 0\.5, at tau0 = 0\.5"):
+        theory.weakening_pulse(0.5, 2 / 3, 0.05, half)

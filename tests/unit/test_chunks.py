@@ -5,11 +5,11 @@ from itertools import chain
 import numpy as np
 import pytest
 
-from slippulse.configuration.resolve import resolve
-from slippulse.data.chunks import runs_of
 from slippulse.data.files import CONFIGURATION as VARIABLE
 from slippulse.data.files import UnreadableFile
-from slippulse.steps import join, measure, simulate, study_grid
+from slippulse_paper.configuration.chunks import runs_of
+from slippulse_paper.configuration.resolve import resolve
+from slippulse_paper.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
 CONFIGURATION = "0123456789abcdef"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from slippulse.report.compare import compare, main
+from slippulse_paper.report.compare import compare, main
 
 RUN = {"boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65}
 RUN |= {"damping_ratio": 0.1, "duration": 10.0, "release": "total"}

@@ -8,11 +8,11 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.configuration.accuracy import promised
-from slippulse.configuration.expand import expand
-from slippulse.configuration.resolve import accuracy_of, resolve
-from slippulse.configuration.schema import Configuration
 from slippulse.model.cost import bound_of
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.resolve import accuracy_of, resolve
+from slippulse_paper.configuration.schema import Configuration
 
 PULSE = {"boundary": "displacement", "gamma": 0.65, "damping_ratio": 0.1}
 PULSE["prestress"] = sp.Prestress(0.5, 0.5)

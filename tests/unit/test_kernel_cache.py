@@ -35,11 +35,17 @@ def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path,
     monkeypatch.setenv("SLIPPULSE_CACHE", str(tmp_path / "mine"))
     assert jit.cache_folder() == tmp_path / "mine" / f"kernels-{jit.source_digest()}"
     monkeypatch.delenv("SLIPPULSE_CACHE")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cluster"))
+    assert jit.cache_folder() == tmp_path / "cluster" / f"kernels-{jit.source_digest()}"
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
     assert jit.cache_folder().parent == tmp_path / "user/slippulse"
 
 
-def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self(tmp_path):
+@pytest.mark.parametrize("variable", ["SLIPPULSE_CACHE", "NUMBA_CACHE_DIR"])
+def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self(
+    tmp_path, variable
+):
     """numba's own cache would: the file that holds the caller is unchanged."""
     package, cache = tmp_path / "edited", tmp_path / "cache"
     package.mkdir()
@@ -53,9 +59,24 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
         (package / "helper.py").write_text(helper)
         # Python's own cache tells files apart by the second of their last change.
         environment = {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+        environment |= {"SLIPPULSE_CACHE": "", variable: str(cache)}
         assert run_with(cache, program, **environment) == result
         assert len(list(cache.iterdir())) == added
         assert list(cache.rglob("*.nbi")), "nothing was cached"
+
+
+def test_a_cache_that_cannot_be_written_is_a_warning(tmp_path, monkeypatch):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("SLIPPULSE_CACHE", str(tmp_path / "file"))
+    monkeypatch.setattr(jit, "SOURCES", tmp_path / "solver")
+    with pytest.warns(UserWarning, match="compiled kernels: .*SLIPPULSE_CACHE") as warned:
+        folder = jit.writable_cache()
+    # The folder beside the sources has the digest in its name, too.
+    assert folder == str(tmp_path / "solver/__pycache__" / jit.cache_folder().name)
+    assert folder in str(warned[0].message)
+    monkeypatch.setattr(jit, "SOURCES", tmp_path / "file")
+    with pytest.warns(UserWarning, match="each process compiles its own"):
+        assert jit.writable_cache() == ""
 
 
 @pytest.mark.slow

@@ -9,17 +9,17 @@ import pandas as pd
 import pytest
 from scipy.special import chdtri
 
-from slippulse.claims import rules
-from slippulse.claims.choices import LAST, Combination, over_choices
-from slippulse.claims.evidence import Evidence, agreeing, exponent
-from slippulse.claims.findings import findings
-from slippulse.claims.kinds import Approximate, Equation, Qualitative, Reading
-from slippulse.claims.ledger import Ledger, with_texts
-from slippulse.claims.paper import SIMULATIONS, all_claims, claim_of, written
-from slippulse.claims.reading import read_entries, read_text
-from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.model.measured_columns import RECORD_FOR
+from slippulse_paper.claims import rules
+from slippulse_paper.claims.choices import LAST, Combination, over_choices
+from slippulse_paper.claims.claim_texts import read_entries, read_text
+from slippulse_paper.claims.evidence import Evidence, agreeing, exponent
+from slippulse_paper.claims.findings import findings
+from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
+from slippulse_paper.claims.ledger import Ledger, with_texts
+from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, written
+from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST
 
 YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
 NAN = float("nan")

@@ -6,15 +6,15 @@ import pytest
 import xarray as xr
 
 import slippulse as sp
-from slippulse.measurement.fronts import arrival
+from slippulse.measurement.front_paths import arrival
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.measurement.regime import REGIMES, classify
 from slippulse.measurement.table import far_field, half_width, lattice_noise, sliding_at_once
 from slippulse.measurement.transition import STALL, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.predict.comparison import measured_table, pulse_state
-from slippulse.predict.one_run import SETTINGS
+from slippulse.prediction.comparison import measured_table, pulse_state
+from slippulse.prediction.measured_run import SETTINGS
 from slippulse.simulation.simulate import Samples, simulate
 from slippulse.theory import ArrestingCrack, Rupture, front_speed
 

@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from slippulse.data.numerals import number, percent, rounded, setting, short, with_uncertainty
-from slippulse.data.prose import fill
-from slippulse.report.html import markup_of
+from slippulse_paper.report.html import markup_of
+from slippulse_paper.text.numerals import number, percent, rounded, setting, short, with_uncertainty
+from slippulse_paper.text.prose import fill
 
 NOT = "not measured"
 # A value, its uncertainty, and how both are written.

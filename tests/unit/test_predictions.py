@@ -6,8 +6,8 @@ from verification.test_friction_laws import EXAMPLES
 
 from slippulse import Prestress, friction, theory
 from slippulse.model.run import Run
-from slippulse.predict.one_run import SETTINGS
-from slippulse.steps.predict import TOPICS, predictions
+from slippulse.prediction.measured_run import SETTINGS
+from slippulse_paper.steps.predict import TOPICS, predictions
 
 # Theory knows the others.
 OTHERS = EXAMPLES.keys() - {"coulomb", "linear_rate"}

@@ -7,12 +7,12 @@ import pandas as pd
 import pytest
 
 import slippulse as sp
-from slippulse.figures.shared.numbers import scene_numbers
 from slippulse.measurement.promise import COVERED, covered, judged, summary
 from slippulse.measurement.table import PARAMETERS
 from slippulse.measurement.uncertainty import grid_study, grid_tables
-from slippulse.predict.comparison import measured_table
-from slippulse.report.scene_page import scene_page
+from slippulse.prediction.comparison import measured_table
+from slippulse_paper.figures.shared.main_numbers import scene_numbers
+from slippulse_paper.report.scene_page import scene_page
 
 SHARE = 0.95
 COMMON = {"run_flags": "", "damping_ratio": 0.1, "width": 1.0, "peak": 1.0, "dx": 0.1}

@@ -11,10 +11,20 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
+from slippulse_paper.records.tree import Tree
+from slippulse_paper.steps.origins import Job, jobs_of, origins_of
+from slippulse_paper.steps.targets import Plan, unlike
 
-from slippulse.configuration.problems import ConfigError
 from slippulse.data.files import write_text
-from slippulse.data.provenance import (
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.records.job_records import (
+    Origin,
+    digest_of,
+    file_digest,
+    read_record,
+    write_record,
+)
+from slippulse_paper.records.provenance import (
     changes,
     job_times,
     machine_class,
@@ -22,10 +32,6 @@ from slippulse.data.provenance import (
     provenance,
     source_files,
 )
-from slippulse.data.records import Origin, digest_of, file_digest, read_record, write_record
-from slippulse.data.tree import Tree
-from slippulse.steps.origins import Job, jobs_of, origins_of
-from slippulse.steps.targets import Plan, unlike
 
 DATA, TABLE = "data/a.nc", "measurements/a.csv"
 PAGE, OTHER = "index.html", "scenes/other.html"

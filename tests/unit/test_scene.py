@@ -4,8 +4,10 @@ import dataclasses
 from itertools import product
 
 import numpy as np
+import pandas as pd
 import pytest
 import tolerances as tol
+import xarray as xr
 from scipy.integrate import quad
 
 import slippulse as sp
@@ -13,7 +15,7 @@ from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.model.balance import integral
-from slippulse.predict.comparison import measured_table
+from slippulse.prediction.comparison import measured_table
 
 STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
 DISPLACEMENT = STRESS | {"boundary": "displacement", "gamma": 0.65, "beta": 1e-3}
@@ -50,6 +52,44 @@ def test_a_scene_comes_back_from_its_attributes_data_and_measured_row(boundary, 
     save_table(measured_table(data, config["measure"]), tmp_path / "measured.csv")
     (row,) = load_table(tmp_path / "measured.csv").to_dict("records")
     assert sp.Scene.from_attributes(row) == scene
+
+
+def test_a_run_that_was_saved_by_xarray_gives_its_scene_numbers_and_picture(tmp_path):
+    """A file has numpy's integers and floats where a run has those of Python."""
+    scene = sp.Scene(**DISPLACEMENT | {"dx": 0.1, "duration": 6.0, "half_lattice": False})
+    run = sp.simulate(scene, sp.Samples([0.0, 3.0], [0.0, 1.0]))
+    run.to_netcdf(tmp_path / "run.nc")
+    with xr.open_dataset(tmp_path / "run.nc") as opened:
+        assert sp.Scene.from_attributes(opened.attrs) == scene
+        assert type(sp.Scene.from_attributes(opened.attrs).order) is int
+        pd.testing.assert_series_equal(pd.Series(sp.measure(opened)), pd.Series(sp.measure(run)))
+        assert sp.plot(opened).axes
+    sweep = sp.run_sweep([scene, scene])
+    sweep.to_netcdf(tmp_path / "sweep.nc")
+    with xr.open_dataset(tmp_path / "sweep.nc") as opened:
+        assert sp.Scene.from_attributes(sp.point(opened, 1).attrs) == scene
+
+
+def test_samples_keep_copies_that_nobody_changes():
+    times, positions = np.array([1.0, 2.0, 4.0]), np.array([0.5])
+    samples = sp.Samples(times, positions)
+    scene = sp.Scene(**DISPLACEMENT | {"dx": 0.1})
+    expected = sp.simulate(scene, samples)
+    times[:], positions[:] = [4.0, 2.0, 1.0], 9.0
+    run = sp.simulate(scene, samples)
+    assert run.identical(expected) and samples.times.tolist() == [1.0, 2.0, 4.0]
+    with pytest.raises(ValueError, match="read-only"):
+        samples.times[0] = 3.0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        samples.times = times
+
+
+def test_a_pre_stress_keeps_copies_that_nobody_changes():
+    steps, bumps = [[3.0, 0.1]], [[4.0, 0.1, 1.0]]
+    profile = sp.Prestress(0.3, 0.3, steps=steps, bumps=bumps)
+    steps[0][1], bumps[0][1] = 0.9, 0.9
+    assert profile.steps == ((3.0, 0.1),) and profile.bumps == ((4.0, 0.1, 1.0),)
+    assert isinstance(profile.intervals, tuple)
 
 
 def test_attributes_without_a_parameter_are_refused_by_its_name():

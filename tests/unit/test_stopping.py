@@ -9,8 +9,8 @@ from functools import partial
 import pytest
 
 import slippulse as sp
-from slippulse.data import lock
 from slippulse.simulation.simulate import bar
+from slippulse_paper.records import lock
 
 LONG = (
     "import sys, slippulse as sp\n"

@@ -8,7 +8,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse import theory
 from slippulse.measurement.promise import covered
-from slippulse.predict.comparison import measured_table
+from slippulse.prediction.comparison import measured_table
 
 SHARE = 0.95
 # Accuracy, level, gamma, damping ratio, width, release; each scene lasts until the pulse is steady.

@@ -15,8 +15,8 @@ from scipy.special import j0
 
 from slippulse import Prestress, theory
 from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, paper_pulse
-from slippulse.theory.fronts import fast_fronts
 from slippulse.theory.part import Part
+from slippulse.theory.two_fronts import fast_fronts
 
 # The algebra of the paper: each formula over the one derived from its equations, at random layers
 # of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.

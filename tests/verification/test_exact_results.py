@@ -8,11 +8,11 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.measurement.fronts import arrival, fit_front, position_at
+from slippulse.measurement.front_paths import arrival, fit_front, position_at
 from slippulse.measurement.pulses import leading_pulse
 from slippulse.model.balance import integral
-from slippulse.theory.fronts import fast_fronts
 from slippulse.theory.part import Part
+from slippulse.theory.two_fronts import fast_fronts
 
 GAMMA = 2.0 / 3.0
 SPEED = sp.theory.front_speed(0.4, 0.3, "elastic")

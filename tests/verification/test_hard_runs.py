@@ -12,8 +12,8 @@ from slippulse import theory
 from slippulse.measurement.promise import covered
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.model.stability import chosen_step
-from slippulse.predict.comparison import measured_row, pulse_state
-from slippulse.predict.one_run import SETTINGS
+from slippulse.prediction.comparison import measured_row, pulse_state
+from slippulse.prediction.measured_run import SETTINGS
 
 GAMMA, SPEED, END = 0.65, 1.2, 30.0
 

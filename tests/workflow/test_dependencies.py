@@ -11,10 +11,10 @@ import grimp
 import pytest
 from pipeline_copy import edges, made, planned, snakemake
 from rules_by_imports import DRAWN, EVERY_SOURCE, FILES, MODULES, PACKAGE, RULES, rules_of
+from slippulse_paper.steps.reach import sources
 from workflow.conftest import NAMES, TARGETS
 
-from slippulse.steps.predict import TOPICS
-from slippulse.steps.reach import sources
+from slippulse_paper.steps.predict import TOPICS
 
 LOCK = "requirements.lock"
 # One file of each folder: a test above covers them all.
@@ -48,7 +48,7 @@ def test_every_file_marks_the_rules_whose_step_reaches_it_and_nothing_else_does(
         assert {rule for rule, depends in seen.items() if file in depends} == rules_of(file), file
     # Predictions that two figures share do not stand in the module of one of them.
     for name in DRAWN:
-        assert rules_of(f"src/slippulse/figures/{name}.py") == {name} | EVERY_SOURCE
+        assert rules_of(f"src/slippulse_paper/figures/{name}.py") == {name} | EVERY_SOURCE
     others = {rule: depends.difference(FILES) for rule, depends in seen.items()}
     assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_index")
     # The report says what differs from the shipped configuration, and its version.
@@ -165,7 +165,7 @@ SHARES = {
         {"simulate", "measure"},
     ),
     "prediction": (
-        "src/slippulse/predict/pulse.py",
+        "src/slippulse/prediction/predicted_pulse.py",
         {"predict", "sweep_mine", "draw_scene", HELD},
         {"fig02_phase_diagram", "fig05_scaling", "study_front_speed", "study_arrest"},
     ),

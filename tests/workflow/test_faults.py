@@ -15,14 +15,14 @@ import pandas as pd
 import pytest
 from faults import SIGNALS, digests, fault_run, prepare, start
 from pipeline_copy import BY_PROFILE, copy_project, made, planned, refused, snakemake
+from slippulse_paper.steps.processes import JobFailed, Jobs
 
 from slippulse.data.files import UnreadableFile
-from slippulse.data.records import Origin
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.steps.job import logged
-from slippulse.steps.processes import JobFailed, Jobs
+from slippulse_paper.records.job_records import Origin
+from slippulse_paper.steps.job import logged
 
 SCENE = "results/measurements/one.csv"
 FIGURE = "results/figures/fig07_damage_zone.png"

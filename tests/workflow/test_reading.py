@@ -6,18 +6,18 @@ from pathlib import Path
 
 import pytest
 from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, refused
+from slippulse_paper.steps.processes import JobFailed, Jobs
 
 from slippulse.data.files import write_text
-from slippulse.data.records import Origin, file_digest, read_record, write_record
-from slippulse.steps.processes import JobFailed, Jobs
+from slippulse_paper.records.job_records import Origin, file_digest, read_record, write_record
 
 FIGURE = "results/figures/fig07_damage_zone.png"
 # A job that reads a file while it is another one, and puts it back.
 PROGRAM = """
 import subprocess
 from pathlib import Path
-from slippulse.data.records import file_digest
-from slippulse.steps import reading
+from slippulse_paper.records.job_records import file_digest
+from slippulse_paper.steps import reading
 
 reading.begin()
 path, planned = Path("results/text"), {{}}
@@ -88,7 +88,7 @@ def test_a_source_that_was_edited_while_a_run_was_at_work_fails_its_job(
     text = path.read_text(encoding="utf-8")
     undo = f"\n__import__('pathlib').Path(__file__).write_text({text!r}, encoding='utf-8')\n"
     edit = f"\n__import__('pathlib').Path({str(path)!r}).write_text({text + undo!r})\n"
-    libraries = folder / "src/slippulse/steps/libraries.py"
+    libraries = folder / "src/slippulse_paper/steps/libraries.py"
     libraries.write_text(libraries.read_text(encoding="utf-8") + edit, encoding="utf-8")
     said = refused(folder, "--", FIGURE, command=command).strip().splitlines()
     reason = f"FileChanged: src/slippulse/{source}: changed since this run was planned; run again"

@@ -9,11 +9,13 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.configuration.limits import bound_of_sweep
-from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import LARGEST_FILE, read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.model.cost import HOW_TO_GO_ON
+from slippulse_paper.configuration.drawn import drawing_problems
+from slippulse_paper.configuration.limits import bound_of_sweep
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.read import LARGEST_FILE, read_config, read_overlay
+from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse_paper.steps.needs import declared, needs_of
 
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]
@@ -37,15 +39,28 @@ SAID = {
     "word for a switch": ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
     "number for a switch": ({"allow_large": "2"}, "allow_large: 2; allowed: true or false"),
     "word for a number": ({"model": {"damping_ratio": "much"}}, "'much'; allowed: a number >= 0"),
+    "number for a preset": ({"preset": "01"}, "preset: '01'; allowed: draft, paper, reference"),
     "anchor": ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
 }
 # Files that are no overlay at all.
 FILES = {
     "text": (b"just some text\n", "'just some text'", "a mapping of keys"),
     "list": (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
-    "nothing": (b"# nothing\n", "None", "a mapping of keys"),
-    "key without value": (b"model: {damping_ratio: }", "line 1", "no value", "null, which removes"),
-    "open bracket": (b"preset: [draft\n", "not YAML", "line 2"),
+    "nothing": (b"# nothing\n", "empty", "a mapping of keys"),
+    "key without value": (
+        b"model:\n  damping_ratio:\n# a comment\n\nmeasure: {}\n",
+        "line 2: damping_ratio: no value",
+        "null, which removes",
+    ),
+    "entry without value": (b"simulations: {}\nstudies:\n  -\n  - layer\n", "line 3: no value"),
+    "decimal comma in braces": (
+        b"model:\n  {release: total, damping_ratio: 0,1}\n",
+        "line 2: damping_ratio: 0,1",
+        "write 0.1",
+    ),
+    "open bracket": (b"preset: [draft\nmodel: {}\n", "not YAML", "line 1"),
+    "open quote": (b"model: {}\npreset: 'draft\nmeasure: {}\n", "not YAML", "line 2"),
+    "line without a colon": (b"model: {}\npreset\nmeasure: {}\n", "not YAML", "line 2"),
     "picture": (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
     "older YAML": (b"# as it was\n%YAML 1.1\n---\nallow_large: yes\n", "'%YAML 1.1'", "YAML 1.2"),
     "python tag": (b"preset: !!python/object/apply:os.system [touch x]\n", "line 1", "no tags"),
@@ -181,3 +196,36 @@ def test_the_command_line_is_refused(shipped, case):
     values, refusal = SAID[case]
     with pytest.raises(ConfigError, match=re.escape(refusal)):
         read_config(shipped, (), values)
+
+
+# Changes of a simulation that a figure draws: the figure, the simulation, the change, its refusal.
+EQUAL = "at least one run with boundary displacement and equal levels above 0"
+BALANCED = "at least one run with boundary stress, left level below 0, right level 0 and no steps"
+OTHER = "; or another name for the simulation"
+NOW = {"time": 5.0, "balance_distances": None}
+STRESS_PROFILE = {"profiles": [{"left": -0.3, "right": 0.1}]}
+NOT_DRAWN = [
+    ("fig05_scaling", "scaling_displacement", {"left": [0.3], "right": [0.5]}, EQUAL),
+    ("fig05_scaling", "scaling_stress", {"right": [0.1], "duration": NOW}, BALANCED),
+    ("fig10_damping_displacement", "damping_displacement", {"left": [-0.3]}, EQUAL),
+    ("fig09_steady_state_stress", "steady_stress", STRESS_PROFILE, BALANCED),
+]
+
+
+@pytest.mark.parametrize(("figure", "name", "changes", "allowed"), NOT_DRAWN)
+def test_a_sweep_that_a_figure_cannot_draw_is_refused(project, figure, name, changes, allowed):
+    whole = read_overlay(project / "config/config.yaml")
+    config = read_config(whole, [{"simulations": {name: changes}}], every_run=False)
+    draws = {figure: declared(f"figures.{figure}", "DRAWS")}
+    (line,) = drawing_problems(config, draws)
+    assert line == f"simulations.{name}: no run that {figure} can draw; allowed: {allowed}{OTHER}"
+
+
+def test_every_figure_says_what_it_draws_and_draws_what_is_shipped(project):
+    config = read_config(read_overlay(project / "config/config.yaml"), every_run=False)
+    needs = needs_of("figures")
+    draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs}
+    assert drawing_problems(config, draws) == []
+    for name, drawn in draws.items():
+        read = {*needs[name].get("measured", {}), *needs[name].get("data", ())}
+        assert {*drawn} <= read and (name.startswith("study") or {*drawn} == read), name

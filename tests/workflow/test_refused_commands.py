@@ -17,14 +17,20 @@ DRAFT, LONG = "preset: draft\n", STEADY + "{duration: {time: 1.0e+8}}}"
 # Overlay, further arguments, and parts of the refusal.
 COMMANDS = [
     (STEADY + "{gama: [0.3]}}", "--", ["did you mean 'gamma'"]),
+    (
+        "simulations: {scaling_displacement: {left: [0.3], right: [0.5]}}",
+        "-- results/figures/fig05_scaling.png",
+        ["simulations.scaling_displacement: no run that fig05_scaling can draw; allowed: "],
+    ),
     (LONG, "--", ["steady_displacement.cost: up to", "allow_large=true"]),
+    ("", "--config preset=01", ["preset: '01'; allowed: draft, paper, reference"]),
     (DRAFT, "-- simulate", ["target: 'simulate'", "a rule of a single job"]),
     (DRAFT, "-- results/scenes/bariere.html", ["mean 'results/scenes/barrier"]),
     (DRAFT, "--config preset=$(touch\twritten)", ["'$(touch"]),
     ("accuracy: 1.0e-4\n", "-- fig05", ["simulations.scaling_stress.cost", "updates"]),
 ]
-# The first three take every way through the pipeline.
-COMMANDS[3:] = [pytest.param(*case, marks=pytest.mark.slow) for case in COMMANDS[3:]]
+# The first five take every way through the pipeline.
+COMMANDS[5:] = [pytest.param(*case, marks=pytest.mark.slow) for case in COMMANDS[5:]]
 ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
 
 
@@ -35,7 +41,7 @@ def folder(project, tmp_path):
 
 @pytest.mark.parametrize(("overlay", "arguments", "refusal"), COMMANDS)
 def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal):
-    (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
+    (folder / "mine.yaml").write_text(overlay or "measure: {}", encoding="utf-8")
     text = refused(folder, *arguments.split(" "), overlay="mine.yaml")
     assert not any(part in text for part in ("localrule", "Select jobs"))
     assert all(part in text for part in refusal)
@@ -68,7 +74,7 @@ def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
 
 @pytest.fixture
 def make(project, folder):
-    """A function that runs make in a folder with the sources, and returns its refusal."""
+    """A function that runs make in a folder with the sources, and returns what it said."""
     if shutil.which("make") is None:
         pytest.skip("no make on this machine")
     for part in ("Makefile", "pyproject.toml", "requirements-build.lock"):
@@ -79,11 +85,11 @@ def make(project, folder):
     folders = [str(project / "src"), *site.getsitepackages()]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(folders)}
 
-    def make(*arguments: str) -> str:
+    def make(*arguments: str, code: int = 2) -> str:
         pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
         how = {"cwd": folder, "env": environment, "timeout": 120, "check": False} | pipes
         result = subprocess.run(["make", *arguments], **how)
-        assert result.returncode == 2, result.stdout
+        assert result.returncode == code, result.stdout
         return result.stdout
 
     return make
@@ -95,7 +101,8 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overla
     (tmp_path / "mine.yaml").write_text(template, encoding="utf-8")
     # Nothing waits for a writer of the pipe.
     os.mkfifo(tmp_path / "pipe")
-    assert overlay in make("replicate", f"OVERLAY={overlay.partition(':')[0]}")
+    for command in ("replicate", "rulegraph", "verify"):
+        assert overlay in make(command, f"OVERLAY={overlay.partition(':')[0]}")
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
@@ -113,6 +120,19 @@ ALLOWED |= {"PRESET": "the name of a preset", "ALLOW_LARGE": "true or false"}
 def test_make_checks_its_options(make, tmp_path, command, name, value):
     assert f"{name}: {value}; allowed: {ALLOWED[name]}" in make(command, f"{name}={value}")
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
+
+
+CHECKED = {"CORES": "replicate", "PRESET": "replicate", "KILLS": "faults"}
+
+
+@pytest.mark.parametrize("name", [*CHECKED, "OVERLAY", "TARGET", "AGAINST", "ALLOW_LARGE"])
+@pytest.mark.parametrize("value", ["$(shell touch written)", "$(error written)", "`touch written`"])
+def test_no_value_of_an_option_is_read_as_a_command(make, tmp_path, name, value):
+    make("help", f"{name}={value}", "OTHER=$(shell touch written)", code=0)
+    # This one also uses the option.
+    if name in CHECKED:
+        assert f"{name}: {value}; allowed" in make(CHECKED[name], f"{name}={value}")
+    assert not (tmp_path / "written").exists()
 
 
 @pytest.mark.parametrize("name", ["a b", "a'b", 'a"b', "a$b", "a`b", "a\\b"])

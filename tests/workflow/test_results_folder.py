@@ -19,9 +19,10 @@ pytestmark = pytest.mark.slow
 FIGURE = "figures/fig07_damage_zone"
 
 
-def run(folder: Path, *targets: str, overlay: str = "overlay.yaml") -> str:
+def run(folder: Path, *targets: str, overlay: str = "overlay.yaml", **environment: str) -> str:
     """Run successfully, and return what the run writes to the terminal."""
-    return made(folder, "--quiet", "--", *targets, overlay=overlay, cores=2).stderr
+    how = {"overlay": overlay, "cores": 2, "environment": environment}
+    return made(folder, "--quiet", "--", *targets, **how).stderr
 
 
 def verify(folder: Path) -> dict[str, str]:
@@ -78,8 +79,8 @@ MOVES = {
 }
 OLD_SOURCES = {
     f"edit src/slippulse/{FIGURE}.py": {f"{FIGURE}.png": SOURCES},
-    "edit src/slippulse/studies/extremes.py": {"studies/extremes.csv": SOURCES},
-    "edit src/slippulse/report/templates/explorer.html": {"explorer.html": SOURCES},
+    "edit src/slippulse_paper/studies/extremes.py": {"studies/extremes.csv": SOURCES},
+    "edit src/slippulse_paper/report/templates/explorer.html": {"explorer.html": SOURCES},
     "edit manuscript/summary.yaml": {"index.html": SOURCES},
     "edit workflow/rules/common.smk": {"provenance.json": SOURCES},
     "edit src/slippulse/solver/taylor.py": {"data/one.nc": SOURCES},
@@ -132,11 +133,21 @@ def change_and_verify(folder: Path, changes: dict) -> dict[str, str]:
     return named
 
 
-def test_a_run_of_one_target_says_what_it_leaves_behind_and_touches_nothing_else(folder):
+BELOW_MAKE = {"MAKELEVEL": "1", "OVERLAY": "other.yaml"}
+RENEWALS = {
+    "snakemake --cores 2 --configfile other.yaml -- everything": {},
+    "make replicate OVERLAY=other.yaml TARGET=everything": BELOW_MAKE,
+}
+
+
+@pytest.mark.parametrize(("renewal", "environment"), RENEWALS.items(), ids=["snakemake", "make"])
+def test_a_run_of_one_target_says_what_it_leaves_behind_and_touches_nothing_else(
+    folder, renewal, environment
+):
     page = folder / "results/index.html"
     before, times = page.read_bytes(), page.stat()
-    said = run(folder, "results/data/one.nc", overlay="other.yaml")
-    assert "Renew them: snakemake --cores 2 --configfile other.yaml -- everything" in said
+    said = run(folder, "results/data/one.nc", overlay="other.yaml", **environment)
+    assert f"Renew them: {renewal}\n" in said
     assert page.read_bytes() == before and page.stat() == times
     assert (folder / "results/manuscript/replication.pdf").exists()
     assert verify(folder)["data/one.nc"] == CONFIGURATION

@@ -1,4 +1,4 @@
-# The checked configuration, and the files and settings that rules share.
+# The checked configuration, and what rules share: paths, settings, the digest of the sources.
 
 import os
 import re
@@ -7,33 +7,63 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from slippulse.claims.reading import read_entries
-from slippulse.configuration.accuracy import promised
-from slippulse.configuration.altered import Alterations
-from slippulse.configuration.runs import run_count
-from slippulse.configuration.limits import bound_of_sweep
-from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
-from slippulse.steps.origins import below
-from slippulse.steps.processes import JobFailed, Jobs, end_with
-from slippulse.steps.reach import declared, needs_of, sources
-from slippulse.steps.targets import SOURCES, selected
+PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
+# The code is the one beside this file, whatever is installed or on PYTHONPATH.
+sys.path.insert(0, str(PROJECT / "src"))
 
-JOBS, FAILED = Jobs(), []
-if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
-    end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
-# Inputs of each figure and study, as its module says: names by kind of file, and keys.
-NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
+from slippulse_paper.claims.claim_texts import read_entries
+from slippulse_paper.configuration.altered import Alterations
+from slippulse_paper.configuration.drawn import drawing_problems
+from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse_paper.configuration.runs import run_count
+from slippulse_paper.configuration.selected import selected
+from slippulse_paper.records.job_records import RecordedFiles
+from slippulse_paper.records.lock import take
+from slippulse_paper.records.packages import package_problem
+from slippulse_paper.records.sources import modules_reached, sources_of
+from slippulse_paper.steps.job import Job, JobFailed, run_job
+from slippulse_paper.steps.needs import declared, needs_of
+from slippulse_paper.steps.worker_pool import WorkerPool
+
+# In a module of another workflow, `config` is what the module is given, and paths may get a prefix.
+IS_MODULE = not workflow.modifier.is_main_snakefile()
+WORKERS, FAILED, HELD = WorkerPool(), [], []
+
+
+def project(path):
+    """Path of a file of the project from the working directory, which may be another folder."""
+    inside = Path.cwd() == PROJECT and not IS_MODULE
+    return path if inside else f"{PROJECT}/{path}"
+
+
 try:
     # `configfile:` reads YAML 1.1 and names no line.
-    SHIPPED = read_overlay(f"{workflow.basedir}/config/config.yaml")
-    OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
+    SHIPPED = read_overlay(PROJECT / "config/config.yaml")
+    OVERLAYS = [] if IS_MODULE else [*map(read_overlay, workflow.overwrite_configfiles)]
+    GIVEN = dict(config if IS_MODULE else workflow.config_settings.config)
+    if not IS_MODULE:
+        # Snakemake reads the name of a preset such as 01 as a number.
+        texts = dict(text.split("=", 1) for text in workflow.config_settings.config_args or ())
+        GIVEN |= {name: texts[name] for name in ("preset",) if texts.get(name)}
     # A job on another node starts Snakemake again; its scenes were checked here.
-    said = workflow.config_settings.config
-    CONFIG = read_config(SHIPPED, OVERLAYS, said, workflow.is_main_process)
+    CONFIG = read_config(SHIPPED, OVERLAYS, GIVEN, workflow.is_main_process)
+    # Changes from the shipped configuration; None where nothing can have changed.
+    ALTERED = None
+    if OVERLAYS or GIVEN:
+        ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
+        if workflow.is_main_process and not CONFIG.allow_large:
+            if problems := cost_problems(CONFIG, ALTERED):
+                raise ConfigError("\n".join(problems))
+        draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs_of("figures")}
+        if problems := drawing_problems(CONFIG, draws):
+            raise ConfigError("\n".join(problems))
     if CONFIG.claims:
-        read_entries("manuscript/claims.yaml", CONFIG.given()["claims"])
+        read_entries(PROJECT / "manuscript/claims.yaml", CONFIG.given()["claims"])
+    STUDY_NEEDS = needs_of("studies")
     if unknown := sorted({*(CONFIG.studies or ())} - {*STUDY_NEEDS}):
         raise ConfigError(f"studies: {', '.join(unknown)}; allowed: {', '.join(STUDY_NEEDS)}")
 except ValueError as error:
@@ -44,48 +74,18 @@ ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
-
-
-def environment(wildcards):
-    """Folder that all jobs depend on, since Snakemake goes by the content of files, not their time.
-
-    It asks for the folder when it has read its options.
-    """
-    if workflow.dag_settings is None:
-        return []
-    if workflow.is_main_process:
-        begin()
-    return [SOURCES]
-
-
-def run_step(rule, wildcards, input, output, params, threads, log):
-    """Run the step of a rule in another process, which need not load Snakemake."""
-    settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
-    files, outputs = (
-        {key: str(file) if isinstance(file, str) else [*file] for key, file in named.items()}
-        for named in (input, output)
-    )
-    try:
-        JOBS.run(origin, name, files, outputs, settings, str(log))
-    except JobFailed as reason:
-        # Snakemake reads the log of a failed job, which a process that never began has not written.
-        with suppress(OSError):
-            Path(str(log)).touch()
-        FAILED.append(str(reason))
-        raise
-
-
+# Inputs of each figure and study, as its module says: names by kind of file, and keys.
+NEEDS = needs_of("figures")
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 TOPICS = declared("steps.predict", "TOPICS")
 SWEEPS = {f"sweep_{name}": {"measured": {name: TOPICS}} for name in OWN_SIMULATIONS}
-CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+CLAIM_SIMULATIONS = declared("claims.paper_claims", "SIMULATIONS")
 CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
 # The front speeds are those of one level, without a grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
 READ = [CLAIM_PREDICTED, *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
-# Paths by kind of file, for a name; a list is named by its path.
+# Paths by kind of file, for a name.
 FILES = {
     "data": "results/data/{name}.nc",
     "measured": "results/measurements/{name}.csv",
@@ -93,7 +93,6 @@ FILES = {
     "uncertainties": "results/uncertainties/{name}.csv",
     "coarser": "results/uncertainties/coarser/{name}.csv",
     "studies": "results/studies/{name}.csv",
-    "lists": "{name}",
     "figures": expand("results/figures/{{name}}.{ending}", ending=("pdf", "png", "csv")),
     "scenes": expand("results/scenes/{{name}}.{ending}", ending=("html", "png", "pdf", "csv")),
     "animations": "results/scenes/{name}.gif",
@@ -101,9 +100,9 @@ FILES = {
 }
 # A job whose modules reach these kernels waits until they are compiled.
 KERNELS = {
-    "layer": "src/slippulse/solver/layer.py",
-    "localised": "src/slippulse/solver/taylor.py",
-    "fixed_step": "src/slippulse/solver/fixed_step.py",
+    "layer": "slippulse.solver.layer",
+    "localised": "slippulse.solver.taylor",
+    "fixed_step": "slippulse.solver.fixed_step",
 }
 
 
@@ -112,8 +111,76 @@ def made(kind, names):
     return expand(FILES[kind], name=[*names])
 
 
-# Changes by an overlay or the command line; None where nothing can have changed.
-ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG) if OVERLAYS or said else None
+def inputs_of(needs):
+    """Files that a figure or a study is made from, by kind; predictions of the topics it names."""
+    predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
+    files = {
+        kind: made(kind, names)
+        for kind, names in {**needs, "predicted": predicted}.items()
+        if kind in FILES
+    }
+    lists = needs.get("lists", ())
+    return files | {
+        "lists": [path if path.startswith("results/") else project(path) for path in lists]
+    }
+
+
+def sources(step, *modules, texts=()):
+    """Sources of a step, and of modules that it runs by name, and texts that it reads."""
+    names = (f"slippulse_paper.steps.{step}", *modules)
+    return sources_of(names, tuple(texts))
+
+
+SOURCES_BY_DIGEST = {}
+
+
+def code_of(step, *modules, texts=()):
+    """Digest of the sources of a step: a job runs again when, and only when, it changes."""
+    found = sources(step, *modules, texts=texts)
+    SOURCES_BY_DIGEST[found.digest] = found.files
+    return found.digest
+
+
+def templates(*names):
+    """Templates of pages, with those that every page is made with."""
+    folder = PROJECT / "src/slippulse_paper/report/templates"
+    paths = [
+        path
+        for name in ("base.html", "style.css", "parts.html", *names)
+        for path in folder.glob(name)
+    ]
+    return [path.relative_to(PROJECT).as_posix() for path in sorted({*paths})]
+
+
+def run_step(step, wildcards, input, output, params, threads, log):
+    """Run a step: in a worker process, or here where Snakemake has started a process for the job."""
+    files, outputs = (
+        {
+            key: str(file) if isinstance(file, str) else [*map(str, file)]
+            for key, file in named.items()
+        }
+        for named in (input, output)
+    )
+    variables = dict(wildcards.items()) | {"threads": threads}
+    job = Job(
+        step=step,
+        name=" ".join([step, *wildcards]),
+        inputs=files,
+        outputs=outputs,
+        settings=params.settings,
+        variables=variables,
+        log=str(log),
+        code=params.code,
+        sources=SOURCES_BY_DIGEST[params.code],
+    )
+    try:
+        WORKERS.run(job) if workflow.is_main_process else run_job(job)
+    except JobFailed as reason:
+        # Snakemake reads the log of a failed job, which a process that never began has not written.
+        with suppress(OSError):
+            Path(str(log)).touch()
+        FAILED.append(f"{job.name}: {reason}")
+        raise
 
 
 def note_of(needs, *keys):
@@ -128,13 +195,6 @@ def note_of(needs, *keys):
     return ALTERED.note(sorted(names), settings)
 
 
-def inputs_of(needs):
-    """Files that a figure or a study is made from, by kind; predictions of the topics it names."""
-    predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
-    needs = {**needs, "predicted": predicted}
-    return {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
-
-
 # Snakemake asks for the params of all waiting jobs whenever a job has ended.
 @cache
 def settings_of(job):
@@ -144,8 +204,6 @@ def settings_of(job):
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     scheme = sweep["scheme"]
-    # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
-    bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
@@ -158,10 +216,53 @@ def settings_of(job):
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
-        "bound": bound,
-        "exceeded": lambda: bound().exceeded(simulation.chunks),
+        # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
+        "bound": cache(lambda: bound_of_sweep(whole, simulation.chunks)),
         "runs": run_count(whole),
     }
+
+
+def setting(key):
+    """A setting of the simulation of a rule, as a function of its wildcards."""
+    return lambda wildcards: settings_of(wildcards.simulation)[key]
+
+
+def check_packages_and_lock():
+    """Refuse packages of other versions than in the lock, and a second run in this folder."""
+    if problem := package_problem(PROJECT / "requirements.lock"):
+        sys.exit(problem)
+    # The system frees the lock when this process ends, however that happens.
+    held = take(".snakemake/slippulse.lock")
+    if held is None:
+        sys.exit("Another run is at work in this folder: wait for it, or stop it.")
+    HELD.append(held)
+    for line in ALTERED.untaken() if ALTERED else ():
+        print(line, file=sys.stderr)
+
+
+def report_changed_results():
+    """Print one line if results are not what their jobs wrote, which Snakemake does not notice."""
+    recorded = RecordedFiles("results")
+    problems = dict(recorded.problems())
+    if recorded.records and not Path(".snakemake/metadata").exists():
+        print(
+            f"{len(recorded.records)} jobs have results here, but Snakemake's own records"
+            " (.snakemake) are gone: `make replicate` renews the results,"
+            " and so does `snakemake --forceall`",
+            file=sys.stderr,
+        )
+    if problems:
+        name, reason = next(iter(problems.items()))
+        count = f"1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        print(
+            f"{count} not as made: {', '.join([*problems][:5])} ({name}: {reason}). Renew:"
+            f" make replicate, or delete and run again",
+            file=sys.stderr,
+        )
+
+
+if workflow.is_main_process and not IS_MODULE:
+    report_changed_results()
 
 
 # Chunks of the sweeps that are divided. The name has their number: files of another are not taken.
@@ -170,23 +271,105 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
+# The simulation of one job is one without chunks, or a chunk of another.
+ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
+
+
 # Kind and simulation of each joined file, below results/.
 KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
-JOINED = {below(*made(kind, [name])): (kind, name) for name in CHUNKS for kind in KINDS}
-# Values of the wildcards. The simulation of one job is one without chunks, or a chunk of another.
-ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
-VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES], "scheme": [*KERNELS]}
+JOINED = {
+    made(kind, [name])[0].removeprefix("results/"): (kind, name)
+    for name in CHUNKS
+    for kind in KINDS
+}
+ALL_FIGURES = NEEDS | SWEEPS
+
+
+def solver_of(wildcards):
+    """Module of the solver of a simulation."""
+    return settings_of(wildcards.simulation)["solver"].partition(":")[0]
+
+
+def prediction_modules(wildcards):
+    """Modules that compute the predictions of a simulation."""
+    modules = declared("steps.predict", "MODULES")
+    topics = settings_of(wildcards.simulation)["topics"]
+    return [f"slippulse.prediction.{modules[topic]}" for topic in topics]
+
+
+def joined_inputs(wildcards):
+    """Files of the chunks; uncertainties are joined in the order of the joined measurements."""
+    kind, name = JOINED[wildcards.joined]
+    finest = made("measured", [name] if kind == "uncertainties" else [])
+    return {"chunks": made(kind, CHUNKS[name]), "finest": finest}
+
+
+def joined_settings(wildcards):
+    """Kind of a joined file, and what the runs of its simulation record."""
+    kind, name = JOINED[wildcards.joined]
+    return {"kind": kind, "record": SIMULATIONS[name].record}
+
+
+def study_inputs(wildcards):
+    """Inputs of a study, and the kernels that it runs."""
+    reached = modules_reached(f"slippulse_paper.studies.{wildcards.study}")
+    schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
+    return {**inputs_of(STUDY_NEEDS[wildcards.study]), "kernels": made("kernels", schemes)}
+
+
+def study_settings(wildcards):
+    """The study, and the values of the configuration that it depends on."""
+    needs = STUDY_NEEDS[wildcards.study]
+    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
+    values = selected(config, needs.get("settings", ()), {"sweeps": swept})
+    return {"study": wildcards.study, "values": values}
+
+
+def texts_of(needs):
+    """Texts of the project among the inputs of a figure or a study."""
+    return [path for path in needs.get("lists", ()) if not path.startswith("results/")]
+
+
+def module_of(figure):
+    """Module that draws a figure."""
+    return figure if figure in NEEDS else "user_defined_sweep"
+
+
+def figure_settings(wildcards):
+    """The module of a figure, the values that it depends on, and a note on altered ones."""
+    figure, needs = wildcards.figure, ALL_FIGURES[wildcards.figure]
+    values = selected(config, needs.get("settings", ()), config["figures"].get(figure, {}))
+    altered = note_of(needs, f"figures.{figure}")
+    return {"figure": module_of(figure), "values": values, "altered": altered}
+
+
+def figure_category(wildcards):
+    """Heading of a figure in Snakemake's report."""
+    return "Figures of the paper" if wildcards.figure in FIGURES else "Studies and sweeps"
+
+
+@cache
+def captions():
+    """Texts of the figures."""
+    from slippulse_paper.report.texts import read_captions
+
+    return read_captions(PROJECT / "manuscript/captions.yaml")
+
+
+def title_of(figure):
+    """Title of a figure."""
+    return captions()[figure].title if figure in captions() else figure
+
+
+def one_of(names):
+    """Regular expression of a wildcard that has one of some values."""
+    return "|".join(map(re.escape, names)) or "(?!)"
 
 
 wildcard_constraints:
-    **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
-
-
-def setting(key):
-    """A setting of the simulation of a rule, as a function of its wildcards."""
-    return lambda wildcards: settings_of(wildcards.simulation)[key]
-
-
-def joined(function):
-    """A function of the kind and simulation of a joined file, as one of its wildcards."""
-    return lambda wildcards: function(*JOINED[wildcards.joined])
+    simulation=one_of(ONE_JOB),
+    scene=one_of(SCENES),
+    scheme=one_of(KERNELS),
+    study=one_of(STUDY_NEEDS),
+    figure=one_of([*NEEDS, *SWEEPS]),
+    joined=one_of(JOINED),

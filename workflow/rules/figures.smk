@@ -1,91 +1,97 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
-for study, needs in STUDY_NEEDS.items():
-    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
-    reached = [scheme for scheme in KERNELS if KERNELS[scheme] in sources(f"studies.{study}")]
 
-    rule:
-        name:
-            f"study_of_{study}"
-        input:
-            environment,
-            **inputs_of(needs),
-            kernels=made("kernels", reached),
-        output:
-            table=f"results/studies/{study}.csv",
-        log:
-            f"results/logs/study_of_{study}.log",
-        priority: 2
-        params:
-            step="run_study",
-            study=study,
-            values=selected(config, needs.get("settings", ()), {"sweeps": swept}),
-        message:
-            f"Studying {study}"
-        run:
-            run_step(rule, wildcards, input, output, params, threads, log)
+rule study:
+    input:
+        unpack(study_inputs),
+    output:
+        table="results/studies/{study}.csv",
+    log:
+        "results/logs/study/{study}.log",
+    priority: 2
+    params:
+        settings=study_settings,
+        code=lambda wildcards: code_of(
+            "run_study",
+            f"slippulse_paper.studies.{wildcards.study}",
+            texts=texts_of(STUDY_NEEDS[wildcards.study]),
+        ),
+    message:
+        "Studying {wildcards.study}"
+    run:
+        run_step("run_study", wildcards, input, output, params, threads, log)
 
 
 # A figure is drawn from its table (CSV) alone.
-for figure, needs in (NEEDS | SWEEPS).items():
-    category = "Figures of the paper" if figure in FIGURES else "Studies and sweeps"
-
-    rule:
-        name:
-            figure
-        input:
-            environment,
-            **inputs_of(needs),
-        output:
-            png=report(f"results/figures/{figure}.png", category=category),
-            pdf=f"results/figures/{figure}.pdf",
-            csv=f"results/figures/{figure}.csv",
-        log:
-            f"results/logs/{figure}.log",
-        # The report waits for the figures: they go before scenes and the explorer.
-        priority: 1
-        params:
-            step="draw_figure",
-            figure=figure if figure in NEEDS else "user_defined_sweep",
-            values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
-            altered=note_of(needs, f"figures.{figure}"),
-        message:
-            f"Drawing {figure}"
-        run:
-            run_step(rule, wildcards, input, output, params, threads, log)
-
-
-use rule step as draw_scene with:
+rule figure:
     input:
-        environment,
+        unpack(lambda wildcards: inputs_of(ALL_FIGURES[wildcards.figure])),
+    output:
+        png=report(
+            "results/figures/{figure}.png",
+            caption="../report/figure.rst",
+            category=figure_category,
+            labels=lambda wildcards: {"figure": title_of(wildcards.figure)},
+        ),
+        pdf="results/figures/{figure}.pdf",
+        csv="results/figures/{figure}.csv",
+    log:
+        "results/logs/figure/{figure}.log",
+    # The report waits for the figures: they go before scenes and the explorer.
+    priority: 1
+    params:
+        settings=figure_settings,
+        code=lambda wildcards: code_of(
+            "draw_figure", f"slippulse_paper.figures.{module_of(wildcards.figure)}"
+        ),
+    message:
+        "Drawing {wildcards.figure}"
+    run:
+        run_step("draw_figure", wildcards, input, output, params, threads, log)
+
+
+rule draw_scene:
+    input:
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
         predicted="results/predictions/{scene}.csv",
         uncertainties="results/uncertainties/{scene}.csv",
     output:
-        png=report("results/scenes/{scene}.png", category="Scenes"),
+        png=report(
+            "results/scenes/{scene}.png",
+            caption="../report/scene.rst",
+            category="Scenes",
+            labels=lambda wildcards: {"scene": TITLES[wildcards.scene]},
+        ),
         pdf="results/scenes/{scene}.pdf",
         csv="results/scenes/{scene}.csv",
         numbers="results/scenes/{scene}_numbers.csv",
         html="results/scenes/{scene}.html",
     log:
         "results/logs/draw_scene/{scene}.log",
-    priority: 0
     params:
-        title=lambda wildcards: TITLES[wildcards.scene],
-        altered=lambda wildcards: note_of({"data": [wildcards.scene]}),
+        settings=lambda wildcards: {
+            "title": TITLES[wildcards.scene],
+            "altered": note_of({"data": [wildcards.scene]}),
+        },
+        code=code_of("draw_scene", texts=templates("scene.html")),
     message:
         "Drawing scene {wildcards.scene}"
+    run:
+        run_step("draw_scene", wildcards, input, output, params, threads, log)
 
 
-use rule step as animate_scene with:
+rule animate_scene:
     input:
-        environment,
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",
     log:
         "results/logs/animate_scene/{scene}.log",
-    priority: 0
     params:
-        title=lambda wildcards: TITLES[wildcards.scene],
+        settings=lambda wildcards: {"title": TITLES[wildcards.scene]},
+        code=code_of("animate_scene"),
+    message:
+        "Animating scene {wildcards.scene}"
+    run:
+        run_step("animate_scene", wildcards, input, output, params, threads, log)

@@ -1,6 +1,6 @@
 # Files to read: claims, explorer, report, and the page that leads to all, with the provenance.
 
-from slippulse.data.provenance import changes, source_files
+from slippulse_paper.records.provenance import changes, source_files
 
 CLAIM_STUDIES = (
     "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"
@@ -23,55 +23,74 @@ EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
 DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS)
 DRAFT += made("scenes", [name for name in SCENES if name not in SHIPPED.get("scenes", {})])
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
+CLAIM_TEXTS = ["manuscript/claims.yaml", "manuscript/statements.yaml"]
+REPORT_TEXTS = [
+    "manuscript/references.bib",
+    *(f"manuscript/{text}.yaml" for text in TEXTS),
+    *(f"manuscript/{document}.md" for document in DOCUMENTS),
+    "config/config.yaml",
+    "CITATION.cff",
+]
+INDEX_TEXTS = [f"manuscript/{text}.yaml" for text in ("captions", "errata", "summary")]
 
 
-use rule step as write_claims with:
+rule write_claims:
     input:
-        environment,
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
         predicted=made("predicted", CLAIM_PREDICTED),
         studies=made("studies", CLAIM_STUDIES),
-        texts="manuscript/claims.yaml",
-        statements="manuscript/statements.yaml",
+        texts=project("manuscript/claims.yaml"),
+        statements=project("manuscript/statements.yaml"),
     output:
         json="results/claims.json",
         findings="results/findings.json",
-        html=report("results/claims.html", category="Claims"),
+        html=report("results/claims.html", caption="../report/claims.rst", category="Claims"),
     log:
         "results/logs/write_claims.log",
+    priority: 2
     params:
-        **{key: config[key] for key in ("claims", "published", "measure")},
-        damping_ratio=config["model"]["damping_ratio"],
-        altered=changes(SHIPPED, config),
+        settings={
+            **{key: config[key] for key in ("claims", "published", "measure")},
+            "damping_ratio": config["model"]["damping_ratio"],
+            "altered": changes(SHIPPED, config),
+        },
+        code=code_of("write_claims", texts=[*CLAIM_TEXTS, *templates("claims.html")]),
+    message:
+        "Judging the claims"
+    run:
+        run_step("write_claims", wildcards, input, output, params, threads, log)
 
 
-use rule step as write_explorer with:
+rule write_explorer:
     input:
-        environment,
         law="results/studies/explorer_law.csv",
         measured=made("measured", declared("steps.write_explorer", "SIMULATIONS")),
     output:
         html="results/explorer.html",
     log:
         "results/logs/write_explorer.log",
-    priority: 0
+    params:
+        settings={},
+        code=code_of("write_explorer", texts=templates("explorer.html", "explorer/*")),
+    message:
+        "Writing the explorer"
+    run:
+        run_step("write_explorer", wildcards, input, output, params, threads, log)
 
 
-use rule step as write_report with:
+rule write_report:
     input:
-        environment,
-        "manuscript/references.bib",
-        expand("manuscript/{text}.yaml", text=TEXTS),
+        [project(path) for path in REPORT_TEXTS],
         expand("results/figures/{name}.png", name=NEEDS),
         **inputs_of(REPORT_NEEDS),
-        sources=expand("manuscript/{document}.md", document=DOCUMENTS),
+        sources=[project(f"manuscript/{document}.md") for document in DOCUMENTS],
         claims="results/claims.json",
         findings="results/findings.json",
         figures=expand("results/figures/{name}.pdf", name=NEEDS),
-        shipped="config/config.yaml",
-        citation="CITATION.cff",
+        shipped=project("config/config.yaml"),
+        citation=project("CITATION.cff"),
     output:
         html=expand("results/manuscript/{document}.html", document=DOCUMENTS),
         pdf=expand("results/manuscript/{document}.pdf", document=DOCUMENTS),
@@ -80,31 +99,36 @@ use rule step as write_report with:
         "results/logs/write_report.log",
     priority: 1
     params:
-        figures=list(NEEDS),
-        config=config,
+        settings={"figures": list(NEEDS), "config": config},
+        code=code_of("write_report", texts=[*REPORT_TEXTS, *templates("report.*")]),
+    message:
+        "Writing the report"
+    run:
+        run_step("write_report", wildcards, input, output, params, threads, log)
 
 
-use rule step as write_scenes_page with:
+rule write_scenes_page:
     input:
-        environment,
         expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
     log:
         "results/logs/write_scenes_page.log",
-    priority: 0
     params:
-        scenes=TITLES,
+        settings={"scenes": TITLES},
+        code=code_of("write_scenes_page", texts=templates("scenes.html")),
+    message:
+        "Writing the page of the scenes"
+    run:
+        run_step("write_scenes_page", wildcards, input, output, params, threads, log)
 
 
-use rule step as write_index with:
+rule write_index:
     input:
-        environment,
-        [path.as_posix() for path in source_files(".")],
         results=RESULTS,
-        captions="manuscript/captions.yaml",
-        summary="manuscript/summary.yaml",
-        errata="manuscript/errata.yaml",
+        captions=project("manuscript/captions.yaml"),
+        summary=project("manuscript/summary.yaml"),
+        errata=project("manuscript/errata.yaml"),
     output:
         html="results/index.html",
         provenance="results/provenance.json",
@@ -112,22 +136,20 @@ use rule step as write_index with:
         manifest="results/codecheck.yml",
     log:
         "results/logs/write_index.log",
+    priority: 2
     params:
-        config=config,
-        shipped=SHIPPED,
-        figures=[*NEEDS, *SWEEPS],
-        scenes=TITLES,
-
-
-GATHERED = {
-    "everything": EVERYTHING,
-    "scenes": [*made("scenes", SCENES), *made("animations", SCENES), "results/scenes/index.html"],
-    **{figure.partition("_")[0]: made("figures", [figure]) for figure in FIGURES},
-}
-for name, files in GATHERED.items():
-
-    rule:
-        name:
-            name
-        input:
-            files,
+        settings={
+            "config": config,
+            "shipped": SHIPPED,
+            "figures": [*NEEDS, *SWEEPS],
+            "scenes": TITLES,
+        },
+        # The provenance has a digest of every source.
+        code=code_of(
+            "write_index",
+            texts=[path.relative_to(PROJECT).as_posix() for path in source_files(PROJECT)],
+        ),
+    message:
+        "Writing the page of all results"
+    run:
+        run_step("write_index", wildcards, input, output, params, threads, log)

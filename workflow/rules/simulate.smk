@@ -6,77 +6,83 @@ BOUNDS = {
 }
 
 
-# The rules have this in common.
-rule step:
-    input:
-        environment,
-    log:
-        "results/logs/step.log",
-    # The report waits for the claims: what these wait for goes before what only draws.
-    priority: 2
-    message:
-        "Writing {output[0]}"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
-
-
-use rule step as compile_kernels with:
+rule compile_kernels:
     output:
         kernels="results/kernels/{scheme}.txt",
     log:
         "results/logs/compile_kernels/{scheme}.log",
     priority: 3
+    params:
+        settings={},
+        code=code_of("compile_kernels"),
     message:
         "Compiling the kernels: {wildcards.scheme} (once)"
+    run:
+        run_step("compile_kernels", wildcards, input, output, params, threads, log)
 
 
-use rule step as simulate with:
+rule simulate:
     input:
-        environment,
         kernels=setting("kernels"),
     output:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
+    # The report waits for the claims: what these wait for goes before what only draws.
+    priority: 2
     threads: lambda wildcards: setting("bound")(wildcards)().threads
     resources:
         **BOUNDS,
     params:
-        solver=setting("solver"),
-        sweep=setting("sweep"),
+        settings=lambda wildcards: {
+            key: settings_of(wildcards.simulation)[key] for key in ("solver", "sweep")
+        },
+        code=lambda wildcards: code_of("simulate", solver_of(wildcards)),
     message:
         "Simulating {wildcards.simulation}"
+    run:
+        run_step("simulate", wildcards, input, output, params, threads, log)
 
 
-use rule step as measure with:
+rule measure:
     input:
-        environment,
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
     log:
         "results/logs/measure/{simulation}.log",
+    priority: 2
     params:
-        measure=setting("measure"),
+        settings=lambda wildcards: {"measure": settings_of(wildcards.simulation)["measure"]},
+        code=code_of("measure"),
     message:
         "Measuring {wildcards.simulation}"
+    run:
+        run_step("measure", wildcards, input, output, params, threads, log)
 
 
-use rule step as predict with:
+rule predict:
     output:
         predicted="results/predictions/{simulation}.csv",
     log:
         "results/logs/predict/{simulation}.log",
+    priority: 2
     params:
-        sweep=setting("sweep"),
-        topics=setting("topics"),
-        share=lambda wildcards: setting("measure")(wildcards)["share"],
-        still=config["measure"]["still"],
+        settings=lambda wildcards: {
+            "sweep": settings_of(wildcards.simulation)["sweep"],
+            "topics": settings_of(wildcards.simulation)["topics"],
+            "share": settings_of(wildcards.simulation)["measure"]["share"],
+            "still": config["measure"]["still"],
+        },
+        code=lambda wildcards: code_of("predict", *prediction_modules(wildcards)),
+    message:
+        "Predicting {wildcards.simulation}"
+    run:
+        run_step("predict", wildcards, input, output, params, threads, log)
 
 
-use rule step as study_grid with:
+rule study_grid:
     input:
-        environment,
         kernels=setting("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
@@ -84,32 +90,15 @@ use rule step as study_grid with:
         coarser="results/uncertainties/coarser/{simulation}.csv",
     log:
         "results/logs/study_grid/{simulation}.log",
+    priority: 2
     resources:
         **BOUNDS,
     params:
-        solver=setting("solver"),
-        sweeps=setting("sweeps"),
-        measure=setting("measure"),
+        settings=lambda wildcards: {
+            key: settings_of(wildcards.simulation)[key] for key in ("solver", "sweeps", "measure")
+        },
+        code=lambda wildcards: code_of("study_grid", solver_of(wildcards)),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
-
-
-use rule step as join with:
-    input:
-        environment,
-        chunks=joined(lambda kind, name: made(kind, CHUNKS[name])),
-        finest=joined(
-            lambda kind, name: made("measured", [name] if kind == "uncertainties" else [])
-        ),
-    output:
-        joined="results/{joined}",
-    log:
-        "results/logs/join/{joined}.log",
-    resources:
-        runtime=lambda wildcards, attempt: attempt * 30,
-        # A million runs took 1.2 kB each; other sweeps may take twice as much.
-        mem_mb=lambda wildcards, attempt: attempt
-        * (1000 + settings_of(JOINED[wildcards.joined][1])["runs"] // 400),
-    params:
-        kind=joined(lambda kind, name: kind),
-        record=joined(lambda kind, name: SIMULATIONS[name].record),
+    run:
+        run_step("study_grid", wildcards, input, output, params, threads, log)

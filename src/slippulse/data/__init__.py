@@ -1,1 +1,1 @@
-"""Files of results: how they are written and read, joined from chunks, digested and recorded."""
+"""Files of data: how they are written and read, and what their variables mean."""

@@ -6,6 +6,8 @@ from pathlib import Path
 
 # The environment variable in which a job holds the digest of its configuration.
 CONFIGURATION = "SLIPPULSE_CONFIGURATION"
+# Part of the hidden name that a file has until it is complete; no other file has it.
+UNFINISHED = ".slippulse-unfinished-"
 
 
 class UnreadableFile(ValueError):
@@ -25,7 +27,7 @@ def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
     """Let ``write`` fill a file beside ``path``, and move it there when it is complete."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.stem}-{os.urandom(4).hex()}{path.suffix}")
+    part = path.with_name(f".{path.stem}{UNFINISHED}{os.urandom(4).hex()}{path.suffix}")
     try:
         write(part)
         part.replace(path)

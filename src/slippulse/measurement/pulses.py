@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.points import AnyRun
-from .fronts import fit_front, known_until, path
+from .front_paths import fit_front, known_until, path
 
 # Blocks slower than this fraction of the leading pulse are remains of the nucleation, not a pulse.
 REMAINS = 0.05

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..data.points import AnyRun
-from .fronts import position_at
+from .front_paths import position_at
 
 REGIMES = (
     "arrested",

@@ -5,7 +5,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .fronts import arrival, known_until, path, position_at
+from .front_paths import arrival, known_until, path, position_at
 
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the
 # lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).

@@ -63,6 +63,14 @@ def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
     return numbers
 
 
+def as_positions(key: str, value: object) -> np.ndarray:
+    """An array of floats, of which any may be infinite or NaN."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: numbers") from None
+
+
 def check_kind(key: str, value: object, kind: type) -> None:
     """Refuse anything that is not of a class."""
     check_that(isinstance(value, kind), key, value, f"a {kind.__name__}")
@@ -70,5 +78,5 @@ def check_kind(key: str, value: object, kind: type) -> None:
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
     """Refuse anything that is not one of ``choices``."""
-    plain = isinstance(value, str | int | float) and not isinstance(value, bool)
+    plain = isinstance(value, str | Real) and not isinstance(value, bool)
     check_that(plain and value in choices, key, value, ", ".join(map(str, choices)))

@@ -79,7 +79,7 @@ def reach_of(
 
     ``speeds_at`` returns speeds at levels of pre-stress; an interval has its higher level.
     """
-    intervals = np.array(profile.intervals)
+    intervals = profile.interval_table
     speeds = speeds_at(intervals[:, 2:].max(axis=1))
     right = _distance(intervals[:, 1], speeds, start, duration)
     left = _distance(-intervals[::-1, 0], speeds[::-1], start, duration)
@@ -100,7 +100,8 @@ def _upper_bound_of_reach(scene: Scene) -> float:
     """Upper bound on the distance from x = 0 that a front reaches on either side."""
     profile = scene.prestress
     bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
-    start = max(bumps, profile.nucleation_reach) + 5.0 * (profile.width or 0.0)
+    width = profile.width or 0.0
+    start = max(bumps, profile.nucleation_reach) + 5.0 * width
 
     def fastest(levels: np.ndarray) -> np.ndarray:
         # This is above the exact speed at any damping, under either release rule.

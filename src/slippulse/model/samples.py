@@ -10,9 +10,9 @@ from .checks import as_numbers
 RECORDS = ("fronts", "fields", "samples")
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Samples:
-    """Times and positions at which slip and slip velocity are recorded.
+    """Times and positions at which slip and slip velocity are recorded; it keeps copies of them.
 
     Parameters
     ----------
@@ -35,8 +35,10 @@ class Samples:
     positions: np.ndarray
 
     def __post_init__(self) -> None:
-        self.times = as_numbers("samples.times", self.times)
-        self.positions = as_numbers("samples.positions", self.positions)
+        for name in ("times", "positions"):
+            kept = as_numbers(f"samples.{name}", getattr(self, name)).copy()
+            kept.setflags(write=False)
+            object.__setattr__(self, name, kept)
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):

@@ -222,11 +222,25 @@ class Scene:
         given = hasattr(attributes, "keys")
         check_that(given, "attributes", attributes, "a mapping of names to values")
         try:
-            values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
-            values["prestress"] = prestress_from(attributes)
+            # A netCDF file returns numbers of numpy's types.
+            values = {name: getattr(v, "item", lambda v=v: v)() for name, v in attributes.items()}
+            values |= {"friction": friction_from(law_of(values))}
+            values["prestress"] = prestress_from(values)
             check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
             values["half_lattice"] = bool(values["half_lattice"])
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
             allowed = "every attribute of a run"
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
+
+
+# Numbers of a run that everything that reads it computes with.
+COUNTED = ("end_time", "releases", "re_releases", "half_lattice_used", "first_stick_time")
+
+
+def check_run_attributes(attributes: Mapping) -> None:
+    """Refuse attributes of a run, such as those of a file, that are not of their kind."""
+    Scene.from_attributes(attributes)
+    for name in COUNTED:
+        value = attributes.get(name)
+        check_that(isinstance(value, Real), name, value, "a number, as simulate returns it")

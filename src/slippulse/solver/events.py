@@ -12,7 +12,7 @@ import numpy as np
 
 from .arrays import CENTRE, COLUMNS
 from .foresight import RECIPROCAL, find_bends, find_sticks, foresee_releases, forget_sticks
-from .friction import begin_to_fall, fall, resistance_at_rest, strengthen, turn
+from .friction_terms import begin_to_fall, fall, resistance_at_rest, strengthen, turn
 from .jit import inner, once
 from .segments import sliding_beside
 from .stencils import blocks, derivative

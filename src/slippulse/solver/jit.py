@@ -17,6 +17,8 @@ What each flag gains, measured in turns with and without it:
 
 import hashlib
 import os
+import tempfile
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -37,13 +39,37 @@ def source_digest(folder: Path = SOURCES) -> str:
 
 
 def cache_folder() -> Path:
-    """Folder of compiled kernels: in SLIPPULSE_CACHE or the user's cache, by digest of sources."""
-    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
-    return Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
+    """Folder of compiled kernels, named by the digest of their sources.
+
+    It is below the first of SLIPPULSE_CACHE, NUMBA_CACHE_DIR and the user's cache that is given.
+    """
+    given = os.environ.get("SLIPPULSE_CACHE") or os.environ.get("NUMBA_CACHE_DIR")
+    caches = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return Path(given or f"{caches}/slippulse").absolute() / f"kernels-{source_digest()}"
 
 
-if not os.environ.get("NUMBA_CACHE_DIR"):
-    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+def writable_cache() -> str:
+    """Return the folder of the cache, or one beside the sources, with a warning; empty if none."""
+    chosen, reason = cache_folder(), ""
+    for folder in (chosen, SOURCES / "__pycache__" / chosen.name):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=folder):
+                break
+        except OSError as error:
+            reason = reason or f"{chosen}: {error.strerror}"
+    else:
+        folder = None
+    if reason:
+        instead = f"they go to {folder}" if folder else "each process compiles its own"
+        remedy = "a folder that can be written in SLIPPULSE_CACHE avoids it"
+        warnings.warn(f"compiled kernels: {reason}; {instead}; {remedy}", stacklevel=2)
+    return str(folder or "")
+
+
+# Without a folder, numba would look for one whose machine code may be of other sources.
+CACHE = writable_cache()
+numba.config.CACHE_DIR = CACHE  # type: ignore[attr-defined]
 
 # Sums may be reordered so that they vectorise. NaN keeps its meaning, since it shows a blow-up.
 REORDER = {"reassoc", "contract", "nsz"}
@@ -51,7 +77,7 @@ FLAGS: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "fastmath": {"co
 
 # The decorator of functions that Python calls. Only they are cached: their machine code holds all
 # that they call.
-entry = numba.njit(cache=True, nogil=True, **FLAGS)
+entry = numba.njit(cache=bool(CACHE), nogil=True, **FLAGS)
 
 # The decorator of functions that one kernel calls, in one place.
 once = numba.njit(inline="always", **FLAGS)

@@ -7,7 +7,7 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
-from .friction import begin_to_fall, constants_of
+from .friction_terms import begin_to_fall, constants_of
 
 # A call of a kernel makes at most this number of steps, and of updates of a block, which take about
 # a tenth of a second. Between calls Python tells the progress and can be interrupted.
@@ -50,7 +50,7 @@ class Lattice:
         scaled = given.positions / scene.dx
         number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
         self.sampled = np.abs(number) if self.mirror else number
-        self.recorder = arrays.Recorder(given.times, number, *recorded)
+        self.recorder = arrays.Recorder(given.times.copy(), number, *recorded)
         self._extend(1 if self.mirror else FIRST_BLOCKS + 1, FIRST_BLOCKS + 1)
         # All blocks that are released at t = 0 are on it, also at distant bumps and in a table.
         reach = scene.prestress.nucleation_reach

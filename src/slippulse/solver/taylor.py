@@ -12,7 +12,8 @@ import math
 
 import numpy as np
 
-from . import foresight, friction, stencils
+from . import foresight, stencils
+from . import friction_terms as friction
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .jit import entry, inner, once

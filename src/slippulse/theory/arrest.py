@@ -8,7 +8,7 @@ from ..model.balance import integral, prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from .fronts import ExactTransition, fast_fronts
+from .two_fronts import ExactTransition, fast_fronts
 
 # Characteristics in each third of the pulse far away.
 SAMPLES = 400

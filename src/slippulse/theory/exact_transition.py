@@ -8,8 +8,8 @@ from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .fronts import ExactTransition, fast_fronts
 from .part import Part
+from .two_fronts import ExactTransition, fast_fronts
 
 # Largest distance, in wave lengths, that is kept of a uniform front that hardly outruns the waves.
 FARTHEST = 10_000

@@ -1,6 +1,7 @@
 """The steady slip pulse, with damping, behind a front of given speed or of given damping ratio."""
 
 from .closed_pulse import SteadyPulse, pulse_at_speed
+from .domains import check_domains
 from .front_speeds import front_speed
 
 
@@ -42,5 +43,6 @@ def steady_pulse(
     if (damping_ratio is None) == (speed is None):
         raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
     if speed is None:
+        check_domains(tau0=tau0, damping_ratio=damping_ratio)
         speed = float(front_speed(tau0, damping_ratio, release))
     return pulse_at_speed(tau0, gamma, beta, speed, rate_strengthening)

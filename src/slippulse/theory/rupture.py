@@ -18,10 +18,10 @@ from ..model.roots import root_between
 from .curve import SAME
 from .domains import broadcast_numbers, check_domains
 from .fast_front import FastFront
-from .fronts import ExactTransition
 from .solved_part import SolvedPart
 from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
+from .two_fronts import ExactTransition
 
 # The construction goes on beyond the duration, relative, so that the end is a time like any other.
 BEYOND = 1e-6

@@ -1,0 +1,157 @@
+"""The ledger: every claim of manuscript/claims.yaml, in its order, with its result."""
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from ..text.prose import fill
+from . import (
+    friction_claims as friction_laws,
+)
+from . import (
+    layer_claims as layer,
+)
+from . import (
+    pulse_claims as pulses,
+)
+from . import (
+    space_time_claims as space_time_figure,
+)
+from . import (
+    transition_claims as transition,
+)
+from .claim_texts import places_of
+from .evidence import Evidence, Texts
+from .kinds import Claim
+from .ledger import with_texts
+
+# The simulations behind the claims, with topics of the predictions that each is compared with.
+SIMULATIONS = {
+    "any_prestress": ["pulse"],
+    "arrest_profiles": [],
+    "burridge_knopoff_chain": [],
+    "burridge_knopoff_speed": ["front"],
+    "burridge_knopoff_stress": [],
+    "damping_displacement": [],
+    "damping_stress": [],
+    "front_speed_undamped": ["front"],
+    "nucleation_widths": [],
+    "pulses_across_a_step": [],
+    "pulses_across_wide_steps": [],
+    "pulses_perturbed_elsewhere": [],
+    "regimes_beyond": [],
+    "regimes_displacement": ["final_regime"],
+    "regimes_displacement_asymmetric": ["final_regime"],
+    "regimes_stress": ["final_regime", "transition"],
+    "scaling_displacement": ["transition"],
+    "scaling_stress": ["transition"],
+    "space_time_displacement": ["pulse"],
+    "space_time_stress": [],
+    "speed_against_gamma": ["front"],
+    "steady_displacement": ["front", "pulse"],
+    "steady_elsewhere": [],
+    "stress_pulses": ["transition"],
+    "undamped_pulses": ["pulse"],
+}
+# What judges a claim by a rule of its entry, by kind.
+RULES: dict[str, Callable[..., Claim]] = {"exact": pulses.equation, "qualitative": pulses.always}
+# The function that judges each other claim, by id.
+CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
+    "zero_net_stress_change": pulses.zero_net_stress_change,
+    "front_speed_moderate_gamma": pulses.front_speed_moderate_gamma,
+    "front_arrest_position": transition.front_arrest_position,
+    "T_trans_displacement": partial(transition.held_displacement, quantity="time"),
+    "L_trans_displacement": partial(transition.held_displacement, quantity="length"),
+    "T_trans_stress": partial(transition.held_stress, quantity="time"),
+    "L_trans_stress": partial(transition.held_stress, quantity="length"),
+    "transition_scaling_displacement": partial(transition.scaling, boundary="displacement"),
+    "transition_scaling_stress": partial(transition.scaling, boundary="stress"),
+    "stress_front_speeds_near_one": transition.stress_front_speeds_near_one,
+    "displacement_pulse_unique": pulses.displacement_pulse_unique,
+    "perturbed_pulses_settle": pulses.perturbed_pulses_settle,
+    "stress_pulse_not_unique": pulses.stress_pulse_not_unique,
+    "stress_pulse_set_by_prestress": pulses.stress_pulse_set_by_prestress,
+    "transition_diverges": transition.transition_diverges,
+    "shorter_transition_low_prestress": transition.shorter_transition_low_prestress,
+    "pulses_widen_with_prestress": transition.pulses_widen_with_prestress,
+    "thin_layer": pulses.thin_layer,
+    "layer_regimes": layer.layer_regimes,
+    "layer_width": layer.layer_width,
+    "T_trans_stress_underestimate": transition.transition_time_underestimated,
+    "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
+    "published_space_time_figure": space_time_figure.left,
+    "published_arrows": space_time_figure.arrows,
+    "published_space_time_figure_right": space_time_figure.right,
+    "pulses_for_many_friction_laws": friction_laws.pulses_for_many_friction_laws,
+    "stress_pulse_other_laws": friction_laws.stress_pulse_other_laws,
+    "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
+}
+# Texts of an entry that are not in claims.json as they are.
+UNWRITTEN = ("sentences", "doubt", "rule")
+# Fields of every claim in claims.json, where neither its text nor its result sets them.
+EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
+EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
+EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict.fromkeys(
+    ("predicted", "measured", "uncertainty", "deviation")
+)
+
+
+def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
+    """The ledger as in claims.json; a ValueError names claims in the texts or in the code alone.
+
+    ``common`` has, by verdict, why claims have it that are judged over open choices.
+    """
+    without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
+    odd = ", ".join(sorted(without_rule ^ {*CLAIMS}))
+    if odd:
+        raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
+    evidence.assign("regimes_beyond", pulses.meet)
+    where = places_of(evidence.entries, sentences)
+    return [
+        written(id, claim_of(evidence, id), entry, where[id], common)
+        for id, entry in evidence.entries.items()
+    ]
+
+
+def claim_of(evidence: Evidence, id: str) -> Claim:
+    """One claim, by the rule of its entry or by its function; a rule that fails is named."""
+    entry = evidence.entries[id]
+    if "rule" not in entry:
+        return CLAIMS[id](evidence, id)
+    try:
+        return RULES[entry["kind"]](evidence, id, **entry["rule"])
+    except (AttributeError, LookupError, NameError, SyntaxError, TypeError) as error:
+        allowed = "the keys of its kind, with expressions over columns"
+        raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
+
+
+def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping = {}) -> dict:
+    """One claim with its text, as JSON has it."""
+    out = EMPTY | {name: value for name, value in entry.items() if name not in UNWRITTEN}
+    if entry["kind"] == "approximate":
+        # The spread of its runs, and the exact theory.
+        out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
+    out |= {"id": id} | claim.written()
+    counted = not out["follows_from"] and not out["beyond"]
+    out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
+    if "earlier_tolerance" in entry:
+        out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
+    out = finite(out)
+    names = out | claim.names()
+    out |= {key: sentence(out[key], names) for key in ("note", "why")}
+    if out["choices"] and out["verdict"] in common:
+        names |= {"why": out["why"], "doubt": sentence(entry.get("doubt", ""), names)}
+        out["why"] = sentence(common[out["verdict"]], names)
+    return out | {"why": with_texts(out).why_text()}
+
+
+def sentence(text: str, names: Mapping) -> str:
+    """A text with its expressions evaluated, in one line."""
+    return " ".join(fill(text, names).split())
+
+
+def finite(value):
+    """Builtins with None for every number that JSON does not have."""
+    text = json.dumps(value, default=lambda number: number.item())
+    return json.loads(text, parse_constant=lambda _: None)

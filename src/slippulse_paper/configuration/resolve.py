@@ -1,0 +1,119 @@
+"""Resolved simulations: what a rule passes to its job, with everything that the data depend on."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from slippulse.model.cost import reach_of
+from slippulse.model.friction import COULOMB, LinearRate
+from slippulse.simulation.accuracy import ORDER, STEP
+from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
+
+from .profiles import expanded, prestress_of
+from .schema import Configuration, Model, NamedScene, Profile, Simulation
+
+# A scene samples these numbers of times and positions, for its map and its animation.
+TIMES, POSITIONS = 241, 801
+# Levels at which the exact front speed is computed for a table.
+LEVELS = 65
+# Keys of which a scene has one value and a simulation a list.
+LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening")
+# Lists of a simulation whose smallest and largest values are the most demanding ones.
+ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels")
+
+
+def accuracy_of(config: Configuration) -> dict[str, Any]:
+    """The preset in use; a given `accuracy` replaces its step and order, and is promised."""
+    preset = config.presets[config.preset].plain()
+    if config.accuracy is None:
+        return preset
+    return preset | {"max_step": STEP, "order": ORDER, "promise": config.accuracy}
+
+
+def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
+    """A simulation with everything that its data depend on, as builtins; chunks do not count."""
+    defaults = Model.model_validate(model).plain()
+    defaults |= {key: [defaults[key]] for key in LISTED if key in defaults}
+    given = Simulation.model_validate(simulation).plain()
+    del given["chunks"]
+    if "rate_strengthening" in given:
+        given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
+    if "profiles" in given:
+        given["profiles"] = expanded(given["profiles"])
+    kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
+    chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
+    if "promise" in kept and chosen:
+        # A spacing that the simulation sets itself promises nothing.
+        kept["promise"] = math.nan
+    return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
+
+
+def _linear_law(alpha: float) -> Mapping:
+    """The law of a deprecated key."""
+    law = LinearRate(alpha) if alpha else COULOMB
+    return law.mapping()
+
+
+def all_simulations(config: Configuration) -> dict[str, Simulation]:
+    """Simulations by name, the scenes among them."""
+    scenes = {name: scene_simulation(scene, config.model) for name, scene in config.scenes.items()}
+    return {**config.simulations, **scenes}
+
+
+def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
+    """A scene as a simulation of one run that records everything, up to where its fronts may go."""
+    given = scene.plain()
+    del given["title"]
+    profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
+    extent = _extent(scene, model, profile)
+    given |= {key: [given[key]] for key in LISTED if key in given}
+    given["profiles"] = [profile]
+    given["duration"] = {"time": scene.duration}
+    given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
+    given["record"] = ["fronts", "fields", "samples"]
+    return Simulation.model_validate(given)
+
+
+def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> float:
+    """Distance from x = 0 up to which a scene is sampled: that which its fronts may reach."""
+    farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
+    ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
+
+    def speeds_at(levels: np.ndarray) -> np.ndarray:
+        levels = np.minimum(levels, 1.0 - 1e-6)
+        fast, speeds = levels > 0.0, np.ones(levels.shape)
+        if scene.beta is not None:
+            # The rule "total" gives this speed at beta/dx = 1.
+            speeds[fast] = 1.0 / (1.0 - levels[fast])
+        elif fast.any():
+            speeds[fast] = front_speed(levels[fast], min(ratio, LARGEST_RATIO), "total")
+        return speeds
+
+    if scene.left is not None and scene.right is not None:
+        highest = max(scene.left, scene.right, *[level for _, level in scene.steps])
+        reach = float(speeds_at(np.array([highest]))[0]) * scene.duration
+    else:
+        (expanded_profile,) = expanded([profile])
+        table = prestress_of(expanded_profile)
+        # Thousands of exact speeds take seconds. Lines between few of them are above the others.
+        highest = max([0.0, *(tau for _, tau in table.points)])
+        known = np.linspace(0.0, highest, LEVELS)
+        speeds = speeds_at(known)
+        reach = reach_of(
+            table, table.nucleation_reach, scene.duration, lambda tau: np.interp(tau, known, speeds)
+        )
+    width = scene.width or 0.0
+    return farthest_bump + reach + 3.0 * width
+
+
+def corners(simulation: Mapping) -> dict[str, Any]:
+    """A resolved simulation with only the ends of its lists, at which any refusal shows."""
+    ends = {key: value for key, value in simulation.items() if key != "chunk"}
+    if "beyond" in ends:
+        ends["beyond"] = corners(ends["beyond"])
+    for key in ORDERED:
+        if isinstance(ends.get(key), list):
+            ends[key] = sorted({min(ends[key]), max(ends[key])})
+    return ends

@@ -1,0 +1,442 @@
+"""Every key of the configuration, once: type, range, default, meaning with [unit], origin.
+
+The refusals (`refusals`) follow from these, and docs/describe.py makes the JSON Schema and the
+tables of config/README.md from them. A class has no docstring where the key of it says enough.
+"""
+
+from collections.abc import Iterable
+from typing import Annotated, Any, Literal, Self, TypeVar
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from slippulse.model.checks import short_repr
+from slippulse.model.friction import NAMES, friction_from
+from slippulse.model.measured_columns import RECORD_FOR
+from slippulse.model.prestress import Prestress
+from slippulse.model.rough_prestress import rough
+
+from ..text.markdown import harmless
+from .problems import nearest
+
+T = TypeVar("T")
+
+
+class Block(BaseModel):
+    """A mapping of the configuration: only known keys, no conversions, finite numbers."""
+
+    model_config = ConfigDict(
+        extra="forbid", strict=True, allow_inf_nan=False, defer_build=True, serialize_by_alias=True
+    )
+
+    def given(self) -> dict[str, Any]:
+        """The values that were given, as builtins."""
+        return self.model_dump(mode="json", exclude_unset=True)
+
+    def plain(self) -> dict[str, Any]:
+        """Given values and defaults, as builtins, without keys that are None."""
+        return self.model_dump(mode="json", exclude_none=True)
+
+
+def key(description: str, default: Any = ..., words: str | None = None, **limits: Any) -> Any:
+    """A key of a mapping; `words` say what it allows where its type does not."""
+    if words:
+        limits["json_schema_extra"] = {"allowed": words}
+    return Field(default, description=description, **limits)
+
+
+def require(condition: bool, given: str, allowed: str) -> None:
+    """Refuse a key and its value unless a condition holds, and say what is allowed."""
+    if not condition:
+        raise ValueError(f"{given}; allowed: {allowed}")
+
+
+def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
+    """Refuse a name that is not among the known ones, with a hint at the nearest."""
+    require(name in names, f"{key}: {short_repr(name)}{nearest(name, names)}", allowed)
+
+
+def _all_different(values: list[T]) -> list[T]:
+    if len({*map(repr, values)}) < len(values):
+        raise PydanticCustomError("different", "an entry twice")
+    return values
+
+
+# A list of different entries, at least one.
+Distinct = Annotated[
+    list[T],
+    Field(min_length=1, json_schema_extra={"uniqueItems": True}),
+    AfterValidator(_all_different),
+]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
+Seed = Annotated[int, Field(ge=0)]
+Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
+Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
+Boundary = Literal["displacement", "stress"]
+Switch = Annotated[bool, Field(strict=False)]
+Release = Literal["total", "elastic"]
+Scheme = Literal["localised", "fixed_step", "continuum"]
+LAW = f"a mapping with law ({', '.join(NAMES)}) and its parameters"
+
+
+def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
+    friction_from(mapping)
+    return mapping
+
+
+Friction = Annotated[
+    dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
+]
+# A text for pages and the report, in which formulas and links to the web are all that acts.
+Statement = Annotated[str, AfterValidator(harmless)]
+# Rows of numbers, which are lists in YAML.
+Step = Annotated[tuple[float, float], Field(strict=False)]
+Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
+NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
+LABEL_WORDS = "a name of letters, digits, underscores and dashes"
+Label = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,60}$")]
+PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
+
+TITLE = "one line of at most 120 printable characters, not blank"
+STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
+POINTS = "a list of [x, tau] from left to right, at least two"
+ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop, spacing and seed"
+SEEDS = "a whole number >= 0, or a list of different ones"
+RELEASED = "total, elastic, or a list of both"
+STUDIES = "a list of different names, at least one"
+FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
+UNITS = "one of time, half_periods, balance_distances"
+RULE = "fixed, or scale, width_power and gamma_power"
+GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
+ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
+LAWS = "law of friction of sliding blocks, below; by default the model's"
+KEPT = "what is kept: release and stick times; slip, velocity, acceleration at the end; samples"
+RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
+
+
+class Rough(Block):
+    """A rough background, as `sp.rough` makes it."""
+
+    level: Annotated[float, Field(lt=1.0)] = key("mean [S]")
+    deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
+    correlation_length: Positive = key("length above which nothing is correlated [H]")
+    hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
+    start: float = key("first position; the pre-stress is constant before it [H]")
+    stop: float = key("last position; the pre-stress is constant beyond it [H]")
+    spacing: Positive = key("distance of the positions [H]")
+    seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
+
+    @model_validator(mode="after")
+    def _positions(self) -> Self:
+        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
+        rough(**(self.plain() | {"seed": seed}))
+        return self
+
+
+class Profile(Block):
+    """One pre-stress."""
+
+    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
+    right: float | None = key("level far to the right, without a table [S]", None)
+    width: Positive | None = key(
+        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
+        " have no Gaussian [H] (paper)",
+        1.0,
+    )
+    peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
+    steps: list[Step] = key("levels beyond positions, away from x = 0 [H, S]", [], STEPS)
+    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
+    points: list[Step] | None = key(
+        "instead of levels: linear between these points, constant beyond; a position twice is a"
+        " jump [H, S]",
+        None,
+        POINTS,
+    )
+    file: str | None = key(
+        "instead of levels: a CSV or netCDF file with such points, relative to the overlay", None
+    )
+    rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
+
+    @model_validator(mode="after")
+    def _background(self) -> Self:
+        # A file that was read has its points beside it.
+        tables = self._given_ones("file", "points", "rough")
+        if tables == ["file", "points"]:
+            tables = ["file"]
+        levels = self._given_ones("left", "right")
+        if not tables:
+            missing = [name for name in ("left", "right") if name not in levels]
+            allowed = "levels on both sides, or points, file or rough"
+            require(not missing, f"{', '.join(missing)}: missing", allowed)
+            return self
+        given = [*tables, *levels]
+        if self.steps:
+            given.append("steps")
+        require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
+        if self.file is not None:
+            require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
+        self._check_points()
+        return self
+
+    def _given_ones(self, *names: str) -> list[str]:
+        return [name for name in names if getattr(self, name) is not None]
+
+    def _check_points(self) -> None:
+        """Refuse points out of order. They have no Gaussian unless they have a width."""
+        if self.points is not None:
+            if "width" not in self.model_fields_set:
+                self.__dict__["width"] = None
+            try:
+                Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
+            except ValueError as error:
+                raise ValueError(str(error).removeprefix("prestress.")) from None
+
+
+class Beyond(Block):
+    position: float = key("from here on, away from x = 0 and not there, the level is replaced [H]")
+    levels: Distinct[float] = key("by each of these in turn [S]")
+
+
+class Duration(Block):
+    time: Positive | None = key("the duration itself [H/c]", None)
+    half_periods: Positive | None = key("in pi/sqrt(gamma); under `displacement`", None)
+    balance_distances: Positive | None = key("in |x_minus|; left level < 0, right 0", None)
+
+
+class SpacingRule(Block):
+    """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
+
+    fixed: Spacing | None = key("the spacing, in the grid study too; alone [H]", None)
+    scale: Positive = key("factor of the preset's dx", 1.0)
+    width_power: float = key("power of W", 0.0)
+    gamma_power: float = key("power of gamma; under `displacement`", 0.0)
+
+
+class Recording(Block):
+    times: int = key("how many, evenly over the duration", ge=2, le=100_000)
+    positions: int = key("how many, from -extent to extent; 1: at x = 0", ge=1, le=100_000)
+    extent: NonNegative = key("how far to each side [H]")
+
+
+class Physics(Block):
+    """Keys that a simulation and a scene have in common."""
+
+    boundary: Boundary = key("held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
+    scheme: Scheme | None = key("by default the model's", None)
+    resolved_blocks: int | None = key("by default the model's", None, ge=1)
+    max_step: Positive | None = key("by default the preset's, cut to the bound [dx]", None)
+
+    def alone(self, key: str, *others: str) -> None:
+        """Refuse a key that is given with another."""
+        given = ", ".join(other for other in others if other in self.model_fields_set)
+        alone = key not in self.model_fields_set or not given
+        require(alone, f"{key}: given with {given}", "one or the other (null removes a key)")
+
+    @model_validator(mode="after")
+    def _physics(self) -> Self:
+        gamma = getattr(self, "gamma", None)
+        if self.boundary == "displacement":
+            require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
+        else:
+            allowed = "left out under boundary 'stress', which has no leaf springs"
+            require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
+        self.alone("beta", "damping_ratio")
+        self.alone("rate_strengthening", "friction")
+        return self
+
+
+class Simulation(Physics):
+    """A sweep: the product of its lists."""
+
+    left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
+    right: Literal["same"] | Distinct[float] | None = key("on the right [S]", None)
+    width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
+    profiles: Distinct[Profile] | None = key("whole profiles, instead of the three above", None)
+    beyond: Beyond | None = key("another level on one side, below", None)
+    gamma: Distinct[Positive] | None = key(GAMMA, None)
+    damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
+    beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
+    friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
+    rate_strengthening: Distinct[float] | None = key(ALPHA, None)
+    duration: Duration = key("how long each run is, in one of three units, below", words=UNITS)
+    spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
+    dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
+    release: Release | Distinct[Release] | None = key("by default the model's", None, RELEASED)
+    friction_ratio: NonNegative | None = key("by default the model's", None)
+    record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
+    samples: Recording | None = key("what `record: [fronts, samples]` samples, below", None)
+    chunks: int = key("how many jobs share the sweep, at most a run each", 1, ge=1, le=1000)
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        self.alone("profiles", "left", "right", "width", "beyond")
+        self.alone("dx", "spacing")
+        rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
+        levels = self.left is not None and self.right is not None
+        require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
+        alone = rule == {"fixed"} or "fixed" not in rule
+        require(alone, "spacing.fixed: given with others", "alone")
+        require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
+        if self.boundary == "stress":
+            only = "only under boundary 'displacement'"
+            require("half_periods" not in units, "duration.half_periods: given", only)
+            require("gamma_power" not in rule, "spacing.gamma_power: given", only)
+        require("fronts" in self.record, f"record: {self.record}", RECORDED)
+        if "samples" in self.record:
+            allowed = "times, positions and extent when record has 'samples'"
+            require(self.samples is not None, "samples: missing", allowed)
+        else:
+            allowed = "with samples in record (samples: null removes it)"
+            require(self.samples is None, "samples: given, but not recorded", allowed)
+        return self
+
+
+class NamedScene(Profile, Physics):
+    """One run by name."""
+
+    title: str = key("above figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
+    gamma: Positive | None = key(GAMMA, None)
+    damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
+    beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
+    friction: Friction | None = key(LAWS, None, LAW)
+    rate_strengthening: float | None = key(ALPHA, None)
+    dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
+    release: Release | None = key("by default the model's", None)
+    duration: Positive = key("how long the run is [H/c]")
+
+    @model_validator(mode="after")
+    def _one_seed(self) -> Self:
+        seed = self.rough.seed if self.rough is not None else 0
+        require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
+        return self
+
+
+class Preset(Block):
+    dx: Spacing = key("block spacing where a simulation does not scale it [H]")
+    max_step: Positive = key("largest time step; strong damping may need less [dx]")
+    order: int = key("order of the Taylor step", ge=3, le=8)
+    coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
+        "factors of the spacing in the grid studies", words=FACTORS
+    )
+    whole: bool = key("whether studies, ledger and report are made without `everything`", True)
+
+    @model_validator(mode="after")
+    def _far_apart(self) -> Self:
+        # Between nearly equal spacings a number hardly changes, however large its error is.
+        first, second = sorted(self.coarser)
+        apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
+        require(apart, f"coarser: {self.coarser}", FACTORS)
+        return self
+
+
+class Model(Block):
+    damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
+    release: Release = key("`total`: damping counts at release (figure); `elastic`: not (printed)")
+    scheme: Scheme = key(
+        "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
+        " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
+    )
+    friction: Friction | None = key("law of friction; by default coulomb, the paper's", None, LAW)
+    friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): stress below -(1 + 2 of it) is flagged")
+    resolved_blocks: int = key("narrower pulses (`stress`: Gaussians) are flagged [dx]", ge=1)
+
+
+class Measure(Block):
+    share: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
+    front_window: float = key("last fraction of a path, for the front speed", ge=0.05, lt=1.0)
+    steady_tolerance: Fraction = key("largest change of a steady peak velocity over the last third")
+    trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")
+    still: Fraction = key("slower than this fraction of the largest slip velocity is at rest")
+
+
+class Sketch(Block):
+    strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
+
+
+class Steps(Block):
+    from_: Ratio = key("the first", alias="from")
+    to: Ratio = key("the last, above the first")
+    count: int = key("how many", ge=2, le=10_000)
+
+    @model_validator(mode="after")
+    def _upwards(self) -> Self:
+        require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
+        return self
+
+
+class DamageZone(Block):
+    stiffness_ratios: Steps = key("G/G_r")
+    thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
+
+
+class Figures(Block):
+    fig01_system_sketch: Sketch = key("the sketch of the system")
+    fig07_damage_zone: DamageZone = key("the damage zone")
+
+
+class Claim(Block):
+    tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
+    tolerance_exponent: Positive | None = key("largest distance of an exponent from 1", None)
+
+
+class Reading(Block):
+    simulation: str = key("name of the simulation whose run is compared with it")
+    quantity: str = key("which of its measured numbers: a column of the measured table")
+    statement: Statement = key("what was read off (figure)", min_length=1)
+    value: float = key("the number (figure)")
+    reading_error: Positive = key("of reading by pixel")
+    arrow: bool = key("whether it is a drawn arrow: the fit is made with and without", False)
+
+
+class Configuration(Block):
+    """The whole configuration."""
+
+    preset: str = key("which of `presets` is used", words="the name of a preset")
+    presets: dict[Label, Preset] = key("trades of speed for accuracy, by name", min_length=1)
+    accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
+        "largest relative numerical error, instead of a preset's spacing and step", None
+    )
+    # Make and the command line may say yes, on or 1.
+    allow_large: Switch = key("whether simulations above the limits of cost run", False)
+    model: Model = key("for every simulation that does not say otherwise")
+    simulations: dict[Name, Simulation] = key("sweeps by name, each the product of its lists")
+    scenes: dict[Name, NamedScene] = key("single runs by name", {})
+    measure: Measure = key("how numbers are read off a run")
+    figures: Figures = key("of figures that draw no simulation")
+    claims: dict[str, Claim] = key("tolerances other than in manuscript/claims.yaml, by claim", {})
+    published: dict[Label, Reading] = key("numbers read off a published figure, by name")
+    studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
+
+    def key_of(self, name: str) -> str:
+        """The key of a simulation or of a scene."""
+        return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
+
+    @model_validator(mode="after")
+    def _names(self) -> Self:
+        check_name("preset", self.preset, self.presets, ", ".join(self.presets))
+        if self.accuracy is not None:
+            scheme = self.model.scheme
+            allowed = "'localised' where accuracy is given"
+            require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
+        for name in self.scenes:
+            problem = f"scenes.{name}: also the name of a simulation"
+            require(name not in self.simulations, problem, "another name")
+            others = {*self.scenes} - {name}
+            taken = name == "index" or name.removesuffix("_numbers") in others
+            problem = f"scenes.{name}: another file of that name is there"
+            require(not taken, problem, "neither index nor SCENE_numbers")
+        known = dict(RECORD_FOR)
+        for time in self.measure.trailing_times:
+            known[f"trailing_edge_{time:g}"] = "fronts"
+        for name, reading in self.published.items():
+            quantity, sweep = reading.quantity, reading.simulation
+            key = f"published.{name}"
+            check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
+            check_name(f"{key}.quantity", quantity, known, "a column of the measured table")
+            needed, recorded = known[quantity], self.simulations[sweep].record
+            allowed = f"what simulations.{sweep} records; this takes record: [fronts, {needed}]"
+            require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
+        return self

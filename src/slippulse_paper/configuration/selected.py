@@ -1,0 +1,16 @@
+"""Parts of a configuration."""
+
+from collections.abc import Iterable, Mapping
+from copy import deepcopy
+
+
+def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
+    """Take the values of some dotted keys of the configuration, nested as there, with additions."""
+    values = deepcopy(dict(additions))
+    for key in keys:
+        target, source = values, config
+        *parents, last = key.split(".")
+        for parent in parents:
+            target, source = target.setdefault(parent, {}), source[parent]
+        target[last] = source[last]
+    return values

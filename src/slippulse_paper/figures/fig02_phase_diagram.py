@@ -1,0 +1,174 @@
+"""Figure 2: the regime in which a rupture ends, by boundary, pre-stress and gamma."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.patches import Polygon
+
+from slippulse.model.prestress import Prestress
+from slippulse.plotting import style
+from slippulse.plotting.selection import spread_values
+from slippulse.plotting.style import (
+    BLACK,
+    GREY,
+    PAGE,
+    SMALL,
+    Look,
+    entry,
+    legend_below,
+    panel_letter,
+)
+
+from ..text.numerals import setting
+
+NEEDS = {
+    "measured": {
+        "regimes_displacement": ["final_regime"],
+        "regimes_displacement_asymmetric": ["final_regime"],
+        "regimes_stress": ["final_regime"],
+    },
+    "studies": ["regime_plane"],
+}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "regimes_displacement": "boundary displacement",
+    "regimes_displacement_asymmetric": "boundary displacement",
+    "regimes_stress": "boundary stress",
+}
+
+BOUNDARIES = {"displacement": r"$\Gamma = 1$, any $\gamma$", "stress": r"$\Gamma = 0$"}
+# Colour of each regime, and its label in the planes.
+LOOKS = {
+    "arrested": (GREY, "arrest"),
+    "crack-like, two-way": (style.BLUE, "two-way\ncrack"),
+    "crack-like, one-way": (style.SKY, "one-way\ncrack"),
+    "pulses, two-way": (style.ORANGE, "two\nsteady pulses"),
+    "pulse, one-way, growing": (style.PURPLE, "growing pulse"),
+    "pulse, one-way, steady": (style.YELLOW, "steady pulse"),
+    "pulse, one-way, decaying": (style.GREEN, "decaying pulse"),
+}
+NUMBERS = "①②③④"
+MARK: Look = {"color": BLACK, "markersize": 4.0}
+# The number of levels of each side that is drawn of a sweep.
+DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regimes_stress": 5}
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """The planes of the study, and runs: all of equal levels (role symmetric), else some (run)."""
+    parts = [tables["regime_plane"]]
+    kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
+    for name, count in DRAWN.items():
+        runs = tables[name]
+        parts.append(runs.loc[runs["left"] == runs["right"], kept].assign(role="symmetric"))
+        runs = runs[runs["gamma"] == runs["gamma"].max()]
+        left = runs["left"].isin(spread_values(runs["left"], count))
+        right = runs["right"].isin(spread_values(runs["right"], count))
+        parts.append(runs.loc[left & right, kept].assign(role="run"))
+    return pd.concat(parts, ignore_index=True)
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
+    figure = Figure(figsize=(PAGE, 5.0), layout="constrained")
+    left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
+    above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
+    symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
+    profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
+    numbers = {}
+    for number, rows in zip(NUMBERS, profiles, strict=False):
+        numbers[tuple(rows[["boundary", "regime"]].iloc[0])] = f"{number} "
+    panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
+    for line, plane, letter, (boundary, title) in panels:
+        rows = table[table["boundary"] == boundary]
+        areas = rows[rows["role"] == "area"].groupby(["series", "regime"])[["left", "right"]].mean()
+        for level in (-0.5, 0.5):
+            # The regime of equal levels is that of the quadrant with this centre.
+            regime = areas[areas.eq(level).all(axis="columns")].index[0][1]
+            colour, text = LOOKS[regime]
+            line.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
+            look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
+            line.annotate(text.replace("\n", " "), (level, 1.02), **look)
+        draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
+        draw_plane(plane, rows[rows["role"].isin(["area", "line"])], numbers)
+        draw_runs(plane, rows[rows["role"] == "run"], "right")
+        plane.set_title(title, loc="center")
+        panel_letter(plane, letter)
+    symmetric[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
+    symmetric[1].set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
+    symmetric[1].set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
+    panel_letter(symmetric[0], "a")
+    draw_profiles(strips, profiles)
+    faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
+    look = MARK | {"marker": "o"}
+    handles = [entry(label, markerfacecolor=face, **look) for label, face in faces.items()]
+    if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
+        handles.append(entry("flagged", marker="x", **MARK))
+    legend_below(figure, handles, 3)
+    return figure
+
+
+def tint(colour: str) -> tuple[float, ...]:
+    """Mix a colour with white."""
+    return tuple(1.0 - 0.35 * (1.0 - part) for part in to_rgb(colour))
+
+
+def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> None:
+    """Draw the regimes as areas, and as lines where one level is 0, each with one label."""
+    look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
+    for (role, _), part in rows.groupby(["role", "series"], sort=False):
+        boundary, regime = part[["boundary", "regime"]].iloc[0]
+        corners = part[["left", "right"]].to_numpy()
+        (left, right), (colour, text) = corners.mean(axis=0), LOOKS[regime]
+        text = numbers.get((boundary, regime), "") + text
+        if role == "line":
+            axes.plot(*corners.T, color=colour, linewidth=3.0, solid_capstyle="butt", gid=regime)
+            if left < right:
+                axes.text(left, -0.1, text, **look)
+            continue
+        axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
+        if len(corners) == 4:
+            axes.text(left, right + 0.1 if right > 0.0 else right, text, **look)
+        elif left < right:
+            line = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
+            axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **look)
+    ticks = (-1, 0, 1)
+    axes.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=ticks, yticks=ticks)
+    axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")
+
+
+def draw_runs(axes: Axes, runs: pd.DataFrame, upwards: str) -> None:
+    """Mark runs: open if theory has another final regime, crossed out if flagged."""
+    for run in runs.itertuples():
+        early = run.exact_regime in LOOKS and run.exact_regime != run.regime
+        look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
+        marker = "x" if isinstance(run.run_flags, str) else "o"
+        axes.plot(run.left, getattr(run, upwards), marker, gid=run.role, zorder=3.0, **look)
+
+
+def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
+    """Draw slip velocities over position, each over its largest value, with their pre-stress."""
+    strips = figure.subplots(len(profiles), 1, sharex=True)
+    panel_letter(strips[0], "d")
+    end = 1.08 * pd.concat(profiles)["x"].abs().max()
+    x = np.linspace(-end, end, 201)
+    title = rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$"
+    strips[0].set_title(title, loc="center")
+    for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
+        colour = LOOKS[rows["regime"].iloc[0]][0]
+        levels = rows[["left", "right"]].iloc[0]
+        shape = rows["slip_velocity"] / rows["slip_velocity"].max()
+        axes.fill_between(rows["x"], shape, color=tint(colour), linewidth=0.0)
+        axes.plot(rows["x"], shape, color=colour)
+        gamma = int(rows["boundary"].iloc[0] == "displacement")
+        label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(map(setting, levels))}"
+        axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
+        # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
+        axes.axhline(1.5, color=GREY, linewidth=0.6, linestyle=":")
+        axes.plot(x, 1.5 + 0.4 * Prestress(*levels)(x), color=BLACK, linewidth=0.8, gid="prestress")
+        axes.set_yticks([1.5, 1.9], ["0", "1"], fontsize=SMALL)
+        axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
+        axes.set_ylim(0.0, 2.6)
+        axes.spines[["left", "right", "top"]].set_visible(False)
+    axes.set(xlabel="position $x$", xlim=(-end, end))

@@ -1,0 +1,45 @@
+"""Figure 3: slip velocity of the steady pulses, both boundary conditions, with theory."""
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from slippulse.plotting.style import PAGE, new_panels
+
+from .shared.pulse_panels import (
+    draw_prestress,
+    draw_pulses,
+    handles,
+    pulse_table,
+    styled_runs,
+    title,
+)
+
+NEEDS = {
+    "data": ["steady_displacement", "steady_stress"],
+    "measured": {"steady_displacement": ["pulse"], "steady_stress": ["transition"]},
+    "studies": ["pulse_profiles"],
+    "settings": ["measure.front_window"],
+}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "steady_displacement": "boundary displacement and a level above 0",
+    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Rows of `pulse_table` for both sweeps, with the slip velocity alone."""
+    return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """Draw the displacement boundary on the left and the stress boundary on the right."""
+    figure, panels = new_panels(PAGE, 3.3, "ab")
+    for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
+        rows = table[table["panel"] == name]
+        draw_pulses(axes, rows, "slip_velocity")
+        draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), widths)
+        axes.set(title=title(rows), ylim=(-0.03, 1.06))
+        below = (0.5, -0.17)
+        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below, ncols=3)
+    return figure

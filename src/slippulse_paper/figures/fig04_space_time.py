@@ -1,0 +1,117 @@
+"""Figure 4: slip velocity over time and position, of cracks that become two pulses and one."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from slippulse.data.point import point
+from slippulse.measurement.front_paths import position_at
+from slippulse.plotting import space_time, style
+from slippulse.plotting.style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look
+
+NEEDS = {
+    "data": ["space_time_displacement", "space_time_stress"],
+    "measured": {"space_time_displacement": [], "space_time_stress": []},
+    "studies": ["exact_space_time"],
+    "settings": ["measure.share"],
+}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "space_time_displacement": "boundary displacement and equal levels above 0",
+    "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}
+
+PANELS = {"displacement": "a", "stress": "b"}
+COLUMNS = ["panel", "role", "series", "time", "position", "value"]
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Rows of `run_rows` of the first run of both sweeps, exact edges, and the transition by role.
+
+    measured, paper, last_release : both fronts (series) at a time, and the length between them
+    fraction : that of |x_minus| which the left front has covered at T_trans under held stress
+    """
+    parts = []
+    for panel in PANELS:
+        name = f"space_time_{panel}"
+        run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
+        rows, numbers = [space_time.run_rows(run)], tables[name].iloc[0]
+        time, length = numbers["transition_time"], numbers["transition_length"]
+        transitions = {"measured": (time, position_at(run, time, "right") - length, length)}
+        length = numbers["paper_transition_length"]
+        transitions["paper"] = (numbers["paper_transition_time"], -0.5 * length, length)
+        if "last_release_time" in numbers:
+            names = ("last_release_time", "last_release_distance", "last_release_length")
+            time, distance, length = numbers[[*names]]
+            transitions["last_release"] = (time, -distance, length)
+        for role, (time, left, length) in transitions.items():
+            ends = {"series": ["left", "right"], "position": [left, left + length]}
+            rows.append(pd.DataFrame(ends).assign(role=role, time=time, value=length))
+        for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time")):
+            edge = {"role": role, "position": exact["position"], "time": exact[column]}
+            rows.append(pd.DataFrame(edge).dropna())
+        if panel == "stress":
+            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
+        parts.append(pd.concat(rows).assign(panel=panel))
+    return pd.concat(parts, ignore_index=True)[COLUMNS]
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """Draw the figure; the legend has what is drawn in either panel."""
+    figure = Figure(figsize=(PAGE, 3.3))
+    figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
+    sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
+    for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
+        profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
+        roles = style.by_role(table[table["panel"] == panel])
+        space_time.draw_profile(profile, roles["prestress"])
+        space_time.draw_map(axes, roles)
+        draw_transition(axes, roles)
+        style.panel_letter(profile, letter)
+        when = "first stick"
+        if "fraction" in roles:
+            percent = 100.0 * roles["fraction"]["value"].iloc[0]
+            when = rf"left front at {percent:g} % of its way to $x_-$"
+        title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
+        side.suptitle(title)
+    handles = style.labelled(figure.axes)
+    style.legend_below(figure, handles, len(handles))
+    return figure
+
+
+def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
+    """Draw exact edges, arrows for T_trans and L_trans, the paper's estimate, the last release."""
+    look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
+    for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
+        if role in roles:
+            axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
+    time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
+    # A run that is too short for its transition has none to draw.
+    if np.isfinite(time):
+        low, high = axes.get_ylim()
+        height = high - low
+        low -= 0.04 * height
+        axes.set_ylim(low - 0.06 * height, high)
+        arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
+        arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
+        axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+        for start, stop in (((0.0, low), (time, low)), ((time, left), (time, left + length))):
+            axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
+        look = {"textcoords": "offset points", "path_effects": HALO}
+        # The label of T_trans stands above its arrow, clear of the ticks of the axis.
+        named = rf"$T_\text{{trans}} = {time:#.3g}$"
+        axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
+        named = rf"$L_\text{{trans}} = {length:#.3g}$"
+        axes.annotate(named, (time, left + 0.5 * length), (4, 0), va="center", zorder=4.0, **look)
+    look = {"markeredgewidth": 0.8, "markeredgecolor": BLACK, "markersize": 4.5, "zorder": 5.0}
+    paper = roles["paper"]
+    axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
+    if "last_release" in roles:
+        # Under a stress boundary the paper's estimate of the time is |x_-|.
+        limit = -float(paper["time"].iloc[0])
+        axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
+        # The label stands beside the ticks of the axis.
+        axes.annotate("$x_-$", (0.0, limit), (6, 1), textcoords="offset points", zorder=4.0)
+        left = roles["last_release"].iloc[:1]
+        axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)

@@ -1,0 +1,15 @@
+"""Figure 9: slip, slip velocity and acceleration of the pulses under a stress boundary."""
+
+from .shared.pulse_panels import plot_fields, pulse_table
+
+draw, table = plot_fields, pulse_table
+NEEDS = {
+    "data": ["steady_stress"],
+    "measured": {"steady_stress": ["transition"]},
+    "studies": ["pulse_profiles"],
+    "settings": ["measure.front_window"],
+}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+}

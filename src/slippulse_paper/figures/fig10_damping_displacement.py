@@ -1,0 +1,10 @@
+"""Figure 10: the transition under a displacement boundary for several damping ratios."""
+
+from .shared.scaling import damping_figure, transition_table
+
+draw, table = damping_figure, transition_table
+NEEDS = {"measured": {"damping_displacement": ["transition"]}}
+# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+DRAWS = {
+    "damping_displacement": "boundary displacement and equal levels above 0",
+}

@@ -1,0 +1,220 @@
+"""Records of jobs: what each job wrote, by which sources and settings, and from which files.
+
+Snakemake decides which jobs run. The records add what its own records do not tell: whether a result
+still has the content that its job wrote. The record of a job is ``.records/NAME.json`` in the
+folder of its first output, NAME; a job with outputs in two folders has a record in each.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from slippulse.data.files import write_text
+
+FOLDER = ".records"
+
+
+class ChangedFile(RuntimeError):
+    """A file that is not what its job wrote, or that was edited while a job was running."""
+
+
+class FileState(NamedTuple):
+    """Content of a file, with the size and time that show cheaply that it is unchanged."""
+
+    sha256: str
+    size: int
+    modified_ns: int
+
+
+class Record(NamedTuple):
+    """Record of a job: its outputs in one folder, and its inputs, relative to that folder."""
+
+    step: str
+    code: str
+    configuration: str
+    outputs: dict[str, FileState]
+    inputs: dict[str, str]
+    seconds: float
+
+
+def digest_of(value: object) -> str:
+    """Return a short digest of builtins, which does not depend on the order of keys."""
+    text = json.dumps(value, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def file_digest(path: str | Path) -> str:
+    """Return the SHA-256 of a file."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+@cache
+def _digest_at(path: str, _size: int, _modified_ns: int) -> str:
+    return file_digest(path)
+
+
+def state_of(path: str | Path) -> FileState:
+    """Return the state of a file; the content is read once for each size and time."""
+    info = os.stat(path)
+    digest = _digest_at(os.path.abspath(path), info.st_size, info.st_mtime_ns)
+    return FileState(digest, info.st_size, info.st_mtime_ns)
+
+
+def is_unchanged(path: str | Path, state: FileState) -> bool:
+    """Return whether a file has a recorded content; the file is read if size or time differ."""
+    info = os.stat(path)
+    if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):
+        return True
+    return info.st_size == state.size and file_digest(path) == state.sha256
+
+
+def record_path(output: str | Path) -> Path:
+    """Return the path of the record that begins with an output."""
+    path = Path(output)
+    return path.parent / FOLDER / f"{path.name}.json"
+
+
+def write_json(value: object, path: str | Path) -> None:
+    """Write builtins as JSON that people can read."""
+    write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)
+
+
+def write_record(record: Record, folder: str | Path) -> None:
+    """Write the record of the outputs of a job in one folder."""
+    content = record._asdict()
+    content["outputs"] = {name: state._asdict() for name, state in record.outputs.items()}
+    write_json(content, record_path(Path(folder, next(iter(record.outputs)))))
+
+
+def read_record(path: str | Path) -> Record:
+    """Read one record.
+
+    Raises
+    ------
+    OSError
+        if there is no such file
+    ValueError
+        if the file does not have the form of a record
+    """
+    try:
+        content: dict[str, Any] = json.loads(Path(path).read_text(encoding="utf-8"))
+        states = {name: FileState(**state) for name, state in content["outputs"].items()}
+        return Record(**{**content, "outputs": states, "inputs": dict(content["inputs"])})
+    except (KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(str(error)) from error
+
+
+class RecordedFiles:
+    """The records below a folder of results, and the files that they are about."""
+
+    def __init__(self, results: str | Path) -> None:
+        self.results = Path(results)
+        self.records: dict[Path, Record] = {}
+        self.unreadable: list[Path] = []
+        for path in sorted(self.results.rglob(f"{FOLDER}/*.json")):
+            try:
+                self.records[path] = read_record(path)
+            except (OSError, ValueError):
+                self.unreadable.append(path)
+
+    def states(self) -> dict[str, FileState]:
+        """Return the recorded state of each file, by its path from the working directory."""
+        states = {}
+        for path, record in self.records.items():
+            for name, state in record.outputs.items():
+                states[str(path.parent.parent / name)] = state
+        return states
+
+    def problems(self) -> Iterator[tuple[str, str]]:
+        """Yield each file that is not what its job wrote, with the reason.
+
+        A missing file is no problem here: Snakemake makes it again where it is needed.
+        """
+        states = self.states()
+        for path in self.unreadable:
+            yield str(path), "cannot be read as the record of a job"
+        for name, state in states.items():
+            try:
+                if not is_unchanged(name, state):
+                    yield name, "not what its job wrote"
+            except OSError:
+                continue
+        for path, record in self.records.items():
+            folder = path.parent.parent
+            for name, digest in record.inputs.items():
+                source = os.path.normpath(folder / name)
+                if source in states and states[source].sha256 != digest:
+                    for output in record.outputs:
+                        yield str(folder / output), f"made from another {source}"
+                    break
+
+
+def job_seconds(results: str | Path) -> dict[str, float]:
+    """Return the seconds that all jobs of each step took in total, from their records."""
+    seconds: dict[str, float] = {}
+    for record in RecordedFiles(results).records.values():
+        seconds[record.step] = round(seconds.get(record.step, 0.0) + record.seconds, 2)
+    return seconds
+
+
+def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, Record]]:
+    """Check that the results that a job reads are what their jobs wrote.
+
+    Returns the state of each file, and the record of each that has one, by path.
+
+    Raises
+    ------
+    ChangedFile
+        for the first file that is not what its job wrote
+    """
+    states, records = {}, {}
+    for path in paths:
+        if not Path(path).is_file():
+            continue
+        states[path] = state_of(path)
+        record = _record_of(path)
+        if record is None:
+            continue
+        records[path] = record
+        if record.outputs[Path(path).name].sha256 != states[path].sha256:
+            remedy = "delete it and run again, or run `make replicate`, which renews it"
+            raise ChangedFile(f"{path}: not what its job wrote; {remedy}")
+    return states, records
+
+
+def check_unchanged(states: Mapping[str, FileState]) -> None:
+    """Raise ChangedFile for the first file that was edited since its state was taken."""
+    for path, state in states.items():
+        if not is_unchanged(path, state):
+            raise ChangedFile(f"{path}: changed while the job was running; run again")
+
+
+def _record_of(path: str) -> Record | None:
+    """Return the record in which a file is named as an output, or None."""
+    name, folder = Path(path).name, Path(path).parent / FOLDER
+    return _records_in(str(folder), _time_of(folder)).get(name)
+
+
+def _time_of(folder: Path) -> int:
+    try:
+        return folder.stat().st_mtime_ns
+    except OSError:
+        return 0
+
+
+@cache
+def _records_in(folder: str, _modified_ns: int) -> dict[str, Record]:
+    """Return the records of a folder by the names of the outputs beside it."""
+    records: dict[str, Record] = {}
+    for path in Path(folder).glob("*.json"):
+        try:
+            record = read_record(path)
+        except (OSError, ValueError):
+            continue
+        records |= dict.fromkeys(record.outputs, record)
+    return records

@@ -1,0 +1,120 @@
+"""Provenance of the results, in the only file that holds times; checksums and manifest."""
+
+import os
+import platform
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from functools import partial
+from importlib.metadata import version
+from pathlib import Path
+
+import yaml
+
+from .job_records import digest_of, file_digest, job_seconds
+
+PACKAGES = ["slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf"]
+PACKAGES += ["snakemake", "matplotlib", "pandas"]
+PAPER = {
+    "title": "A minimal model for the onset of slip pulses in frictional rupture",
+    "authors": ["Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard"],
+    "journal": "Physical Review E 103, 052802 (2021)",
+    "doi": "https://doi.org/10.1103/PhysRevE.103.052802",
+}
+
+
+def changes(shipped: object, config: object, key: str = "") -> list[dict]:
+    """List the values that differ below a key, as shipped and as here; an absent one is None."""
+    if not (isinstance(shipped, Mapping) and isinstance(config, Mapping)):
+        return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
+    changed = []
+    for name in dict.fromkeys([*shipped, *config]):
+        dotted = f"{key}.{name}" if key else str(name)
+        changed += changes(shipped.get(name), config.get(name), dotted)
+    return changed
+
+
+def source_files(root: str | Path) -> list[Path]:
+    """List all files that a result may depend on besides the configuration."""
+    files = [Path(root, "Snakefile")]
+    for folder in ("src", "workflow", "manuscript"):
+        paths = Path(root, folder).rglob("*")
+        files += [path for path in paths if path.is_file() and "__pycache__" not in path.parts]
+    return files
+
+
+def git_state(root: str | Path) -> dict | None:
+    """Commit, and files that differ from it; None outside a repository or without git."""
+    # A variable of git would name another repository than the one that these files are in.
+    around = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    options = {"stderr": subprocess.DEVNULL, "timeout": 30, "cwd": root, "env": around}
+    git = partial(subprocess.check_output, **options)
+    try:
+        commit = git(["git", "rev-parse", "HEAD"], text=True).strip()
+        status = git(["git", "status", "--porcelain", "--untracked-files=no"], text=True)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return {"commit": commit, "changed_files": sorted(line[3:] for line in status.splitlines())}
+
+
+def machine_class() -> dict:
+    """Kind of machine, without the name of a host or a user."""
+    cpuinfo = Path("/proc/cpuinfo")
+    text = cpuinfo.read_text(encoding="utf-8", errors="replace") if cpuinfo.exists() else ""
+    return {
+        "system": platform.system(),
+        "architecture": platform.machine(),
+        "processor": text.partition("\nmodel name")[2].partition("\n")[0].strip("\t :"),
+        "cores": os.cpu_count(),
+        "memory_GiB": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
+    }
+
+
+def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
+    """Collect all that the results in ``base`` depend on; shipped is without overlays."""
+    versions = {"python": platform.python_version()}
+    versions |= {name: version(name) for name in PACKAGES}
+    written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    return {
+        "paper": PAPER,
+        "overlay": changes(shipped, config),
+        "config": dict(config),
+        "source_digest": digest_of(
+            {path.relative_to(root).as_posix(): file_digest(path) for path in source_files(root)}
+        ),
+        "lock_digest": file_digest(Path(root) / "requirements.lock"),
+        "git": git_state(root),
+        "versions": versions,
+        "machine": machine_class(),
+        "times": {"written": written, "seconds_of_jobs": job_seconds(base)},
+    }
+
+
+def checksums(files: Sequence[str], base: str | Path) -> str:
+    """Write the lines of sha256sum, with paths relative to a folder, in order of the path."""
+    names = sorted(str(Path(file).relative_to(base)) for file in files)
+    return "".join(f"{file_digest(Path(base) / name)}  {name}\n" for name in names)
+
+
+def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
+    """Write a CODECHECK manifest that lists every output with a comment."""
+    entries = []
+    for path in sorted([Path(file).relative_to(base) for file in files], key=str):
+        comment = COMMENTS.get(path.parts[0], comments.get(path.stem, "result"))
+        entries.append({"file": str(path), "comment": comment})
+    authors = [{"name": name} for name in PAPER["authors"]]
+    paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
+    form = "https://codecheck.org.uk/spec/config/1.0/"
+    content = {"version": form, "paper": paper, "manifest": entries}
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
+
+
+COMMENTS = {
+    "data": "simulated data, netCDF-4",
+    "measurements": "measured numbers, one row a run",
+    "uncertainties": "grid study of every measured number",
+    "manuscript": "the replication report",
+    "claims.html": "the same as a table to read",
+    "explorer.html": "a rupture with sliders, the exact solution beside the paper's formulas",
+    "claims.json": "what the paper says, what was measured, the verdict",
+}

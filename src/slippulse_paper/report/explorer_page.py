@@ -1,0 +1,67 @@
+"""results/explorer.html: exact rupture, formulas and nearby simulations, recomputed by sliders."""
+
+import json
+import math
+from collections.abc import Iterable
+from itertools import chain
+
+import matplotlib
+import numpy as np
+import pandas as pd
+from markupsafe import Markup
+
+from slippulse.model.prestress import Prestress, prestress_from
+from slippulse.model.recorded_law import law_of
+
+from .html import page
+
+# Numbers of a run that are shown where they were measured.
+MEASURED = ("front_speed_right", "transition_time", "transition_length", "pulse_slip")
+DIGITS = 5
+COLOURS = 32
+
+
+def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: str) -> str:
+    """The page, from the table of `studies.explorer_law`, measured tables and a colour map."""
+    shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, COLOURS))
+    largest = float(law["damping_ratio"].max())
+    runs = chain.from_iterable(simulated_runs(table, largest) for table in measured)
+    data = {"law": front_law(law), "largest_ratio": largest, "runs": [*runs]}
+    data["colours"] = np.rint(255.0 * shades[:, :3]).astype(int).tolist()
+    # A text that holds "<" could end the script that the data stand in.
+    text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
+    return page("explorer.html", data=Markup(text), largest_ratio=largest)
+
+
+def front_law(law: pd.DataFrame) -> dict:
+    """Logit of the pre-stress by release rule, damping ratio (rows) and ln(v - 1) (columns)."""
+    # The scripts of the page compute all else; this law needs the Wiener-Hopf factor.
+    ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
+    first, last = float(excesses[0]), float(excesses[-1])
+    scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)
+    out: dict = {"ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)}}
+    out["excess"] = {"first": first, "step": (last - first) / (len(excesses) - 1)}
+    for release, rows in law.groupby("release", sort=False):
+        grid = rows.pivot(index="damping_ratio", columns="excess_log", values="logit")
+        out[release] = grid.values.tolist()
+    return out
+
+
+def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
+    """tau_0, gamma, W, beta, b, release rule and `MEASURED` of runs with equal positive levels."""
+    names = ("left", "gamma", "width", "beta", "damping_ratio", "release")
+    kept = []
+    shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
+    for run in table[shown & (table["boundary"] == "displacement")].to_dict("records"):
+        if json.loads(run["steps_and_bumps"]).get("points"):
+            continue
+        plain = Prestress(run["left"], run["left"], run["width"])
+        if prestress_from(run) != plain or law_of(run)["law"] != "coulomb":
+            continue
+        if run.get("pulse_state", "steady") != "steady":
+            run["pulse_slip"] = math.nan
+        settings = [run[name] for name in names]
+        for number in (run.get(name, math.nan) for name in MEASURED):
+            settings.append(float(f"{number:.{DIGITS}g}") if math.isfinite(number) else None)
+        kept.append(settings)
+    return kept

@@ -1,0 +1,14 @@
+"""Write the animation of one scene."""
+
+from slippulse.data.point import point
+from slippulse.data.store import load_dataset
+from slippulse.plotting.style import house_style
+
+from ..figures.scene_animation import save_animation
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Files: data. Outputs: gif. Settings: title."""
+    data = point(load_dataset(files["data"]), 0)
+    with house_style():
+        save_animation(data, settings["title"], outputs["gif"])

@@ -1,0 +1,28 @@
+"""Write the numbers, the table, the figure and the page of one scene."""
+
+from slippulse.data.files import write_text
+from slippulse.data.point import point
+from slippulse.data.store import load_dataset
+from slippulse.data.tables import load_table, save_table
+from slippulse.plotting.style import house_style, save_figure
+
+from ..figures import scene_figure as scene
+from ..figures.shared.main_numbers import at_constant_levels, scene_numbers
+from ..report.scene_page import scene_page
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html. Settings: title, altered."""
+    title, note = settings["title"], settings["altered"]
+    data = point(load_dataset(files["data"]), 0)
+    row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
+    row = at_constant_levels(row)
+    numbers = scene_numbers(row, load_table(files["uncertainties"]))
+    save_table(numbers, outputs["numbers"])
+    table = scene.table(data, numbers, row, title)
+    save_table(table.assign(altered=note) if note else table, outputs["csv"])
+    with house_style():
+        save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
+    values = data.attrs | {"pulse_state": row["pulse_state"]}
+    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
+    write_text(page, outputs["html"])

@@ -1,0 +1,34 @@
+"""Solve the scenes of one simulation, or of one chunk of it, and write their data."""
+
+import sys
+from collections import Counter
+from pkgutil import resolve_name
+
+from slippulse.data.saving import save_dataset
+from slippulse.data.sweeps import labelled
+from slippulse.data.variables import described
+from slippulse.simulation.sweep import solve_sweep
+
+from ..configuration.expand import expand
+from ..configuration.runs import profile_labels
+
+# Module and function by scheme: an edit of the theory re-runs exact solutions alone.
+SOLVERS = {
+    "localised": "slippulse.solver.solution:solve_on_lattice",
+    "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
+    "continuum": "slippulse.simulation.continuum:solve_exactly",
+}
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Outputs: data. Settings: simulation, solver (of SOLVERS), sweep, threads, progress."""
+    solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
+    scenes, samples = expand(sweep)
+    how = settings["threads"], settings.get("progress")
+    data = solve_sweep(solve, scenes, samples, sweep["record"], *how)
+    data = labelled(data, profile_labels(sweep), sweep["record"])
+    flags = Counter(filter(None, data["run_flags"].values))
+    for kind in sorted(flags):
+        flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
+        sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
+    save_dataset(described(data), outputs["data"])

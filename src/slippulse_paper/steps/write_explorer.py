@@ -1,0 +1,21 @@
+"""Write the page on which a rupture is explored with sliders."""
+
+from slippulse.data.files import write_text
+from slippulse.data.tables import load_table
+from slippulse.plotting.style import VELOCITY_MAP
+
+from ..report.explorer_page import explorer_page
+
+SIMULATIONS = [
+    "scaling_displacement",
+    "damping_displacement",
+    "pulse_damping",
+    "steady_displacement",
+    "any_prestress",
+]
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Files: law, measured. Outputs: html."""
+    measured = [load_table(path) for path in files["measured"]]
+    write_text(explorer_page(load_table(files["law"]), measured, VELOCITY_MAP), outputs["html"])

@@ -1,0 +1,34 @@
+"""Write the page that leads to all results, with their provenance, checksums and manifest."""
+
+from pathlib import Path
+
+from slippulse.data.files import write_text
+
+from ..records.job_records import write_json
+from ..records.provenance import checksums, manifest, provenance
+from ..records.sources import PROJECT
+from ..report.index_page import index_page
+from ..report.texts import read_captions
+
+# Headings of figures, by how the names of these begin.
+HEADINGS = {
+    "fig": "The figures of the paper",
+    "study_": "Beyond the paper",
+    "sweep_": "User-defined sweeps",
+}
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Files: results and texts. Settings: config, shipped, figures, scenes (titles)."""
+    base = Path(outputs["html"]).parent
+    titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
+    write_text(checksums(files["results"], base), outputs["checksums"])
+    write_text(manifest(files["results"], base, titles), outputs["manifest"])
+    facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
+    write_json(facts, outputs["provenance"])
+    galleries = {}
+    for start, heading in HEADINGS.items():
+        names = [name for name in settings["figures"] if name.startswith(start)]
+        if names:
+            galleries[heading] = names
+    write_text(index_page(base, files, galleries, settings["scenes"]), outputs["html"])

@@ -1,0 +1,82 @@
+"""Write the replication report and its supplement, each as HTML and PDF."""
+
+import json
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import yaml
+
+from slippulse.data.files import write_text
+
+from ..claims.claim_texts import read_text
+from ..report.document import write_html, write_pdf
+from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
+from .inputs import given
+
+NEEDS = {
+    "measured": {
+        "scaling_displacement": ["transition"],
+        "space_time_displacement": ["front"],
+        "space_time_stress": ["transition"],
+    },
+    "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
+    "studies": ["arrest_path", "derivations", "extremes"],
+}
+HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
+HEAD += "from the run of the shipped one."
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Outputs: html and pdf, lists with a file for each document; verdicts."""
+    inputs = inputs_of(files, settings)
+    # The writers wait for processes of their own, and so overlap.
+    with ThreadPoolExecutor() as pool:
+        writings = []
+        for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
+            text = execute(inputs.manuscript / f"{document}.md", inputs)
+            for write, path in zip((write_html, write_pdf), paths, strict=True):
+                writings.append(pool.submit(write, text, inputs.manuscript, path))
+    for writing in writings:
+        writing.result()
+    verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
+    write_text(f"{HEAD}\n" + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
+
+
+def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
+    """Read all that the report is written from."""
+    return Inputs(
+        config=settings["config"],
+        shipped=read_text(files["shipped"]),
+        claims=json.loads(Path(files["claims"]).read_text(encoding="utf-8")),
+        findings=json.loads(Path(files["findings"]).read_text(encoding="utf-8")),
+        tables=given(files)[1],
+        figures=settings["figures"],
+        figures_folder=Path(files["figures"][0]).resolve().parent,
+        manuscript=Path(files["sources"][0]).resolve().parent,
+        citation=read_text(files["citation"]),
+    )
+
+
+def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
+    """Make the names of a document's cells for a notebook, which shows Markdown below the cell."""
+    if show is None:
+        from IPython.display import Markdown, display
+
+        def show(markdown: str) -> None:
+            display(Markdown(markdown))
+
+    here = Path.cwd()
+    project = next(path for path in (here, *here.parents) if (path / "config/config.yaml").exists())
+    results = project / "results"
+    folders = {"measured": "measurements", "predicted": "predictions"}
+    needed = NEEDS | {"predicted": NEEDS["measured"]}
+    figures = sorted((results / "figures").glob("*.pdf"))
+    files: dict[str, object] = {name: results / f"{name}.json" for name in ("claims", "findings")}
+    for kind, names in needed.items():
+        files[kind] = [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
+    files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
+    files |= {"figures": figures, "sources": [project / f"manuscript/{document}.md"]}
+    config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
+    settings = {"config": config, "figures": [figure.stem for figure in figures]}
+    return names_for(inputs_of(files, settings), show, document)

@@ -1,0 +1,10 @@
+"""Write the list of scenes."""
+
+from slippulse.data.files import write_text
+
+from ..report.html import page
+
+
+def run(files: dict, outputs: dict, settings: dict) -> None:
+    """Outputs: html. Settings: scenes (titles by name)."""
+    write_text(page("scenes.html", scenes=settings["scenes"]), outputs["html"])

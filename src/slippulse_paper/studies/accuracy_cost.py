@@ -1,0 +1,146 @@
+"""Error against cost: what each scheme, order, step and spacing buys, the presets among them.
+
+Cost is counted, not timed: the number of stencil passes over a block does not depend on the
+machine. The exact solution is sampled at the spacing of the textbook scheme.
+"""
+
+import math
+from functools import cache, partial
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from slippulse.measurement.front_paths import arrival, fit_front, path
+from slippulse.measurement.pulses import leading_pulse
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.model.stability import MARGIN, largest_step
+from slippulse.simulation.simulate import simulate
+from slippulse.theory.arrest import ArrestingCrack
+from slippulse.theory.exact_transition import exact_transition_displacement
+from slippulse.theory.front_speeds import front_speed_undamped
+from slippulse.theory.pulse import steady_pulse
+
+NEEDS = {"settings": ["measure.front_window", "presets"]}
+
+# Two pulses, one without damping and one with that of the paper's figures, become steady.
+EVEN, GAMMA = Prestress(0.55, 0.55), 0.65
+DAMPING_RATIOS, DURATION = (0.0, 0.1), 20.0
+# A crack turns into a pulse at Gamma = 0. The time at which its left front has covered a fraction
+# of its way is compared, in a run of three such times.
+UNEVEN = Prestress(-1.0, 0.0)
+FRACTION, CRACK_DURATION = 0.95, 3.0
+# The crack is larger than the pulses, and so is its spacing.
+CRACK_SPACING = 2.0
+SPACINGS = (0.08, 0.04, 0.02, 0.01, 0.005)
+ORDERS, STEPS = (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
+# The error of the textbook scheme is that of its step: one spacing is enough.
+TEXTBOOK_SPACING, TEXTBOOK_STEPS = 0.02, (0.5, 0.25, 0.125, 0.0625, 0.03125)
+# Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up
+# to its stability bound, the localised one, which does not depend on it, at every fourth step.
+LOCKING = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
+LOCKING_STEPS = np.linspace(0.1, 0.98, 67).tolist()
+
+PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time")
+# Errors of the scenes, relative to exact theory, the largest over the damping ratios.
+QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
+
+# These are the same for every setting.
+cached_transition = cache(exact_transition_displacement)
+cached_crack = cache(ArrestingCrack)
+cached_pulse = cache(steady_pulse)
+
+
+class Setting(NamedTuple):
+    """A scheme with its order, step (in units of dx) and spacing."""
+
+    scheme: str
+    order: int
+    step: float
+    dx: float
+
+    def run(self, profile: Prestress, duration: float, gamma: float, ratio: float) -> xr.Dataset:
+        """Simulate a scene, at a step that is cut where it would not be stable."""
+        # The textbook scheme and the exact solution have no order to choose.
+        order = max(self.order, 3)
+        step = min(self.step, MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2))
+        boundary = "displacement" if gamma > 0.0 else "stress"
+        scene = partial(Scene, boundary, profile, duration, self.dx, gamma, ratio * self.dx)
+        return simulate(scene(scheme=self.scheme, max_step=step, order=order))
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Parts trade (work and errors of each setting) and locking (front speed by the step)."""
+    presets, window = settings["presets"], settings["measure"]["front_window"]
+    names = {
+        Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
+        for name, preset in presets.items()
+    }
+    ladder = [Setting("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
+    for dx, order, step in product(SPACINGS, ORDERS, STEPS):
+        ladder.append(Setting("localised", order, step, dx))
+    ladder.append(Setting("continuum", 1, 1.0, TEXTBOOK_SPACING))
+    ladder += [setting for setting in names if setting not in ladder]
+    trade = pd.DataFrame(ladder).join(pd.DataFrame([errors(one, window) for one in ladder]))
+    trade = trade.assign(preset=[names.get(setting, "") for setting in ladder], part="trade")
+    return pd.concat([trade, locking(window)], ignore_index=True)
+
+
+def locking(window: float) -> pd.DataFrame:
+    """The front speed over the step, by both schemes."""
+    steps = [("fixed_step", step) for step in LOCKING_STEPS]
+    steps += [("localised", step) for step in LOCKING_STEPS[::4]]
+    rows = pd.DataFrame(steps, columns=["scheme", "step"])
+    scenes = [LOCKING(scheme=scheme, max_step=step) for scheme, step in steps]
+    rows["front_speed"] = [fit_front(simulate(scene), window)[0] for scene in scenes]
+    exact = front_speed_undamped(scenes[0].prestress.left)
+    return rows.assign(exact=exact, dx=scenes[0].dx, part="locking")
+
+
+def errors(setting: Setting, window: float) -> dict[str, float]:
+    """Work, and the largest relative error of each quantity over the pulses and the crack."""
+    runs = []
+    for ratio in DAMPING_RATIOS:
+        run = setting.run(EVEN, DURATION, GAMMA, ratio)
+        pulse = leading_pulse(run, window)
+        # At fixed beta/dx damping acts at the front alone in the continuum.
+        beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
+        steady = cached_pulse(EVEN.left, GAMMA, beta, damping_ratio=ratio)
+        names = ("speed", "peak_velocity", "width", "slip")
+        ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
+        ratios.append(run.attrs["first_stick_time"] / cached_transition(EVEN, GAMMA, ratio).time)
+        deviations = np.abs(np.array(ratios) - 1.0)
+        runs.append(costs(run) | dict(zip(PULSE_QUANTITIES, deviations, strict=True)))
+    # The crack is damped: otherwise the ringing decides where its left front stands.
+    ratio = max(DAMPING_RATIOS)
+    crack = cached_crack(UNEVEN, ratio)
+    time, distance = crack.transition(FRACTION).time, abs(crack.balance_position)
+    coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
+    run = coarser.run(UNEVEN, CRACK_DURATION * time, 0.0, ratio)
+    late = abs(arrival(run, FRACTION * distance, "left")[0] / time - 1.0)
+    reached = abs(path(run, "left")[1][-1] / distance - 1.0)
+    runs.append(costs(run) | {"share_time": late, "arrest_position": reached})
+    numbers: dict[str, float] = {}
+    for name in QUANTITIES:
+        numbers[name] = float(np.max([run[name] for run in runs if name in run]))
+    numbers["block_updates"] = sum(run["block_updates"] for run in runs)
+    return numbers | {"work": sum(run["work"] for run in runs)}
+
+
+def costs(run: xr.Dataset) -> dict[str, float]:
+    """Residual of the energy balance, block updates, and stencil passes over one block.
+
+    Each order is one pass; events have theirs. The textbook scheme passes once over the whole
+    lattice, the exact solution has none.
+    """
+    numbers = run.attrs
+    work = {
+        "localised": (numbers["block_updates"] + numbers["event_updates"]) * numbers["order"],
+        "fixed_step": numbers["steps"] * run.sizes["x"],
+        "continuum": math.nan,
+    }
+    out = {"energy": numbers["energy_residual"], "block_updates": numbers["block_updates"]}
+    return out | {"work": float(work[numbers["scheme"]])}

@@ -1,0 +1,88 @@
+"""Markdown by the pandoc of the lock: texts of pages as HTML, and texts of a user made harmless."""
+
+import re
+import subprocess
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+
+# The program that pypandoc_binary brings along; another one may be on the user's path.
+PANDOC = Path(str(getattr(find_spec("pypandoc"), "origin", ""))).with_name("files") / "pandoc"
+# Pandoc finds no defaults, templates, filters and styles of the user in this folder.
+DATA = Path(__file__).parent
+# A text of a page is Markdown whose HTML has neither attributes nor code that a text brings along.
+WITHOUT = """
+    raw_html raw_tex raw_attribute native_divs native_spans bracketed_spans fenced_divs
+    link_attributes header_attributes fenced_code_attributes inline_code_attributes smart
+    fancy_lists latex_macros inline_notes footnotes citations
+"""
+PAGE_TEXT = "-".join(["markdown", *WITHOUT.split()])
+LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
+IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
+# In a user's text, formulas and links to the web stay; in all else these signs are escaped.
+FORMULA = re.compile(r"(?<!\\)\$(?=\S)((?:[^$\\]|\\.)*?)(?<=\S)\$(?!\d)")
+KEPT = re.compile(rf"({FORMULA.pattern}|(?<!!)\[[\w ,.:;()-]+\]\(https?://[\w./?=&%:~-]+\))")
+SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
+
+
+def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
+    """Convert a text; ValueError has the message of pandoc if it refuses or warns."""
+    command = [str(PANDOC), f"--data-dir={DATA}", f"--from={source}", f"--to={to}"]
+    command += ["--fail-if-warnings", *options]
+    pipes: dict[str, Any] = {"input": text.encode(), "capture_output": True}
+    done = subprocess.run(command, check=False, env={"LC_ALL": "C.UTF-8"}, **pipes)
+    if done.returncode:
+        message = " ".join(done.stderr.decode(errors="replace").split())
+        raise ValueError(f"pandoc: {message}")
+    return done.stdout.decode()
+
+
+def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
+    """HTML with MathML of each text, one paragraph of Markdown with formulas; raw HTML is shown.
+
+    Links lead to the web only, and a picture is its alternative text.
+    """
+    texts = sorted({text for text in texts if text.strip()})
+    if not texts:
+        return {"": Markup()}
+    # One call of pandoc converts all texts.
+    joined = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
+    html = pandoc(joined, PAGE_TEXT, "html5", ["--sandbox", "--mathml", "--wrap=none"])
+    html = IMAGE.sub(lambda image: image[1] or "", LINK.sub(_web_link, html))
+    parts = [part.strip() for part in html.split("<hr />")]
+    paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
+    if not len(texts) == len(parts) == len(paragraphs):
+        raise ValueError("a text for a page is not one paragraph of Markdown")
+    return {"": Markup(), **dict(zip(texts, map(Markup, paragraphs), strict=True))}
+
+
+def _web_link(link: re.Match) -> str:
+    """Return a link without attributes, or its text alone unless it leads to the web."""
+    address, text = link.groups()
+    web = address.lower().startswith(("http://", "https://"))
+    return f'<a href="{address}">{text}</a>' if web else text
+
+
+def harmless(text: str) -> str:
+    """Return a user's text as Markdown in which formulas, emphasis and web links are all that acts.
+
+    Such a text may stand in a page, in the report and in a cell of a table.
+    """
+    kept = (found.span() for found in KEPT.finditer(text))
+    parts, end = [], 0
+    for start, stop in kept:
+        parts += [SIGNS.sub(r"\\\1", text[end:start]), text[start:stop]]
+        end = stop
+    escaped = "".join([*parts, SIGNS.sub(r"\\\1", text[end:])])
+    return " ".join(escaped.split())
+
+
+def is_readable(text: str) -> bool:
+    """Return whether pandoc reads all formulas of a user's text."""
+    try:
+        return "$" not in text or bool(markup_of([harmless(text)]))
+    except ValueError:
+        return False

@@ -1,0 +1,23 @@
+# Sweeps that are divided into chunks, for a cluster: the files of the chunks are joined.
+
+
+rule join:
+    input:
+        unpack(joined_inputs),
+    output:
+        joined="results/{joined}",
+    log:
+        "results/logs/join/{joined}.log",
+    priority: 2
+    resources:
+        runtime=lambda wildcards, attempt: attempt * 30,
+        # A million runs took 1.2 kB each; other sweeps may take twice as much.
+        mem_mb=lambda wildcards, attempt: attempt
+        * (1000 + settings_of(JOINED[wildcards.joined][1])["runs"] // 400),
+    params:
+        settings=joined_settings,
+        code=code_of("join"),
+    message:
+        "Joining the chunks: {output}"
+    run:
+        run_step("join", wildcards, input, output, params, threads, log)
