@@ -32,6 +32,8 @@ REMAINDER = 1e-8
 # rounding at first, and then, as long as they would send the front back, those that the panels do
 # not resolve.
 NEGLIGIBLE = (1e-13, 1e-12, 1e-11, 1e-10)
+# Entries at parameters that differ by less are equal.
+SAME_ENTRY = 1e-6
 # Parameters of a panel at which such entries may end, as fractions of the way to its left end.
 FRACTIONS = np.linspace(0.0, 1.0, 65)
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
@@ -284,11 +286,20 @@ class SlowFront:
                 if passed and np.min(source) < 0.0 and moves[last + 1] < moves[last]:
                     # What comes next does not move the front on.
                     return Entry(-1, 1.0)
-                return Entry(int(panel), float(parameters[last]), passed * max(gain, self.least))
+                if not passed:
+                    return self.with_equal_time(Entry(int(panel), float(s)))
+                return Entry(int(panel), float(parameters[last]), max(gain, self.least))
             panel, s = panel - 1, 1.0
         if panel >= 0:
             return self.entry_behind_slow_front()
         return Entry(-1, 1.0) if passed else None
+
+    def with_equal_time(self, entry: Entry) -> Entry:
+        """The entry where T - x is that of the front, if rounding alone parts them; or the entry."""
+        looked = self.entry_behind_slow_front()
+        if looked and looked.panel == entry.panel and abs(looked.s - entry.s) < SAME_ENTRY:
+            return looked
+        return entry
 
     @property
     def least(self) -> float:
