@@ -32,8 +32,6 @@ REMAINDER = 1e-8
 # rounding at first, and then, as long as they would send the front back, those that the panels do
 # not resolve.
 NEGLIGIBLE = (1e-13, 1e-12, 1e-11, 1e-10)
-# Entries at parameters that differ by less are equal.
-SAME_ENTRY = 1e-6
 # Parameters of a panel at which such entries may end, as fractions of the way to its left end.
 FRACTIONS = np.linspace(0.0, 1.0, 65)
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
@@ -50,6 +48,8 @@ AT_END, NEAR_END, MANY = 1e-9, 1e-6, 5
 # A chunk that was shortened to end at an event is searched a little beyond its end.
 BEYOND = 1.2
 MOST_CHUNKS = 60
+# A front is not followed on a curve of more panels.
+MOST_PANELS = 100_000
 MOST_NEWTON_STEPS = 60
 
 
@@ -210,13 +210,16 @@ class SlowFront:
         "unknown" where its characteristic comes from beyond the left end of the curve, and
         "unresolved" where no panel is short enough. A panel ends where the front stops.
         """
+        if len(self.curve.panels) > MOST_PANELS:
+            return Advance(None, "unresolved")
         for negligible in NEGLIGIBLE:
             entry = self.entry(progress.entered, negligible)
             if entry is None:
                 return Advance(None, "unknown")
             if entry.panel < 0:
                 return Advance(None, "stops")
-            if entry.passed > 0.0 and (rest := self.rest(entry)):
+            rest = self.rest(entry)
+            if rest is not None:
                 return Advance(rest, None, Progress(entered=self.position(entry)))
             advance = self.advance_from(entry, mark, progress.longest)
             if advance.stop != "stops":
@@ -275,31 +278,33 @@ class SlowFront:
             panel, s = (panel, s) if s + 1.0 >= REMAINDER else (panel - 1, 1.0)
         gain, passed = 0.0, False
         while panel >= 0 and not self.is_slow(panel):
-            parameters, source = s - (s + 1.0) * FRACTIONS, self.curve.source[panel]
-            weights = partial_weights(parameters)
-            moves = (weights[0] - weights) @ source / self.resistance
+            parameters = s - (s + 1.0) * FRACTIONS
+            moves = gain + self.moves(panel, parameters)
             # Only pre-stress that is not negative moves no front back.
-            most = NEGLIGIBLE[0] if np.min(source) < 0.0 else negligible
-            last = int(np.argmin(np.append(np.abs(gain + moves) <= most * self.size, False))) - 1
-            gain, passed = gain + float(moves[last]), passed or last > 0
+            negative = bool(np.min(self.curve.source[panel]) < 0.0)
+            most = self.size * (NEGLIGIBLE[0] if negative else negligible)
+            last = int(np.argmin(np.append(np.abs(moves) <= most, False))) - 1
+            gain, passed = float(moves[last]), passed or last > 0
             if last < FRACTIONS.size - 1:
-                if passed and np.min(source) < 0.0 and moves[last + 1] < moves[last]:
-                    # What comes next does not move the front on.
-                    return Entry(-1, 1.0)
-                if not passed:
-                    return self.with_equal_time(Entry(int(panel), float(s)))
-                return Entry(int(panel), float(parameters[last]), max(gain, self.least))
+                goes_on = not negative or moves[last + 1] >= moves[last]
+                return self.chosen(
+                    Entry(int(panel), float(parameters[last])), gain, passed, goes_on
+                )
             panel, s = panel - 1, 1.0
         if panel >= 0:
             return self.entry_behind_slow_front()
         return Entry(-1, 1.0) if passed else None
 
-    def with_equal_time(self, entry: Entry) -> Entry:
-        """The entry where T - x is that of the front, if rounding alone parts them; or the entry."""
-        looked = self.entry_behind_slow_front()
-        if looked and looked.panel == entry.panel and abs(looked.s - entry.s) < SAME_ENTRY:
-            return looked
-        return entry
+    def moves(self, panel: int, parameters: np.ndarray) -> np.ndarray:
+        """Motion of the front by the entries on a panel from its first parameter to each one."""
+        weights = partial_weights(parameters)
+        return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
+
+    def chosen(self, entry: Entry, gain: float, passed: bool, goes_on: bool) -> Entry:
+        """The entry with what was passed before it; below 0 where the front does not go on."""
+        if not passed:
+            return entry
+        return entry._replace(passed=max(gain, self.least)) if goes_on else Entry(-1, 1.0)
 
     @property
     def least(self) -> float:
@@ -320,7 +325,7 @@ class SlowFront:
         early = self.curve.evaluate("early", np.array([entry.panel]), np.array([entry.s]))[0]
         x_ends = self.x0, self.x0 + entry.passed
         time_ends = self.t0, float(early) + x_ends[1]
-        if time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
+        if entry.passed == 0.0 or time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
             return None
         x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
         source = np.full(COUNT, -0.5 * self.resistance * entry.passed)

@@ -19,8 +19,6 @@ UNKNOWN = {
 }
 OVERRUN = "a front comes to where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
-# A slow front of more panels is not followed.
-MOST_PANELS = 100_000
 # A front that takes longer than this over JUST_BEFORE the meeting point is slow.
 JUST_BEFORE = 1e-6
 
@@ -147,8 +145,6 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
-    if stop is None and len(stretch.panels) > MOST_PANELS:
-        stop = "unresolved"
     if stop in ("stops", *UNKNOWN):
         loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > SAME
         stretch.end_reason[side] = "loaded" if loaded else stop

@@ -251,13 +251,14 @@ class EdgedPart(Part):
         """Knots where a front stops, but no trailing edge that outruns the waves begins."""
         knots, told = self.knots, np.flatnonzero(self.knots.kind != BRIEF)
         undone = []
-        for end, nearest in ((0, told[:1]), (knots.x.size - 1, told[-1:])):
-            if knots.kind[end] == BRIEF and nearest.size:
-                change = np.abs(
-                    [knots.x[nearest] - knots.x[end], knots.stick[nearest] - knots.stick[end]]
-                )
-                if change[1] > change[0] * (1.0 + SAME):
-                    undone.append(end)
+        for end, nearest in ((0, told[:1]), (-1, told[-1:])):
+            # A front that goes on at the end has not stopped.
+            stopped = knots.kind[end] == BRIEF and self.curve.edge_times[end] < self.until
+            if stopped and nearest.size:
+                distance = abs((knots.x[nearest] - knots.x[end]).item())
+                delay = abs((knots.stick[nearest] - knots.stick[end]).item())
+                if delay > distance * (1.0 + SAME):
+                    undone.append(end % knots.x.size)
         return undone
 
     def first_stick(self) -> FirstStick | None:
