@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough
+from slippulse.model.si_stress_file import read_in_si
 from slippulse.model.stress_file import read_dimensionless
 
 from .problems import ConfigError
@@ -32,15 +34,21 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
             # An overlay that was read before has both.
             return profile
         try:
-            table = read_dimensionless(folder / profile["file"], None, None)
+            columns = _columns(folder / profile["file"], in_si="layer" in profile)
         except ValueError as error:
             raise ConfigError(f"{key}.file: {error}") from None
-        return {
-            **profile,
-            "points": [list(row) for row in zip(table.x, table.prestress, strict=True)],
-        }
+        return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
     return _changed(overlay, read)
+
+
+def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
+    """Positions and stresses of a file, in m and Pa for a scene with a layer."""
+    if in_si:
+        x, stress = read_in_si(path)
+        return x.tolist(), stress.tolist()
+    table = read_dimensionless(path, None, None)
+    return table.x, table.prestress
 
 
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
@@ -64,7 +72,7 @@ def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
 
 def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The profiles as runs have them: one for each seed, and points without their file."""
-    return [one for profile in profiles for one in _of_each_seed(profile)]
+    return [*chain.from_iterable(map(_of_each_seed, profiles))]
 
 
 def _of_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -88,9 +96,9 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 @lru_cache(maxsize=256)
 def _table(text: str) -> Prestress:
     profile = json.loads(text)
-    columns = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
+    x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
     rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
-    return Prestress.through(*columns, **rest)
+    return Prestress.through(x, tau, **rest)
 
 
 def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
