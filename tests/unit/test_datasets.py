@@ -225,7 +225,7 @@ def test_beyond_what_is_known_no_number_of_a_run_is_given():
         assert np.isnan(numbers[name]), name
     assert numbers["regime"] == "undecided"
     # What came before, and fronts that outrun the waves, is known.
-    for name in ("first_stick_time", "transition_length", "front_speed_right", "pulse_front"):
+    for name in ("first_stick_time", "front_speed_left", "front_speed_right", "pulse_front"):
         assert numbers[name] == pytest.approx(expected[name], rel=0.01), name
     rupture = sp.theory.Rupture(profile, 0.65, 0.1, duration=9.0)
     assert float(rupture.stick_time(2.0)) == pytest.approx(4.2018, abs=1e-4)
