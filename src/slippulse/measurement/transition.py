@@ -5,7 +5,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .front_paths import arrival, path, position_at
+from .front_paths import arrival, known_until, path, position_at
 
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the
 # lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).
@@ -14,9 +14,7 @@ STALL = 0.03
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
     """First stick, and the distance between both fronts then."""
-    time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
-    length = between_fronts(run, time)
-    out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
+    out = first_stick(run)
     # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
     same = run.attrs["left"] == run.attrs["right"]
     background = run.attrs["left"] if same else np.nan
@@ -24,6 +22,13 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
     return out
+
+
+def first_stick(run: AnyRun) -> dict[str, float]:
+    """Time and position of the first stick, and the distance between both fronts then."""
+    time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
+    length = between_fronts(run, time)
+    return {"transition_time": time, "transition_length": length, "first_stick_position": position}
 
 
 def between_fronts(run: AnyRun, time: float) -> float:
@@ -56,7 +61,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
-    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (np.nan, np.nan)
+    known = times.size and np.isinf(known_until(run, "left"))
+    arrest, end = (float(np.max(times)), float(distances[-1])) if known else (np.nan, np.nan)
     waited = longest_wait / time
     state, right = "not reached", np.nan
     if not np.isnan(time):
