@@ -14,7 +14,7 @@ import slippulse as sp
 from slippulse.measurement.promise import judged
 from slippulse.measurement.table import PARAMETERS
 from slippulse.measurement.uncertainty import grid_tables
-from slippulse.model.stability import chosen_step
+from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row
 from slippulse.prediction.measured_run import SETTINGS
 
@@ -106,7 +106,7 @@ def judge(number, accuracy, most_steps):
         return result
     rows = []
     for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
-        step = min(1.0, chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2))
+        step = min(1.0, choose_step("localised", 8, ratio, layer["gamma"] * spacing**2))
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
     study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)

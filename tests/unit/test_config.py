@@ -8,7 +8,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.cost import bound_of
+from slippulse.model.cost import bound_cost
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.promised_spacings import promised
 from slippulse_paper.configuration.resolve import accuracy_of, resolve
@@ -71,7 +71,7 @@ EXTREMES.append(AGAIN | {"order": 8})
 def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(change):
     scene = sp.Scene(**PLAIN | change)
     scene = replace(scene, max_step=min(1.0, 0.9 * scene.largest_stable_step))
-    bound, run = bound_of(scene), sp.simulate(scene)
+    bound, run = bound_cost(scene), sp.simulate(scene)
     assert run.attrs["block_updates"] < tol.BOUND_FACTOR * bound.block_updates
     assert run.nbytes < bound.bytes
     assert scene.dx != 0.76 or run.attrs["re_releases"] > 10_000

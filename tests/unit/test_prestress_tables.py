@@ -14,7 +14,7 @@ import slippulse as sp
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.model.balance import integral
-from slippulse.model.cost import bound_of
+from slippulse.model.cost import bound_cost
 from slippulse.prediction.comparison import measured_table
 
 X = [-9.0, -4.0, -4.0, -1.5, 0.5, 3.0, 3.0, 8.0]
@@ -211,10 +211,10 @@ def test_theory_of_levels_is_for_fronts_that_have_left_the_table(config):
 def test_the_bound_of_a_table_holds_and_is_not_that_of_its_highest_value():
     table = sp.Prestress.through([-1.0, 0.0, 1.0, 5.0, 5.0], [0.3, 1.0, 0.3, 0.9, 0.3])
     scene = sp.Scene("displacement", table, duration=20.0, dx=0.1, gamma=0.65, beta=0.02)
-    bound, run = bound_of(scene), sp.simulate(scene)
+    bound, run = bound_cost(scene), sp.simulate(scene)
     assert run.attrs["block_updates"] < bound.block_updates
     high = sp.Scene("displacement", sp.Prestress(0.9, 0.3), 20.0, 0.1, gamma=0.65, beta=0.02)
-    assert bound.block_updates < 0.5 * bound_of(high).block_updates
+    assert bound.block_updates < 0.5 * bound_cost(high).block_updates
 
 
 UNRESOLVED = {

@@ -11,7 +11,7 @@ import slippulse as sp
 from slippulse import theory
 from slippulse.measurement.promise import covered
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
-from slippulse.model.stability import chosen_step
+from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row, pulse_state
 from slippulse.prediction.measured_run import SETTINGS
 
@@ -65,7 +65,7 @@ def test_an_undone_first_stick_is_flagged():
 def test_strong_damping_has_a_step_that_its_front_allows():
     """At 0.9 of the stability bound the fronts were 0.8 to 1.4 per cent slow at order 4."""
     for ratio, order in product((2.0, 10.0), (4, 8)):
-        step = chosen_step("localised", order, ratio, 0.0)
+        step = choose_step("localised", order, ratio, 0.0)
         for factor, flags in ((1.0, ""), (1.3, "long_step")):
             how = {"beta": 0.05 * ratio, "order": order, "max_step": factor * step}
             scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 2.0, 0.05, **how)

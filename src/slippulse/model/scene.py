@@ -197,7 +197,7 @@ class Scene:
     def ratios(self) -> tuple[float, float, float]:
         """The numbers that a stable step follows from, for `slippulse.model.stability`."""
         traits = self.friction.traits
-        return self.damping_ratio, self.gamma * self.dx**2, traits.steepest * self.dx
+        return self.damping_ratio, self.gamma * self.dx**2, traits.max_rate_slope * self.dx
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file; see `from_attributes`."""

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 from .checks import short_repr
-from .prestress import MOST_POINTS
+from .prestress import MAX_TABLE_POINTS
 
 # Names of the columns that are looked for, in any case, if none is given.
 POSITIONS = ("x", "position", "distance")
@@ -62,7 +62,7 @@ def read_stress_file(
             content = file.read(LARGEST_FILE + 1)
         if len(content) > LARGEST_FILE:
             raise StressFileError(
-                f"more than {LARGEST_FILE} bytes; allowed: at most {MOST_POINTS} rows"
+                f"more than {LARGEST_FILE} bytes; allowed: at most {MAX_TABLE_POINTS} rows"
             )
         netcdf = content.startswith(NETCDF_BEGINNINGS) or path.suffix in NETCDF_SUFFIXES
         read = _read_netcdf if netcdf else _read_csv
@@ -118,9 +118,9 @@ def _csv_rows(content: bytes) -> list[Row]:
     if not numbered:
         raise StressFileError("empty; allowed: a row of names, and rows of numbers below")
     # The names and the units take a row each.
-    if len(numbered) > MOST_POINTS + 2:
-        number = numbered[MOST_POINTS + 2][0]
-        raise StressFileError(f"row {number}: one too many; allowed: at most {MOST_POINTS} rows")
+    if len(numbered) > MAX_TABLE_POINTS + 2:
+        number = numbered[MAX_TABLE_POINTS + 2][0]
+        raise StressFileError(f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows")
     delimiter = next((sign for sign in DELIMITERS if sign in numbered[0][1]), None)
     return [Row(number, _cells(line, delimiter)) for number, line in numbered]
 
@@ -216,8 +216,8 @@ def _netcdf_numbers(data: "xr.Dataset", name: str) -> list[float]:
     values = data[name].values
     if values.dtype.kind not in "iuf":
         raise StressFileError(f"{name}: not numbers; allowed: numbers")
-    if values.size > MOST_POINTS:
-        raise StressFileError(f"{values.size} values of {name}; allowed: at most {MOST_POINTS}")
+    if values.size > MAX_TABLE_POINTS:
+        raise StressFileError(f"{values.size} values of {name}; allowed: at most {MAX_TABLE_POINTS}")
     numbers = values.astype(float).tolist()
     for row, number in enumerate(numbers, start=1):
         if not math.isfinite(number):

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from pydantic_core import PydanticCustomError
 
 from slippulse.model.checks import short_repr
-from slippulse.model.friction import NAMES, friction_from
+from slippulse.model.friction import LAW_NAMES, friction_from
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough
@@ -78,7 +78,7 @@ Boundary = Literal["displacement", "stress"]
 Switch = Annotated[bool, Field(strict=False)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
-LAW = f"a mapping with law ({', '.join(NAMES)}) and its parameters"
+LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.model.stability import chosen_step
+from slippulse.model.stability import choose_step
 from slippulse.prediction.common import or_nan
 from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.arrest import ArrestingCrack
@@ -93,7 +93,7 @@ class Case:
         if held and self.quantity == "T_trans":
             # The lattice is late by some of its blocks.
             duration += 4.0 * self.dx
-        step = min(0.5, chosen_step("localised", 4, self.ratio, self.gamma * self.dx**2))
+        step = min(0.5, choose_step("localised", 4, self.ratio, self.gamma * self.dx**2))
         boundary = "displacement" if held else "stress"
         other = {"max_step": step} | self.other
         return Scene(
