@@ -2,6 +2,7 @@
 from . import theory as theory
 from .data.point import point as point
 from .model.friction import friction as friction
+from .model.layer_units import Layer as Layer
 from .model.prestress import Prestress as Prestress
 from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples

@@ -72,6 +72,8 @@ except ValueError as error:
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
+# Parameters of the layers of scenes in SI units.
+LAYERS = {name: scene.layer_parameters() for name, scene in CONFIG.scenes.items()}
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 # Inputs of each figure and study, as its module says: names by kind of file, and keys.

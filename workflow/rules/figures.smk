@@ -73,6 +73,7 @@ rule draw_scene:
         settings=lambda wildcards: {
             "title": TITLES[wildcards.scene],
             "altered": note_of({"data": [wildcards.scene]}),
+            "layer": LAYERS[wildcards.scene],
         },
         code=code_of("draw_scene", texts=templates("scene.html")),
     message:
@@ -89,7 +90,10 @@ rule animate_scene:
     log:
         "results/logs/animate_scene/{scene}.log",
     params:
-        settings=lambda wildcards: {"title": TITLES[wildcards.scene]},
+        settings=lambda wildcards: {
+            "title": TITLES[wildcards.scene],
+            "layer": LAYERS[wildcards.scene],
+        },
         code=code_of("animate_scene"),
     message:
         "Animating scene {wildcards.scene}"

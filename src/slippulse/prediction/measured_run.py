@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..model.checks import check_that
+from ..model.layer_units import layer_of
 from ..model.scene import check_run_attributes
 from .comparison import measured_row
 
@@ -29,12 +30,14 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     ----------
     run : xarray.Dataset
         A run of a lattice or of the exact solution, which `simulate` returned or `point` took out
-        of a sweep. With `Samples` at two positions or more its regime is classified as well.
+        of a sweep, or which `Layer.to_si` converted. With `Samples` at two positions or more its
+        regime is classified as well.
 
     Returns
     -------
     dict of str to float or str
-        Numbers by the names in docs/columns.md, in units of H and of H over the wave speed, among
+        Numbers by the names in docs/columns.md, in units of H and of H over the wave speed, or in
+        SI units if the run is (then without ``trailing_edge_*``, whose names have times), among
         them ``transition_time`` and ``transition_length`` (T_trans and L_trans; NaN where the paper
         defines none, or before they are reached), ``front_speed_left`` and ``front_speed_right``,
         ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the leading pulse on the
@@ -65,11 +68,19 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
     check_that(known, "run", run, "a Dataset that simulate returned")
     allowed = "one run; point(sweep, index) takes it out of a sweep"
     check_that("point" not in run.dims, "run", run, allowed)
+    layer = layer_of(run.attrs)
+    if layer is not None:
+        return layer.numbers_to_si(_numbers(layer.from_si(run), {"trailing_times": []}))
+    return _numbers(run, {})
+
+
+def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
+    """Return the measured numbers of a run in the units of the model."""
     check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_whole(run), "run", run, allowed)
     unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
-    return unknown | measured_row(run, SETTINGS)
+    return unknown | measured_row(run, SETTINGS | settings)
 
 
 def _whole(run: xr.Dataset) -> bool:
