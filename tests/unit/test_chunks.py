@@ -5,14 +5,14 @@ from itertools import chain
 import numpy as np
 import pytest
 
-from slippulse.data.files import CONFIGURATION as VARIABLE
+from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.data.files import UnreadableFile
 from slippulse_paper.configuration.chunks import runs_of
 from slippulse_paper.configuration.resolve import resolve
 from slippulse_paper.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
-CONFIGURATION = "0123456789abcdef"
+DIGEST = "0123456789abcdef"
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either
 # kind alone too. A level of 0, so that integers in one chunk are fractions in the next.
@@ -62,7 +62,7 @@ def made(shipped, tmp_path_factory):
             settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
             settings["solver"] = simulate.SOLVERS[blocks[1.0]["scheme"]]
             with pytest.MonkeyPatch.context() as patch:
-                patch.setenv(VARIABLE, CONFIGURATION)
+                patch.setenv(CONFIGURATION_VARIABLE, DIGEST)
                 simulate.run({}, outputs, settings | {"sweep": blocks.pop(1.0)})
             measure.run(outputs, outputs, settings)
             study_grid.run({"finest": files[1]}, outputs, settings | {"sweeps": blocks})
@@ -81,7 +81,7 @@ def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks,
     sweep = made(name)
     files_of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
     joined = [tmp_path / file.name for file in sweep]
-    monkeypatch.setenv(VARIABLE, CONFIGURATION)
+    monkeypatch.setenv(CONFIGURATION_VARIABLE, DIGEST)
     for kind, *files, path in zip(KINDS, *files_of_chunks, joined, strict=True):
         settings = {"kind": kind, "record": SWEEPS[name]["record"]}
         join.run({"chunks": files, "finest": [joined[1]]}, {"joined": path}, settings)

@@ -1,4 +1,8 @@
-"""The runs of a sweep, read from its Dataset."""
+"""Split the Dataset of a sweep into its runs.
+
+In the Dataset the blocks of all runs follow one another along the dimension "block". The variable
+``row_size`` has the number of blocks of each run.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -13,14 +17,17 @@ DIMENSIONS = {name: (name,) for name in AXES} | {"sample_slip": AXES, "sample_ve
 
 
 class Recorded(dict[str, np.ndarray]):
-    """The arrays of a run by name, and its numbers; made in less time than a Dataset."""
+    """The arrays of a run by name, and its single numbers as ``attrs``.
+
+    It can be used like a Dataset, and is much faster to build.
+    """
 
     def __init__(self, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:
         super().__init__(arrays)
         self.attrs = attrs
 
     def dataset(self) -> xr.Dataset:
-        """Return the run as a Dataset over x, with samples over time and position."""
+        """Return the run as a Dataset: fields as functions of x, samples of time and position."""
         variables = {name: (DIMENSIONS.get(name, "x"), values) for name, values in self.items()}
         return xr.Dataset(variables, attrs=self.attrs)
 
@@ -29,24 +36,29 @@ AnyRun = Recorded | xr.Dataset
 
 
 def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
-    """Yield the runs of a sweep; or ValueError."""
-    numbers, blocks = _over(sweep, "point"), _over(sweep, "block")
+    """Yield the runs of a sweep, or raise ValueError if its numbers of blocks do not fit."""
+    run_numbers = _arrays_along(sweep, "point")
+    block_arrays = _arrays_along(sweep, "block")
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
-    size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    fitting = np.all(size >= 0) and np.sum(size) == blocks.get("x", size[:0]).size
+    sizes = run_numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    number_of_blocks = block_arrays.get("x", sizes[:0]).size
+    is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
     allowed = "numbers of blocks whose sum is the length of x"
-    check_that(bool(fitting), "row_size", size.tolist(), allowed)
-    ends = np.cumsum(size)
+    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
+    ends = np.cumsum(sizes)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
-    for index in range(size.size):
-        rows = slice(ends[index] - size[index], ends[index])
-        arrays = {name: values[rows] for name, values in blocks.items()}
+    for index in range(sizes.size):
+        blocks = slice(ends[index] - sizes[index], ends[index])
+        arrays = {name: values[blocks] for name, values in block_arrays.items()}
         arrays |= {name: values[index] for name, values in samples.items()}
-        attrs = {name: values[index].item() for name, values in numbers.items()}
+        attrs = {name: values[index].item() for name, values in run_numbers.items()}
         yield Recorded(arrays, attrs | versions)
 
 
-def _over(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
-    """Arrays of the variables over one dimension alone."""
-    variables = sweep.variables.items()
-    return {str(name): one.values for name, one in variables if one.dims == (dimension,)}
+def _arrays_along(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
+    """Return the variables that have only this dimension, as arrays by name."""
+    arrays = {}
+    for name, variable in sweep.variables.items():
+        if variable.dims == (dimension,):
+            arrays[str(name)] = variable.values
+    return arrays
