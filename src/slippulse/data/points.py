@@ -37,22 +37,49 @@ AnyRun = Recorded | xr.Dataset
 
 def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     """Yield the runs of a sweep, or raise ValueError if its numbers of blocks do not fit."""
+    sweep = over_points(sweep)
     run_numbers = _arrays_along(sweep, "point")
     block_arrays = _arrays_along(sweep, "block")
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
     sizes = run_numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    starts = run_numbers.pop("row_start", None)
+    run_numbers.pop("point", None)
     number_of_blocks = block_arrays.get("x", sizes[:0]).size
-    is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+    if starts is None:
+        starts = np.cumsum(sizes) - sizes
+        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+    else:
+        # The runs may be a selection, whose blocks are only some of all blocks.
+        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
     allowed = "numbers of blocks whose sum is the length of x"
     check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
-    ends = np.cumsum(sizes)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(sizes.size):
-        blocks = slice(ends[index] - sizes[index], ends[index])
+        blocks = slice(starts[index], starts[index] + sizes[index])
         arrays = {name: values[blocks] for name, values in block_arrays.items()}
         arrays |= {name: values[index] for name, values in samples.items()}
-        attrs = {name: values[index].item() for name, values in run_numbers.items()}
+        # A file may have its texts as Python objects, which have no method `item`.
+        attrs = {name: np.asarray(values[index]).item() for name, values in run_numbers.items()}
         yield Recorded(arrays, attrs | versions)
+
+
+def over_points(sweep: xr.Dataset) -> xr.Dataset:
+    """Convert a grid of runs, or a single selected run, to a sweep along the dimension "point"."""
+    names = [name for name in ("row_start", "run_flags") if name in sweep.variables]
+    axes = sweep[names[0]].dims if names else ("point",)
+    if axes == ("point",):
+        return sweep
+    sweep = sweep.stack(point=axes).reset_index("point") if axes else sweep
+    variables, size = {}, sweep.sizes.get("point", 1)
+    for name, variable in sweep.variables.items():
+        if "point" in variable.dims:
+            variables[name] = variable.transpose("point", ...)
+        elif "block" in variable.dims:
+            variables[name] = variable
+        else:
+            # The variable has one value, which holds for every selected run.
+            variables[name] = variable.set_dims({"point": size} | variable.sizes)
+    return xr.Dataset(variables, attrs=sweep.attrs)
 
 
 def _arrays_along(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
