@@ -5,8 +5,7 @@ from itertools import chain
 import numpy as np
 import pytest
 
-from slippulse.data.files import CONFIGURATION_VARIABLE
-from slippulse.data.files import UnreadableFile
+from slippulse.data.files import CONFIGURATION_VARIABLE, UnreadableFile
 from slippulse_paper.configuration.chunks import runs_of
 from slippulse_paper.configuration.resolve import resolve
 from slippulse_paper.steps import join, measure, simulate, study_grid

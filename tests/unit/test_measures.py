@@ -8,9 +8,9 @@ import xarray as xr
 import slippulse as sp
 from slippulse.measurement.front_paths import arrival
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
-from slippulse.measurement.regime import REGIMES, classify
+from slippulse.measurement.regime import REGIMES, classify_regime
 from slippulse.measurement.table import far_field, half_width, lattice_noise, sliding_at_once
-from slippulse.measurement.transition import STALL, transition_stress
+from slippulse.measurement.transition import STALLED_WAIT_FRACTION, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.prediction.comparison import measured_table, pulse_state
@@ -87,14 +87,18 @@ CASES = [
 
 @pytest.mark.parametrize(("expected", "run", "numbers"), CASES)
 def test_every_regime_is_reached_and_each_threshold_decides(expected, run, numbers):
-    out = classify(made_up(**run), STILL, TOLERANCE)
+    out = classify_regime(made_up(**run), STILL, TOLERANCE)
     assert out["regime"] == expected
     assert {name: out[name] for name in numbers} == pytest.approx(numbers, abs=1e-3, nan_ok=True)
 
 
 def test_thresholds_are_arguments():
     thresholds, run = ((0.3, 0.05), (0.3, 0.2), (0.1, 0.05)), made_up(centre=0.2, before=0.9)
-    assert [classify(run, *pair)["regime"] for pair in thresholds] == [GROWING, STEADY, CRACK]
+    assert [classify_regime(run, *pair)["regime"] for pair in thresholds] == [
+        GROWING,
+        STEADY,
+        CRACK,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -121,7 +125,7 @@ def test_simulated_ruptures(expected, gamma, levels, later):
     reach = 1.5 * duration + 10.0
     run = simulate(scene, Samples(np.linspace(0.0, duration, 10), np.linspace(-reach, reach, 801)))
     assert run.attrs["run_flags"] == ""
-    assert classify(run, STILL, TOLERANCE)["regime"] == expected
+    assert classify_regime(run, STILL, TOLERANCE)["regime"] == expected
 
 
 def fields(velocity: np.ndarray) -> xr.Dataset:
@@ -207,7 +211,11 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
     numbers = transition_stress(run, 0.95)
     assert numbers["transition_state"] == state
     late = numbers["transition_time"] / exact - 1.0
-    allowed = {"resolved": abs(late) < 1.5 * STALL, "stalled": late > STALL, "not reached": True}
+    allowed = {
+        "resolved": abs(late) < 1.5 * STALLED_WAIT_FRACTION,
+        "stalled": late > STALLED_WAIT_FRACTION,
+        "not reached": True,
+    }
     assert allowed[state]
 
 

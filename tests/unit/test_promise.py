@@ -7,7 +7,12 @@ import pandas as pd
 import pytest
 
 import slippulse as sp
-from slippulse.measurement.promise import COVERED, covered, judged, summary
+from slippulse.measurement.promise import (
+    REQUIRED_FAST_SIDES,
+    covered_numbers,
+    judge_promises,
+    summarise_promises,
+)
 from slippulse.measurement.table import PARAMETERS
 from slippulse.measurement.uncertainty import grid_study, grid_tables
 from slippulse.prediction.comparison import measured_table
@@ -65,9 +70,9 @@ COVERS = [
 
 @pytest.mark.parametrize(("run", "changed", "those", "others"), COVERS)
 def test_what_is_covered(run, changed, those, others):
-    names = covered(run | changed, SHARE)
+    names = covered_numbers(run | changed, SHARE)
     assert names.issuperset(those) and names.isdisjoint(others)
-    assert "transition_time" not in covered(CRACK, 0.99)
+    assert "transition_time" not in covered_numbers(CRACK, 0.99)
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +97,7 @@ def study(tables) -> pd.DataFrame:
 
 def test_every_measured_number_is_covered_or_has_a_reason(study):
     reasons = tuple(np.hstack([*NOT_COVERED]))
-    for boundary, promised in COVERED.items():
+    for boundary, promised in REQUIRED_FAST_SIDES.items():
         rows = study[study["boundary"] == boundary]
         measured = set(rows.loc[rows["value"].notna(), "quantity"])
         assert set(promised) <= measured
@@ -100,32 +105,38 @@ def test_every_measured_number_is_covered_or_has_a_reason(study):
 
 
 def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study):
-    generous, strict = (judged(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9))
+    generous, strict = (
+        judge_promises(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9)
+    )
     assert set(generous["kept"]) == {"true", ""} and set(strict["kept"]) == {"false", ""}
     pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
     assert (generous["promised"].notna() == (generous["kept"] != "")).all()
     pd.testing.assert_frame_equal(generous[study.columns], study)
-    assert summary(generous, 10.0) == "accuracy 10 kept by 2 of 2 runs"
-    assert summary(strict, 1e-9).startswith("accuracy 1e-09 kept by 0 of 2 runs; missed by 0 (")
+    assert summarise_promises(generous, 10.0) == "accuracy 10 kept by 2 of 2 runs"
+    assert summarise_promises(strict, 1e-9).startswith(
+        "accuracy 1e-09 kept by 0 of 2 runs; missed by 0 ("
+    )
     relative = (study["uncertainty"] / study["value"].abs())[generous["kept"] != ""]
     middle = float(relative.median())
-    between = judged(study, tables[0], middle, SHARE)["kept"][relative.index]
+    between = judge_promises(study, tables[0], middle, SHARE)["kept"][relative.index]
     assert list(between == "true") == list(relative <= middle)
     # A user-defined spacing promises nothing.
-    unknown = judged(study, tables[0], math.nan, SHARE)
+    unknown = judge_promises(study, tables[0], math.nan, SHARE)
     assert set(unknown["kept"]) == {""} and unknown["promised"].isna().all()
-    assert summary(unknown, math.nan) == "its spacing is user-defined and promises nothing"
+    assert (
+        summarise_promises(unknown, math.nan) == "its spacing is user-defined and promises nothing"
+    )
     coarse = tables[2].assign(front_speed_right=math.nan)
     # An unknown uncertainty has not kept its promise.
     study = grid_tables((*tables[:2], coarse), (2.0, 4.0), PARAMETERS)
-    study = judged(study, tables[0], 10.0, SHARE)
+    study = judge_promises(study, tables[0], 10.0, SHARE)
     row = study[(study["quantity"] == "front_speed_right") & (study["point"] == 0)]
     assert list(row["kept"]) == ["false"]
-    assert "missed by 0 (front_speed_right inf)" in summary(study, 10.0)
+    assert "missed by 0 (front_speed_right inf)" in summarise_promises(study, 10.0)
 
 
 def test_the_numbers_and_the_page_of_a_scene_carry_the_verdict(tables, study, tmp_path):
-    parts = (study, judged(study, tables[0], 10.0, SHARE))
+    parts = (study, judge_promises(study, tables[0], 10.0, SHARE))
     first = tables[0].iloc[0]
     plain, promised = (scene_numbers(first, part[part["point"] == 0]) for part in parts)
     assert set(promised.columns) - set(plain.columns) == {"promised", "kept"}

@@ -9,7 +9,7 @@ import xarray as xr
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measurement.promise import covered
+from slippulse.measurement.promise import covered_numbers
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row, pulse_state
@@ -48,7 +48,7 @@ def test_a_promise_looks_at_the_prestress_that_fronts_cross():
         profile = sp.Prestress(0.549, 0.549, 1.043, 1.0172, (), barriers)
         scene = sp.Scene("displacement", profile, 12.9, 0.05, 0.515, 0.005, max_step=0.5)
         row = measured_row(sp.simulate(scene), SETTINGS)
-        assert ("transition_length" in covered(row, 0.95)) == promised
+        assert ("transition_length" in covered_numbers(row, 0.95)) == promised
 
 
 def test_an_undone_first_stick_is_flagged():

@@ -132,7 +132,9 @@ def _csv_rows(content: bytes) -> list[Row]:
     # Names and units are two rows in addition to the rows of numbers.
     if len(numbered) > MAX_TABLE_POINTS + 2:
         number = numbered[MAX_TABLE_POINTS + 2][0]
-        raise StressFileError(f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows")
+        raise StressFileError(
+            f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
+        )
     first_line = numbered[0][1]
     delimiter = next((sign for sign in DELIMITERS if sign in first_line), None)
     return [Row(number, _cells(line, delimiter)) for number, line in numbered]
@@ -237,7 +239,9 @@ def _netcdf_numbers(data: "xr.Dataset", name: str) -> list[float]:
     if values.dtype.kind not in "iuf":
         raise StressFileError(f"{name}: not numbers; allowed: numbers")
     if values.size > MAX_TABLE_POINTS:
-        raise StressFileError(f"{values.size} values of {name}; allowed: at most {MAX_TABLE_POINTS}")
+        raise StressFileError(
+            f"{values.size} values of {name}; allowed: at most {MAX_TABLE_POINTS}"
+        )
     numbers = values.astype(float).tolist()
     for row, number in enumerate(numbers, start=1):
         if not math.isfinite(number):

@@ -31,5 +31,7 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst = int(np.argmax(losses))
         key = f"prestress.points {tau[worst]:g} between blocks at x"
-        allowed = f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
+        allowed = (
+            f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
+        )
         check_that(False, key, float(x[worst]), allowed)

@@ -6,7 +6,7 @@ Kernels are compiled anew for it: where ``bend`` is None, its functions are empt
 """
 
 from ..model.friction import LAWS
-from ..model.friction_laws.law import LawKink, Friction
+from ..model.friction_laws.law import Friction, LawKink
 from .jit import inner
 from .stencils import blocks
 

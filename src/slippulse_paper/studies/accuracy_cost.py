@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from slippulse.measurement.front_paths import arrival, fit_front, path
+from slippulse.measurement.front_paths import arrival, fit_front, front_path
 from slippulse.measurement.pulses import leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
@@ -121,7 +121,7 @@ def errors(setting: Setting, window: float) -> dict[str, float]:
     coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
     run = coarser.run(UNEVEN, CRACK_DURATION * time, 0.0, ratio)
     late = abs(arrival(run, FRACTION * distance, "left")[0] / time - 1.0)
-    reached = abs(path(run, "left")[1][-1] / distance - 1.0)
+    reached = abs(front_path(run, "left")[1][-1] / distance - 1.0)
     runs.append(costs(run) | {"share_time": late, "arrest_position": reached})
     numbers: dict[str, float] = {}
     for name in QUANTITIES:
