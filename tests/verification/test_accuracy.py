@@ -1,4 +1,4 @@
-"""A promised accuracy against exact theory: every number that is covered_numbers, at both boundaries."""
+"""A promised accuracy against exact theory: every number that is covered, at both boundaries."""
 
 import math
 from itertools import starmap

@@ -16,8 +16,8 @@ from ..model.prestress import prestress_from
 SPEED_NUMBERS = {"front_speed_left": ("left",), "front_speed_right": ("right",)}
 TRANSITION_NUMBERS = ("transition_time", "transition_length")
 PULSE_NUMBERS = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
-# For each boundary, the numbers that a promise can cover, and the sides whose fronts must be fast for
-# it to do so.
+# For each boundary, the numbers that a promise can cover, and the sides whose fronts must be fast
+# for it to do so.
 REQUIRED_FAST_SIDES: dict[str, dict[str, tuple[str, ...]]] = {
     "displacement": {
         **SPEED_NUMBERS,
@@ -26,12 +26,14 @@ REQUIRED_FAST_SIDES: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "stress": SPEED_NUMBERS | dict.fromkeys((*TRANSITION_NUMBERS, "largest_velocity"), ()),
 }
-# A front in a lower pre-stress is hardly faster than the waves. Its error falls only with a power of
-# 2/3 to 1 of dx, and in negative pre-stress three spacings can agree and still be far from the limit.
+# A front in a lower pre-stress is hardly faster than the waves. Its error falls only with a power
+# of 2/3 to 1 of dx, and in negative pre-stress three spacings can agree and still be far from the
+# limit.
 MIN_PRESTRESS = 0.05
 # If damping is weaker, oscillations of the lattice decide how long the left front stands still.
 MIN_DAMPING_RATIO = 0.05
-# The left front becomes slower and slower. A larger fraction of its path would need a finer lattice.
+# The left front becomes slower and slower. A larger fraction of its path would need a finer
+# lattice.
 MAX_COVERED_FRACTION = 0.95
 
 
@@ -46,8 +48,8 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     names = {name for name, sides in required.items() if fast.issuperset(sides)}
     if run.get("pulse_state") != "steady":
         names.difference_update(PULSE_NUMBERS)
-    # The largest velocity tends to a limit only where a front is arrested on the left, and the pulse
-    # runs into pre-stress 0. Between two fronts that continue to run, it grows without limit.
+    # The largest velocity tends to a limit only where a front is arrested on the left, and the
+    # pulse runs into pre-stress 0. Between two fronts that continue to run, it grows without limit.
     if not run["left"] < 0.0 == run["right"] == run["beyond"]:
         names.discard("largest_velocity")
     if run["boundary"] == "stress":

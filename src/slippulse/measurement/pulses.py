@@ -11,8 +11,8 @@ import numpy as np
 from ..data.points import AnyRun
 from .front_paths import fit_front, front_path
 
-# A stretch of sliding blocks is a pulse if its peak velocity is at least this fraction of that of the
-# leading pulse. Slower stretches are remains of the nucleation.
+# A stretch of sliding blocks is a pulse if its peak velocity is at least this fraction of that of
+# the leading pulse. Slower stretches are remains of the nucleation.
 MIN_RELATIVE_PEAK = 0.05
 
 

@@ -19,8 +19,8 @@ from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_puls
 from .regime import classify_regime
 from .transition import transition_displacement, transition_stress
 
-# Columns that identify a run or describe its computation. `Scene.from_attributes` can make the scene
-# of the run from them.
+# Columns that identify a run or describe its computation. `Scene.from_attributes` can make the
+# scene of the run from them.
 PARAMETERS = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta",
     "damping_ratio", "dx", "max_step", "duration", "release", "scheme", "order", "half_lattice",

@@ -14,8 +14,8 @@ from ..model.prestress import prestress_from
 from .front_paths import arrival, front_path, front_position
 
 # A left front is held up by the lattice if it waits longer between two blocks than this fraction of
-# T_trans. The relative error of T_trans is up to 1.5 times the fraction (tested with five levels and
-# three damping ratios).
+# T_trans. The relative error of T_trans is up to 1.5 times the fraction (tested with five levels
+# and three damping ratios).
 STALLED_WAIT_FRACTION = 0.03
 
 

@@ -14,7 +14,8 @@ import pandas as pd
 
 from ..model.roots import root_between
 
-# If the observed order is outside this range, the three values do not follow a power of the spacing.
+# If the observed order is outside this range, the three values do not follow a power of the
+# spacing.
 ORDER_RANGE = (0.5, 6.0)
 # Three values are equal if their relative spread is at most this.
 EQUALITY_TOLERANCE = 1e-14

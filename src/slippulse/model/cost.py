@@ -17,9 +17,9 @@ from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 
-# A job that needs more than this is refused unless the user allows it: number of runs, block updates
-# (days on one core) and bytes (the memory of a small machine). All jobs of a sweep together may need
-# this number of times as much.
+# A job that needs more than this is refused unless the user allows it: number of runs, block
+# updates (days on one core) and bytes (the memory of a small machine). All jobs of a sweep together
+# may need this number of times as much.
 JOB_LIMITS = 20_000, 4e13, 4e9
 SWEEP_LIMIT_IN_JOBS = 50
 OPTION_TO_ALLOW = "--config allow_large=true"
@@ -28,8 +28,8 @@ OPTION_TO_ALLOW = "--config allow_large=true"
 RECORDED_BYTES_PER_BLOCK, SOLVER_BYTES_PER_BLOCK = 56.0, 16.0
 # Bytes of a point of a table: two numbers, and their text in a data file.
 BYTES_PER_TABLE_POINT = 400.0
-# The time to start a run, and the time to solve one block of the exact solution, as numbers of block
-# updates that take equally long.
+# The time to start a run, and the time to solve one block of the exact solution, as numbers of
+# block updates that take equally long.
 UPDATES_PER_START, UPDATES_PER_EXACT_BLOCK = 1e5, 3e4
 # Where a table reaches 1 the front speed is taken at this level, since it is infinite at 1.
 MAX_LEVEL = 1.0 - 1e-9

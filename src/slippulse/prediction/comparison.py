@@ -26,10 +26,10 @@ from ..theory.closed_pulse import (
     pulse_at_speed,
 )
 
-# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed, or if
-# the slip behind it varies. The allowed relative change is the same for both. The width may differ
-# by the thickness of the damped layer and by this number of blocks in addition, because the front
-# has this width.
+# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed, or
+# if the slip behind it varies. The allowed relative change is the same for both. The width may
+# differ by the thickness of the damped layer and by this number of blocks in addition, because the
+# front has this width.
 MAX_RELATIVE_CHANGE = 0.05
 FRONT_WIDTH_IN_BLOCKS = 3.0
 # Largest thickness of the damped layer at the front, divided by the pulse width. The front speed is
@@ -69,8 +69,9 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """Return the state of the leading pulse, by the names that config/README.md explains.
 
     A steady pulse has uniform slip, and the width of the exact pulse, which solves
-    beta v U''' + (v^2 - 1) U'' + gamma U = tau_0. The state is "none" if there is no pulse to judge,
-    or if no exact pulse is known (a stress boundary, or another friction law than "coulomb").
+    beta v U''' + (v^2 - 1) U'' + gamma U = tau_0. The state is "none" if there is no pulse to
+    judge, or if no exact pulse is known: under a stress boundary, or with another friction law than
+    "coulomb".
     """
     if run.attrs["boundary"] != "displacement":
         return "none"

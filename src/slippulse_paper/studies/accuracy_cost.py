@@ -17,7 +17,7 @@ from slippulse.measurement.front_paths import arrival, fit_front, front_path
 from slippulse.measurement.pulses import leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.model.stability import MARGIN, largest_step
+from slippulse.model.stability import STABILITY_MARGIN, largest_step
 from slippulse.simulation.simulate import simulate
 from slippulse.theory.arrest import ArrestingCrack
 from slippulse.theory.exact_transition import exact_transition_displacement
@@ -66,7 +66,10 @@ class Setting(NamedTuple):
         """Simulate a scene, at a step that is cut where it would not be stable."""
         # The textbook scheme and the exact solution have no order to choose.
         order = max(self.order, 3)
-        step = min(self.step, MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2))
+        step = min(
+            self.step,
+            STABILITY_MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2),
+        )
         boundary = "displacement" if gamma > 0.0 else "stress"
         scene = partial(Scene, boundary, profile, duration, self.dx, gamma, ratio * self.dx)
         return simulate(scene(scheme=self.scheme, max_step=step, order=order))
