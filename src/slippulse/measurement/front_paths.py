@@ -44,12 +44,41 @@ def front_path(
     return time[start:][reached], x[start:][reached]
 
 
+def limit_time(run: AnyRun) -> float:
+    """Return the time until which all of the rupture is known.
+
+    An exact solution may know only some blocks after this time. It is infinite for a lattice, and
+    for an exact solution that knows all blocks until the end.
+    """
+    limit = run.attrs.get("limit_time", np.nan)
+    return np.inf if np.isnan(limit) else float(limit)
+
+
+def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") -> float:
+    """Return the time until which a front (or trailing edge) is known; infinite if always."""
+    if np.isinf(limit_time(run)) or edge == "stick_time":
+        return limit_time(run)
+    times, distances = front_path(run, side)
+    if not times.size:
+        return limit_time(run)
+    # No wave from the unknown part of the rupture catches up with a supersonic front. The front is
+    # unknown only if nothing is known of the block ahead of it.
+    ahead = (1.0 if side == "right" else -1.0) * (distances[-1] + run.attrs["dx"])
+    wave_arrival = limit_time(run) + abs(ahead - run.attrs["limit_position"])
+    block = int(np.argmin(np.abs(np.asarray(run["x"]) - ahead)))
+    if "slip" in run:
+        is_unknown = np.isnan(run["slip"][block])
+    else:
+        is_unknown = wave_arrival <= run.attrs["end_time"]
+    return float(np.max(times)) if is_unknown else np.inf
+
+
 def front_position(
     run: AnyRun, time, side: str = "right", edge: str = "release_time"
 ) -> np.ndarray:
     """Return the distance of a front (or trailing edge) from x = 0 at one or more times.
 
-    It is NaN before the first event, and constant after the last.
+    It is NaN before the first event, and where an exact solution does not know it.
     """
     times, distances = front_path(run, side, edge)
     time = np.asarray(time, dtype=float)
@@ -60,7 +89,8 @@ def front_position(
     # np.interp needs increasing times. Of several blocks with the same time, the farthest is kept.
     is_farthest = np.concatenate([np.diff(latest) > 0.0, [True]])
     distance = np.interp(time, latest[is_farthest], distances[is_farthest])
-    return np.where(time < latest[0], np.nan, distance)
+    is_unknown = (time < latest[0]) | (time > known_until(run, side, edge))
+    return np.where(is_unknown, np.nan, distance)
 
 
 def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
@@ -82,11 +112,12 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     window : length of this part, as a fraction of the largest distance that the front reached
 
     If the front pauses within this part and is faster than the waves after the pause, only the path
-    after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks.
+    after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks, or
+    if an exact solution does not know the whole path.
     """
     times, distances = front_path(run, side)
     chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
-    if chosen.sum() < MIN_FITTED_BLOCKS:
+    if chosen.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
         return NO_LINE
     times, distances = times[chosen], distances[chosen]
     waits = np.diff(np.maximum.accumulate(times))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.points import AnyRun
-from .front_paths import fit_front, front_path
+from .front_paths import fit_front, front_path, known_until
 
 # A stretch of sliding blocks is a pulse if its peak velocity is at least this fraction of that of
 # the leading pulse. Slower stretches are remains of the nucleation.
@@ -17,7 +17,11 @@ MIN_RELATIVE_PEAK = 0.05
 
 
 class LeadingPulse(NamedTuple):
-    """The pulse behind the right front, at the end of a run."""
+    """The pulse behind the right front, at the end of a run.
+
+    All numbers except the front and its speed are NaN if an exact solution does not know slip
+    velocity everywhere on the right.
+    """
 
     front: float  # distance from x = 0; it can lie between two blocks
     speed: float  # front speed
@@ -39,6 +43,8 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     distance = np.asarray(run["x"])[start:]
     velocity, slip = (np.asarray(run[name])[start:] for name in ("slip_velocity", "slip"))
     front, stopped = front_at_end(run, distance, velocity, speed)
+    if np.isnan(velocity).any():
+        return LeadingPulse(front, speed, np.nan, np.nan, np.nan, np.nan)
     pulses = [] if stopped else sliding_stretches(velocity)
     leading_velocity = np.zeros(distance.size)
     for pulse in pulses[-1:]:
@@ -67,10 +73,11 @@ def front_at_end(
 ) -> tuple[float, bool]:
     """Return the distance of the right front at the end, and True if the front has stopped.
 
-    The distance is NaN if no block was released. The arrays have the blocks on the right.
+    The distance is NaN if no block was released, or if an exact solution does not know it. The
+    arrays have the blocks on the right.
     """
     release_times, released_distances = front_path(run)
-    if not released_distances.size:
+    if not released_distances.size or np.isfinite(known_until(run)):
         return np.nan, False
     # The next block has not been released: the front is at most one block beyond the last release.
     ahead, dx = float(speed * (run.attrs["end_time"] - release_times[-1])), run.attrs["dx"]

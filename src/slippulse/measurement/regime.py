@@ -12,13 +12,15 @@ from .front_paths import front_position
 REGIMES = (
     "arrested",
     "crack-like, two-way",
+    "crack-like, one front slow",
     "crack-like, one-way",
     "pulses, two-way",
     "pulse, one-way, growing",
     "pulse, one-way, steady",
     "pulse, one-way, decaying",
 )
-# Regime of a prediction where theory does not decide between REGIMES.
+# Regime of a prediction that theory does not decide, and of an exact solution whose end is not
+# completely known.
 UNDECIDED = "undecided"
 
 
@@ -28,7 +30,8 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     A rupture is two-way if it runs on both sides of x = 0. It runs on a side if the front there is
     as fast as the waves over the last third of the run, to within ``steady_tolerance``. If neither
     front is, the rupture runs where, at the end, a block slides at least at ``still`` times the
-    largest velocity. A rupture is arrested if no block was released in the last tenth of the
+    largest velocity. A crack that runs on one side only has "one front slow" if the other front
+    still moves. A rupture is arrested if no block was released in the last tenth of the
     duration, or if the velocity at the end is at most ``still`` times an earlier one. A one-way
     pulse grows, decays or is steady according to the change of its largest velocity over the last
     third of the run.
@@ -50,13 +53,17 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     fast_sides = sum(speed >= 1.0 - steady_tolerance for speed in speeds)
     sliding = final_velocity >= still * largest
     sliding_sides = int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
-    ways = "two-way" if (fast_sides or sliding_sides) == 2 else "one-way"
+    running_sides = fast_sides or sliding_sides
+    ways = "two-way" if running_sides == 2 else "one-way"
+    has_slow_front = running_sides == 1 and min(speeds) > steady_tolerance
     last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
     at_rest = largest <= still * max(largest, float(np.max(velocity)))
-    if at_rest or last_release < 0.9 * run.attrs["duration"]:
+    if np.isnan(final_velocity).any() or np.isnan(velocity[-1]).any():
+        regime = UNDECIDED
+    elif at_rest or last_release < 0.9 * run.attrs["duration"]:
         regime = "arrested"
     elif not is_pulse(centre, largest, still):
-        regime = f"crack-like, {ways}"
+        regime = f"crack-like, {'one front slow' if has_slow_front else ways}"
     else:
         regime = pulse_regime(ways, change, steady_tolerance)
     return {

@@ -13,8 +13,8 @@ import numpy as np
 
 from ..data.points import AnyRun
 from ..model.prestress import prestress_from
-from ..model.recorded_law import law_of
-from .front_paths import fit_front, front_position
+from ..model.recorded_law import read_recorded_law
+from .front_paths import fit_front, front_position, limit_time
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify_regime
 from .transition import transition_displacement, transition_stress
@@ -47,7 +47,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     A number whose data were not recorded is left out. The pulse is None if slip velocity was not
     recorded.
     """
-    attributes = run.attrs | {"friction": json.dumps(law_of(run.attrs))}
+    attributes = run.attrs | {"friction": json.dumps(read_recorded_law(run.attrs))}
     row = {name: attributes[name] for name in PARAMETERS}
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]
@@ -134,8 +134,10 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
 def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """Return the full width of the pulse at half of its peak slip velocity.
 
-    NaN if slip velocity does not fall below half of the peak on both sides of it.
+    NaN if slip velocity does not fall below half of the peak on both sides of it, or is not known.
     """
+    if np.isnan(pulse.peak_velocity):
+        return np.nan
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     peak = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
@@ -153,10 +155,11 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
 def lattice_noise(run: AnyRun) -> float:
     """Return the power of waves that are a few blocks long, divided by the power of slip velocity.
 
-    Only blocks on the right are used. NaN if too few of them slide.
+    Only blocks on the right are used. NaN if too few of them slide, or if a velocity is not known.
     """
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    moving = velocity[(x >= 0.0) & (velocity > 0.0)]
+    # Written with ~ so that unknown velocities, which are NaN, are included. The result is then NaN.
+    moving = velocity[(x >= 0.0) & ~(velocity <= 0.0)]
     if moving.size < MIN_BLOCKS_WITH_WAVES:
         return np.nan
     # The fourth difference, divided by 16, multiplies waves of n blocks by sin^4(pi/n), which is 1
@@ -168,8 +171,10 @@ def lattice_noise(run: AnyRun) -> float:
 def sliding_at_once(run: AnyRun) -> float:
     """Return the largest number of blocks on the right that slide at the same time.
 
-    Only the second half of the run is examined.
+    Only the second half of the run is examined. NaN if an exact solution does not know all of it.
     """
+    if limit_time(run) <= run.attrs["end_time"]:
+        return np.nan
     start = 0.5 * run.attrs["end_time"]
     chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
     release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]

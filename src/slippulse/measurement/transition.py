@@ -11,7 +11,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .front_paths import arrival, front_path, front_position
+from .front_paths import arrival, front_path, front_position, known_until
 
 # A left front is held up by the lattice if it waits longer between two blocks than this fraction of
 # T_trans. The relative error of T_trans is up to 1.5 times the fraction (tested with five levels
@@ -80,7 +80,7 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     time, longest_wait = arrival(run, fraction * balance_distance, "left")
     release_times, distances = front_path(run, "left")
     arrest_time, arrest_distance = np.nan, np.nan
-    if release_times.size:
+    if release_times.size and np.isinf(known_until(run, "left")):
         arrest_time, arrest_distance = float(np.max(release_times)), float(distances[-1])
     wait_fraction = longest_wait / time
     state, right = "not reached", np.nan

@@ -7,7 +7,7 @@ from typing import Any
 from .checks import check_that
 
 
-def law_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
+def read_recorded_law(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the name ("law") and the parameters of a run's friction law.
 
     Older files record either ``rate_strengthening``, which is the law "linear_rate", or nothing,

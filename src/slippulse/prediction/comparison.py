@@ -18,7 +18,7 @@ from ..measurement.front_paths import front_path
 from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
 from ..model.prestress import prestress_from
-from ..model.recorded_law import law_of
+from ..model.recorded_law import read_recorded_law
 from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
@@ -77,7 +77,7 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
         return "none"
     if np.isfinite(pulse.front) and pulse.pulses != 1:
         return "several" if pulse.pulses else "stopped"
-    is_coulomb = law_of(run.attrs)["law"] == "coulomb"
+    is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
     if not np.isfinite([pulse.width, pulse.speed]).all() or not is_coulomb:
         return "none"
     _, distances = front_path(run)

@@ -57,9 +57,10 @@ def final_regime(
 
     There remains a level -n < 0 on one side and p >= 0 on the other. The front into -n moves such
     that the integral of tau over the rupture vanishes (`theory.arrest`): when the front into p is
-    at a distance e, it is at the distance (p/n) e. After a long time, du/dt at the nucleation point
-    divided by its largest value in the rupture tends to r/(1 + 1/v + 2 r), where r = p/n and v is
-    the front speed into p. The rupture is a pulse if this is less than ``still``.
+    at a distance e, it is at the distance (p/n) e. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where
+    v is the front speed into p: it never stops, but is slower than the waves. After a long time,
+    du/dt at the nucleation point divided by its largest value in the rupture tends to
+    r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less than ``still``.
     """
     low, high = sorted((left, right))
     if high < 0.0:
@@ -76,7 +77,7 @@ def final_regime(
         return "pulse, one-way, steady"
     largest_ratio = float(largest_pulse_ratio(high, damping_ratio, release, still))
     becomes_pulse = high / -low < largest_ratio
-    return "pulse, one-way, growing" if becomes_pulse else "crack-like, one-way"
+    return "pulse, one-way, growing" if becomes_pulse else "crack-like, one front slow"
 
 
 def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:
