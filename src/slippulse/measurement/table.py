@@ -158,7 +158,7 @@ def lattice_noise(run: AnyRun) -> float:
     Only blocks on the right are used. NaN if too few of them slide, or if a velocity is not known.
     """
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    # Written with ~ so that unknown velocities, which are NaN, are included. The result is then NaN.
+    # Unknown velocities are NaN. Written with ~, they are included, and the result is NaN.
     moving = velocity[(x >= 0.0) & ~(velocity <= 0.0)]
     if moving.size < MIN_BLOCKS_WITH_WAVES:
         return np.nan
