@@ -14,7 +14,7 @@ import slippulse as sp
 from slippulse.data.files import write_whole
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
-from slippulse.data.sweeps import FIELDS, FRONTS
+from slippulse.data.sweeps import FIELD_VARIABLES, FRONT_VARIABLES
 from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import VARIABLES
 
@@ -63,7 +63,7 @@ def test_a_point_is_what_the_scene_alone_gives_as_far_as_it_is_asked_for():
             assert type(again.attrs[name]) is type(value), name
     fields, full = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
-    kept = (fields | {*FRONTS}, fields | {*FIELDS}, sampled)
+    kept = (fields | {*FRONT_VARIABLES}, fields | {*FIELD_VARIABLES}, sampled)
     for record, names in zip(RECORDS, kept, strict=True):
         run = sp.point(sweep(record=(record,)), 1)
         assert set(run.variables) == names

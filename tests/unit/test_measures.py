@@ -14,7 +14,7 @@ from slippulse.measurement.transition import STALLED_WAIT_FRACTION, transition_s
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.prediction.comparison import measured_table, pulse_state
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 from slippulse.simulation.simulate import Samples, simulate
 from slippulse.theory import ArrestingCrack, Rupture, front_speed
 
@@ -256,7 +256,7 @@ def test_an_exact_run_is_measured_as_a_lattice_is():
 
 
 def test_one_run_of_a_sweep_has_the_numbers_of_its_row(shipped):
-    assert shipped["measure"] == SETTINGS
+    assert shipped["measure"] == MEASURE_SETTINGS
     scenes = [Scene("stress", Prestress(-1.0, 0.0), time, 0.05, beta=5e-3) for time in (2.0, 9.0)]
     sweep = sp.run_sweep(scenes, record=("fronts", "fields"))
     table = measured_table(sweep, shipped["measure"])

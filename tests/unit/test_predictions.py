@@ -6,7 +6,7 @@ from verification.test_friction_laws import EXAMPLES
 
 from slippulse import Prestress, friction, theory
 from slippulse.model.run import Run
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 from slippulse_paper.steps.predict import TOPICS, predictions
 
 # Theory knows the others.
@@ -18,7 +18,7 @@ def predicted(*laws):
     layer = Prestress(0.6, 0.6)
     laws = [law.mapping() for law in laws]
     runs = [Run("displacement", layer, 0.65, 0.02, 0.002, "total", law) for law in laws]
-    return predictions(TOPICS, runs, SETTINGS)
+    return predictions(TOPICS, runs, MEASURE_SETTINGS)
 
 
 @pytest.mark.parametrize("law", sorted(OTHERS))

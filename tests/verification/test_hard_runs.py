@@ -13,7 +13,7 @@ from slippulse.measurement.promise import covered_numbers
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row, pulse_state
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 
 GAMMA, SPEED, END = 0.65, 1.2, 30.0
 
@@ -37,7 +37,7 @@ def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, st
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), END, 0.05, GAMMA)
     data = {name: ("x", array) for name, array in arrays.items()}
     run = xr.Dataset(data, {"x": x}, scene.attributes() | {"end_time": END})
-    pulse = leading_pulse(run, SETTINGS["front_window"])
+    pulse = leading_pulse(run, MEASURE_SETTINGS["front_window"])
     return pulse, pulse_state(run, pulse)
 
 
@@ -47,7 +47,7 @@ def test_a_promise_looks_at_the_prestress_that_fronts_cross():
         barriers = ((distance, -1.096, 0.938), (-distance, -1.096, 0.938))
         profile = sp.Prestress(0.549, 0.549, 1.043, 1.0172, (), barriers)
         scene = sp.Scene("displacement", profile, 12.9, 0.05, 0.515, 0.005, max_step=0.5)
-        row = measured_row(sp.simulate(scene), SETTINGS)
+        row = measured_row(sp.simulate(scene), MEASURE_SETTINGS)
         assert ("transition_length" in covered_numbers(row, 0.95)) == promised
 
 

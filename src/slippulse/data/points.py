@@ -12,8 +12,12 @@ import xarray as xr
 
 from ..model.checks import check_that
 
-AXES = ("sample_time", "sample_position")
-DIMENSIONS = {name: (name,) for name in AXES} | {"sample_slip": AXES, "sample_velocity": AXES}
+SAMPLE_AXES = ("sample_time", "sample_position")
+# Dimensions of the samples of a run. All other arrays of a run have the dimension "x".
+DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
+    "sample_slip": SAMPLE_AXES,
+    "sample_velocity": SAMPLE_AXES,
+}
 
 
 class Recorded(dict[str, np.ndarray]):

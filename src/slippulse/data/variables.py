@@ -1,4 +1,4 @@
-"""Meaning of every variable that a data file may hold: plain numbers, counts and text."""
+"""Descriptions of all variables that a data file can have."""
 
 import xarray as xr
 
@@ -71,7 +71,7 @@ VARIABLES = {
 
 
 def described(data: xr.Dataset) -> xr.Dataset:
-    """Give each variable of a Dataset units and long_name, and return the Dataset."""
+    """Add the attributes units and long_name to each variable of a Dataset, and return it."""
     for name, variable in data.variables.items():
         variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)]} | variable.attrs
     return data
