@@ -281,7 +281,7 @@ class Scene:
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Self:
-        """Make the scene that the attributes of a data file, or a row of a measured table, describe.
+        """Make the scene that is described by the attributes of a file, or by a measured row.
 
         The attributes have the names that `attributes` returns. Older files have
         ``rate_strengthening`` in place of ``friction``, or neither. Raises ValueError if an
