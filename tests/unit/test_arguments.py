@@ -224,7 +224,7 @@ for cases, call in (
 
 
 @pytest.mark.parametrize(("argument", "call"), TAKE_A_NUMBER)
-def test_an_argument_that_is_no_number_is_refused(argument, call):
+def test_an_argument_that_is_not_a_number_is_refused(argument, call):
     for value in NO_NUMBERS:
         # Arrays, an empty one too, are good where one number is.
         if isinstance(value, list) and not value and argument in ("tau0", "x"):

@@ -38,7 +38,7 @@ def test_each_run_is_in_one_chunk(chunks, runs):
 
 
 @pytest.mark.parametrize("inner", [8, 10, 20, 99, 100, 101])
-def test_costs_that_repeat_are_spread_whatever_their_period(inner):
+def test_periodic_costs_are_spread_evenly_over_chunks(inner):
     cost = np.tile(np.r_[np.ones(inner - 1), inner], 40_000 // inner)
     sums = np.array([cost[list(runs_of(number, 10, cost.size))].sum() for number in range(1, 11)])
     # With a fixed first chunk one of ten would have half of all costs at 10, 20 and 100.
@@ -76,7 +76,9 @@ JOINED[1:] = [pytest.param(*case, marks=pytest.mark.slow) for case in JOINED[1:]
 
 
 @pytest.mark.parametrize(("name", "chunks"), JOINED)
-def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
+def test_joined_chunks_have_the_bytes_of_the_complete_sweep(
+    made, tmp_path, name, chunks, monkeypatch
+):
     sweep = made(name)
     files_of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
     joined = [tmp_path / file.name for file in sweep]

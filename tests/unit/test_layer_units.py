@@ -79,7 +79,7 @@ def test_the_scales_make_every_term_of_the_equation_of_motion_one(layer):
     assert scales.length / scales.time == pytest.approx(layer.wave_speed, rel=1e-12)
 
 
-def test_only_slip_and_energy_differ_between_the_conditions_on_top():
+def test_only_slip_and_energy_scales_depend_on_the_top_of_the_layer():
     held, free = (changed(top=top).scales._asdict() for top in TOPS)
     ratios = {name: held[name] / free[name] for name in held}
     twice = {"slip", "slip_velocity", "slip_acceleration", "energy"}
@@ -114,7 +114,7 @@ def integrate_in_si(layer, x, stress, duration):
 
 
 @pytest.mark.parametrize("top", TOPS)
-def test_a_run_in_si_units_is_that_of_the_dimensional_equation(top):
+def test_a_run_in_si_units_solves_the_dimensional_equation(top):
     layer = changed(top=top)
     dx, duration = 5e-3, 20e-6
     x = dx * np.arange(-30, 31)
@@ -126,7 +126,7 @@ def test_a_run_in_si_units_is_that_of_the_dimensional_equation(top):
     assert simulated == pytest.approx(velocity, abs=0.01 * velocity.max())
 
 
-def test_a_run_returns_from_si_units_to_rounding(ruptured):
+def test_a_run_converted_to_si_units_and_back_is_unchanged(ruptured):
     layer, scene, run = ruptured
     there = layer.to_si(run)
     back = layer.from_si(there)

@@ -89,13 +89,13 @@ CASES = [
 
 
 @pytest.mark.parametrize(("expected", "run", "numbers"), CASES)
-def test_every_regime_is_reached_and_each_threshold_decides(expected, run, numbers):
+def test_each_threshold_separates_two_regimes(expected, run, numbers):
     out = classify_regime(made_up(**run), STILL, TOLERANCE)
     assert out["regime"] == expected
     assert {name: out[name] for name in numbers} == pytest.approx(numbers, abs=1e-3, nan_ok=True)
 
 
-def test_thresholds_are_arguments():
+def test_regimes_depend_on_the_thresholds_that_are_passed():
     thresholds, run = ((0.3, 0.05), (0.3, 0.2), (0.1, 0.05)), made_up(centre=0.2, before=0.9)
     assert [classify_regime(run, *pair)["regime"] for pair in thresholds] == [
         GROWING,
@@ -119,7 +119,7 @@ def test_thresholds_are_arguments():
         (DECAYING, 0.0, (-0.6, 0.0), -0.01),
     ],
 )
-def test_simulated_ruptures(expected, gamma, levels, later):
+def test_simulated_ruptures_have_the_expected_regime(expected, gamma, levels, later):
     boundary, duration = ("displacement", 20.0) if gamma else ("stress", 40.0)
     steps, duration = ((), duration) if later is None else (((15.0, later),), 80.0)
     # With fewer than ten blocks in the Gaussian, damping alone makes a steady pulse decay.
@@ -137,7 +137,7 @@ def fields(velocity: np.ndarray) -> xr.Dataset:
     return xr.Dataset(named, {"x": 0.01 * np.arange(velocity.size)})
 
 
-def test_half_widths_and_waves_of_the_lattice():
+def test_half_width_and_lattice_noise_of_known_profiles():
     run = fields(np.exp(-0.5 * ((X - 8.0) / 0.7) ** 2))
     assert half_width(run, PULSE) == pytest.approx(2.0 * 0.7 * np.sqrt(2.0 * np.log(2.0)), rel=1e-4)
     assert np.isnan(half_width(fields(np.exp(-X)), PULSE))
@@ -151,7 +151,7 @@ def test_half_widths_and_waves_of_the_lattice():
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
 
 
-def test_blocks_that_slide_at_once_and_the_longest_wait_of_a_front():
+def test_number_of_sliding_blocks_and_longest_wait_of_a_front():
     x = np.arange(-6.0, 7.0)
     # Each slides for 1.5; the last three to the right are still sliding.
     stick = np.where(x > 3.0, np.nan, np.abs(x) + 1.5)
@@ -191,7 +191,7 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
         (moving(0.95), {"profile_change": 0.367}),
     ],
 )
-def test_what_changes_is_measured(run, expected):
+def test_changes_of_the_far_pulse_are_measured(run, expected):
     numbers = {quantity: far_field(run)[quantity] for quantity in expected}
     assert numbers == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
 
@@ -207,7 +207,9 @@ def test_what_changes_is_measured(run, expected):
         (-0.25, 0.02, 0.0, "not reached"),
     ],
 )
-def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state, paper_accuracy):
+def test_a_stalled_front_is_late_and_a_resolved_front_is_not(
+    level, dx, ratio, state, paper_accuracy
+):
     profile = Prestress(level, 0.0)
     exact = ArrestingCrack(profile, ratio).transition(0.95).time
     run = simulate(Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, **paper_accuracy))
@@ -237,7 +239,7 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
         (0.5, 5.0, {"boundary": "stress", "gamma": 0.0}, "none"),
     ],
 )
-def test_what_a_pulse_is_called(level, duration, values, expected):
+def test_a_pulse_has_the_expected_state(level, duration, values, expected):
     plain = {"boundary": "displacement", "gamma": 0.65, "dx": 0.05, "beta": 0.005, "max_step": 0.5}
     run = simulate(Scene(prestress=Prestress(level, level), duration=duration, **plain | values))
     assert pulse_state(run, leading_pulse(run, 0.3)) == expected
@@ -245,7 +247,7 @@ def test_what_a_pulse_is_called(level, duration, values, expected):
     assert front_speed(0.3, 10.0, "elastic") > 1.1
 
 
-def test_an_exact_run_is_measured_as_a_lattice_is():
+def test_an_exact_run_is_measured_like_a_lattice():
     scene = Scene("displacement", Prestress(0.5, 0.5), 8.0, 0.02, 0.65, 2e-3, scheme="continuum")
     numbers = sp.measure(simulate(scene))
     transition = Rupture(scene.prestress, 0.65, 0.1, duration=8.0).transition
@@ -255,7 +257,7 @@ def test_an_exact_run_is_measured_as_a_lattice_is():
     assert numbers["run_flags"] == ""
 
 
-def test_one_run_of_a_sweep_has_the_numbers_of_its_row(shipped):
+def test_a_run_from_a_sweep_has_the_numbers_of_its_row(shipped):
     assert shipped["measure"] == MEASURE_SETTINGS
     scenes = [Scene("stress", Prestress(-1.0, 0.0), time, 0.05, beta=5e-3) for time in (2.0, 9.0)]
     sweep = sp.run_sweep(scenes, record=("fronts", "fields"))

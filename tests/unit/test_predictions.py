@@ -22,14 +22,14 @@ def predicted(*laws):
 
 
 @pytest.mark.parametrize("law", sorted(OTHERS))
-def test_no_theory_is_named_that_ignores_the_friction_of_a_run(law):
+def test_no_prediction_ignores_the_friction_law_of_a_run(law):
     table = predicted(friction("coulomb"), friction(law, **EXAMPLES[law]))
     assert table.loc[0].equals(predicted(friction("coulomb")).loc[0])
     assert table.loc[1].isna().all()
     assert predicted(friction(law, **EXAMPLES[law])).isna().all(axis=None)
 
 
-def test_a_rate_term_changes_pulses_leaves_fronts_and_has_no_predicted_transition():
+def test_linear_rate_friction_changes_predicted_pulses_but_not_fronts():
     row = predicted(friction("linear_rate", alpha=0.3)).loc[0]
     speed = theory.front_speed(0.6, 0.1)
     pulse = theory.steady_pulse(0.6, 0.65, 0.002, speed, rate_strengthening=0.3)

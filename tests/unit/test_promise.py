@@ -69,7 +69,7 @@ COVERS = [
 
 
 @pytest.mark.parametrize(("run", "changed", "those", "others"), COVERS)
-def test_what_is_covered(run, changed, those, others):
+def test_the_expected_numbers_are_covered(run, changed, those, others):
     names = covered_numbers(run | changed, SHARE)
     assert names.issuperset(those) and names.isdisjoint(others)
     assert "transition_time" not in covered_numbers(CRACK, 0.99)
@@ -95,7 +95,7 @@ def study(tables) -> pd.DataFrame:
     return grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
 
 
-def test_every_measured_number_is_covered_or_has_a_reason(study):
+def test_every_measured_number_is_covered_or_has_a_reason_not_to_be(study):
     reasons = tuple(np.hstack([*NOT_COVERED]))
     for boundary, promised in REQUIRED_FAST_SIDES.items():
         rows = study[study["boundary"] == boundary]
@@ -104,7 +104,7 @@ def test_every_measured_number_is_covered_or_has_a_reason(study):
         assert [name for name in measured - set(promised) if not name.startswith(reasons)] == []
 
 
-def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study):
+def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, study):
     generous, strict = (
         judge_promises(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9)
     )
@@ -159,7 +159,7 @@ def test_a_power_of_the_spacing_is_recovered(order, factors):
     assert result.extrapolated == pytest.approx(3.0, rel=1e-12)
 
 
-def test_without_an_order_the_spread_is_the_uncertainty_and_a_missing_value_leaves_none():
+def test_without_an_order_the_spread_gives_the_uncertainty():
     result = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
     assert np.isnan(result.observed_order) and result.extrapolated == 1.0
     assert result.uncertainty == pytest.approx(0.15)

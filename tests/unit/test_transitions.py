@@ -32,7 +32,7 @@ def test_different_levels_have_the_transition_of_the_exact_rupture(levels):
         assert fine == pytest.approx(0.5 * coarse, rel=FIRST_ORDER)
 
 
-def test_two_nucleations_have_no_length_and_say_why():
+def test_two_nucleations_have_no_length_and_a_reason():
     two = sp.Prestress(0.4, 0.4, bumps=((6.0, 0.65, 1.0),))
     numbers = measured("displacement", two, 6.0, dx=0.05, gamma=0.65)
     assert numbers["transition_time"] == numbers["first_stick_time"] > 0.0
@@ -49,7 +49,7 @@ def test_two_nucleations_have_no_length_and_say_why():
         ("under a stress boundary the paper defines it for", "stress", (0.5, 0.5), {}),
     ],
 )
-def test_a_missing_transition_says_why(reason, boundary, levels, values):
+def test_a_missing_transition_has_a_reason(reason, boundary, levels, values):
     numbers = measured(boundary, sp.Prestress(*levels), 1.0, dx=0.05, **values)
     assert math.isnan(numbers["transition_time"]) and math.isnan(numbers["transition_length"])
     assert numbers["transition_reason"].startswith(reason)
