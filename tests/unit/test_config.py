@@ -1,4 +1,4 @@
-"""The shipped configuration, settings for a target error, and bounds on what a run takes."""
+"""The shipped configuration, settings for a target error, and bounds on the cost of a run."""
 
 import math
 from dataclasses import replace

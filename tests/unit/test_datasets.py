@@ -1,4 +1,4 @@
-"""Many scenes in one Dataset, by any scheme: order, threads, single points, and complete files."""
+"""Sweeps as one Dataset, with every scheme: order of the runs, threads, single runs, and files."""
 
 import dataclasses
 import stat
@@ -82,7 +82,7 @@ def test_progress_counts_scenes_and_a_failing_scene_ends_the_sweep():
 
 
 def test_a_sample_equals_the_final_state_of_a_run_that_ends_at_its_time():
-    """At rest where no block is near."""
+    """A position without a block is at rest."""
     times = np.array([0.0, 0.777, 2.5, 5.9])
     positions = np.array([-900.0, -3.0, -0.52, 0.0, 0.07, 2.0, 900.0])
     run = sp.simulate(ONE, sp.Samples(times, positions))
@@ -177,7 +177,7 @@ def exactly(scene: sp.Scene, samples: sp.Samples | None = None) -> xr.Dataset:
 
 @pytest.mark.parametrize("name", EXACT)
 def test_the_exact_scheme_is_the_exact_rupture(name):
-    """Lattices tend to it: see theory_exact/test_against_lattice.py."""
+    """Lattices converge to it: see theory_exact/test_against_lattice.py."""
     scene = EXACT[name]
     run, x = exactly(scene), scene.dx * np.arange(-20, 30, 5)
     rupture = sp.theory.Rupture(scene.prestress, scene.gamma, 0.1, duration=scene.duration)
@@ -208,7 +208,10 @@ def test_exact_and_lattice_datasets_have_the_same_form():
 
 
 def test_no_number_is_given_that_an_exact_solution_does_not_know():
-    """Lattices stick at x = 2 at 4.2 first, and last at 5.7 and 5.68 for dx = 0.04 and 0.02."""
+    """On lattices the block at x = 2 first sticks at 4.2.
+
+    It sticks for the last time at 5.7 for dx = 0.04, and at 5.68 for dx = 0.02.
+    """
     profile = sp.Prestress(0.5, 0.5, bumps=((8.0, 0.5, 1.0),))
     scene = sp.Scene("displacement", profile, 9.0, 0.04, 0.65, 0.1 * 0.04)
     samples = sp.Samples(np.linspace(0.0, 9.0, 10), np.linspace(-12.0, 20.0, 65))
@@ -224,7 +227,7 @@ def test_no_number_is_given_that_an_exact_solution_does_not_know():
     for name in (*unknown, "pulse_half_width", "trailing_edge_5", "trailing_edge_9"):
         assert np.isnan(numbers[name]), name
     assert numbers["regime"] == "undecided"
-    # What came before, and fronts that outrun the waves, is known.
+    # Earlier numbers are known, and so are fronts that are faster than the waves.
     for name in ("first_stick_time", "front_speed_left", "front_speed_right", "pulse_front"):
         assert numbers[name] == pytest.approx(expected[name], rel=0.01), name
     rupture = sp.theory.Rupture(profile, 0.65, 0.1, duration=9.0)
@@ -233,7 +236,7 @@ def test_no_number_is_given_that_an_exact_solution_does_not_know():
 
 
 def test_the_end_of_an_exact_solution_is_flagged():
-    """A second nucleation whose waves hold a position that is about to stick."""
+    """Waves from a second nucleation keep a position sliding that is about to stick."""
     profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
     run = exactly(dataclasses.replace(HELD, prestress=profile, duration=16.0))
     assert run.attrs["run_flags"] == "construction_ended" and run.attrs["limit_reason"]

@@ -1,4 +1,4 @@
-"""Numbers of made-up and simulated runs: regime, shape, steadiness, and a front held up."""
+"""Measured numbers of made-up and simulated runs: regime, pulse shape and state, transition."""
 
 import numpy as np
 import pandas as pd
@@ -27,15 +27,18 @@ PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 def made_up(
     centre=0.0, left=0.0, right=1.0, before=1.0, speeds=(0.0, 1.0), last_release=DURATION
 ) -> xr.Dataset:
-    """A run with given velocities at the end, at x = 0 and on both sides, and speeds of fronts.
+    """Make a run with given final velocities and front speeds.
 
-    ``before`` is the largest velocity at two thirds of the duration; it is 1 at an earlier sample.
+    centre, left, right : slip velocity at the end, at x = 0, -10 and 10
+    before : largest velocity at two thirds of the duration; an earlier sample has velocity 1
+    speeds : front speeds on the left and on the right; 0 for a front that stops early
+    last_release : time until which the fronts run
     """
     x = np.linspace(-40.0, 40.0, 801)
     release = np.full(x.shape, np.nan)
     release[np.abs(x) < 1e-9] = 0.0
     for speed, sign in zip(speeds, (-1.0, 1.0), strict=True):
-        # One without a speed stops early, at one position.
+        # A front without a speed stops early, at a distance of 2.
         side = (sign * x > 0.0) & (np.abs(x) <= (speed * last_release or 2.0))
         release[side] = np.abs(x[side]) / speed if speed else 0.1 * last_release
     velocity = np.zeros((10, 3))
@@ -50,34 +53,35 @@ def made_up(
 SHARE, CHANGE = "centre_velocity_share", "largest_velocity_change"
 LATE = "late_front_speed_left"
 SLOW = (0.5, 0.6)
-# A made-up run on both sides of each threshold, with numbers that decide.
+# For each threshold, made-up runs on both sides of it: the regime, the run, the measured numbers.
 CASES = [
-    # Steady is a change within the tolerance.
+    # A pulse is steady if its change is within the tolerance.
     (GROWING, dict(right=1.03), {CHANGE: 0.03}),
     (STEADY, dict(right=1.01), {CHANGE: 0.01}),
     (STEADY, dict(right=0.99), {CHANGE: -0.01}),
     (DECAYING, dict(right=0.97), {CHANGE: -0.03}),
-    # A front runs when it keeps up with the waves.
+    # A front runs if it is as fast as the waves.
     (PULSES, dict(left=1.0, speeds=(0.99, 1.0)), {LATE: 0.99}),
     (STEADY, dict(left=1.0, speeds=(0.95, 1.0)), {LATE: 0.95, "late_front_speed_right": 1.0}),
     (CRACKS, dict(centre=0.5, left=1.0, speeds=(1.0, 1.0)), {}),
-    # A nucleation point slower than `still` is a pulse.
+    # A rupture whose nucleation point is slower than `still` is a pulse.
     (STEADY, dict(centre=0.04), {SHARE: 0.04}),
     (CRACK, dict(centre=0.06), {SHARE: 0.06}),
-    # It is compared with the largest velocity of the moment.
+    # The nucleation point is compared with the largest velocity at the end.
     (CRACK, dict(centre=0.06, right=0.5, before=0.5), {SHARE: 0.12}),
     (STEADY, dict(centre=0.06, right=2.0, before=2.0), {SHARE: 0.03}),
     (GROWING, dict(centre=0.02, right=0.5, before=0.4), {SHARE: 0.04, CHANGE: 0.25}),
-    # No release in the last tenth is arrest, before the shape of slip counts.
+    # Without a release in the last tenth of the duration, a rupture is arrested, whatever its
+    # shape.
     (ARRESTED, dict(centre=1.0, left=1.0, last_release=15.0), {}),
-    # A front that has stopped does not matter.
+    # A front that has stopped does not count.
     (ARRESTED, dict(last_release=26.4, speeds=(0.0, 1.2)), {}),
     (STEADY, dict(last_release=27.6, speeds=(0.0, 1.2)), {}),
-    # A small fraction of the largest velocity of the run is arrest, too.
+    # A rupture whose velocity has become small is arrested, too.
     (ARRESTED, dict(right=0.04, before=0.04), {}),
     (STEADY, dict(right=0.06, before=0.06), {}),
     (ARRESTED, dict(right=0.0, before=0.0, last_release=9.0), {SHARE: np.nan}),
-    # Where no front keeps up with the waves, the sides that slide run.
+    # If no front is as fast as the waves, the rupture runs on the sides that slide.
     (CRACKS, dict(left=0.06, centre=0.5, speeds=SLOW), {}),
     (SLOW_FRONT, dict(left=0.04, centre=0.5, speeds=SLOW), {}),
     # A crack with one front slower than the waves, and one with a front that has stopped.
@@ -97,11 +101,8 @@ def test_each_threshold_separates_two_regimes(expected, run, numbers):
 
 def test_regimes_depend_on_the_thresholds_that_are_passed():
     thresholds, run = ((0.3, 0.05), (0.3, 0.2), (0.1, 0.05)), made_up(centre=0.2, before=0.9)
-    assert [classify_regime(run, *pair)["regime"] for pair in thresholds] == [
-        GROWING,
-        STEADY,
-        CRACK,
-    ]
+    regimes = [classify_regime(run, *pair)["regime"] for pair in thresholds]
+    assert regimes == [GROWING, STEADY, CRACK]
 
 
 @pytest.mark.parametrize(

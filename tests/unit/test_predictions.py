@@ -1,4 +1,4 @@
-"""Predictions of theory for runs under every law of friction."""
+"""Predictions of theory for runs under every friction law."""
 
 import pytest
 from pytest import approx
@@ -14,7 +14,7 @@ OTHERS = EXAMPLES.keys() - {"coulomb", "linear_rate"}
 
 
 def predicted(*laws):
-    """Predictions for two equal levels under each law, one row a law."""
+    """Return predictions for two equal levels, with one row for each friction law."""
     layer = Prestress(0.6, 0.6)
     laws = [law.mapping() for law in laws]
     runs = [Run("displacement", layer, 0.65, 0.02, 0.002, "total", law) for law in laws]

@@ -1,4 +1,4 @@
-"""Pre-stress through points: values, mirror images, balance, samples of functions, storage."""
+"""Pre-stress through points: values, mirror images, balance, sampled functions, data files."""
 
 import dataclasses
 import json
@@ -23,7 +23,7 @@ BUMPS = ((5.0, -0.3, 0.5),)
 
 
 def mirrored(profile):
-    """The mirror image of a profile with a table."""
+    """Return the mirror image of a profile with a table."""
     x, tau = np.array(profile.points[::-1]).T
     bumps = tuple((-centre, *rest) for centre, *rest in profile.bumps)
     return sp.Prestress.through(-x, tau, profile.width, profile.peak, bumps)
@@ -43,7 +43,7 @@ def test_a_table_is_linear_between_its_points_and_constant_beyond():
 
 
 def test_levels_and_steps_are_special_cases_of_a_table():
-    """At a jump the value farther from x = 0 holds, and at x = 0 the larger one."""
+    """At a jump, the value on the side away from x = 0 holds; at x = 0 the larger one."""
     steps = ((5.0, 0.3), (-4.0, 0.7))
     levels = sp.Prestress(0.6, 0.5, steps=steps)
     x, tau = [-4.0, -4.0, 0.0, 0.0, 5.0, 5.0], [0.7, 0.6, 0.6, 0.5, 0.5, 0.3]
@@ -113,7 +113,7 @@ BALANCED = {
 @pytest.mark.parametrize("case", BALANCED)
 @pytest.mark.parametrize("shift", [0.0, 7.25])
 def test_the_balance_of_a_table_is_exact_and_shifts_with_the_table(case, shift):
-    """Without a Gaussian, it is the first one to the left of where the rupture starts."""
+    """Without a Gaussian, it is the nearest one on the left of the nucleation."""
     x, tau, expected = BALANCED[case]
     profile = sp.Prestress.through(np.array(x) + shift, tau)
     balance = sp.theory.prestress_balance_position(profile)
@@ -147,7 +147,7 @@ def test_a_function_is_sampled_within_the_tolerance():
 
 
 def test_a_seed_gives_the_same_rough_field_on_every_machine():
-    """Values of numpy 2; the generator and its normal numbers are the same in every version."""
+    """The values are from numpy 2. Every version of numpy makes the same normal numbers."""
     field = sp.rough(0.4, 0.1, 1.0, 0.5, start=-2.0, stop=2.0, spacing=1.0, seed=7)
     assert field.x.tolist() == [-2.0, -1.0, 0.0, 1.0, 2.0]
     assert field.tau == pytest.approx(PINNED, abs=1e-9)
@@ -158,7 +158,7 @@ PINNED = [0.388905282, 0.412092875784, 0.354833795798, 0.295509910493, 0.3134680
 
 
 def test_rough_fields_have_the_requested_deviation_and_spectrum():
-    """The logarithm of the amplitude falls by hurst + 1/2 where waves are short."""
+    """At short wavelengths the amplitude falls with the power hurst + 1/2 of the wave number."""
     spacing, seeds = 0.05, range(300)
     shape = 0.2, 0.1, 2.0, 0.7, -25.0, 25.0, spacing
     fields = np.array([sp.rough(*shape, seed).tau for seed in seeds])
@@ -179,7 +179,7 @@ SHORT = sp.Prestress.through(X, TAU, bumps=BUMPS)
 
 
 def test_a_scene_with_a_table_can_be_read_from_its_data(config, tmp_path):
-    """A text of more than 64 kB, too; in a measured row a long table has only a digest."""
+    """This includes a text of more than 64 kB. A measured row has only a digest of a long table."""
     settings = {"duration": 0.2, "dx": 0.02, "gamma": 0.65, "beta": 2e-3}
     plain = sp.Prestress(0.3, 0.3)
     scenes = [sp.Scene("displacement", one, **settings) for one in (LONG, plain, SHORT)]
@@ -199,7 +199,7 @@ def test_a_scene_with_a_table_can_be_read_from_its_data(config, tmp_path):
     assert json.loads(scenes[1].attributes()["steps_and_bumps"]) == {"steps": [], "bumps": []}
 
 
-def test_theory_is_compared_only_with_fronts_that_have_left_the_table(config):
+def test_the_level_ahead_is_known_once_a_front_has_left_the_table(config):
     ramp = sp.Prestress.through([-3.0, 0.0, 3.0], [0.5, 0.3, 0.6], width=1.0)
     scene = sp.Scene("displacement", ramp, duration=2.0, dx=0.05, gamma=0.65)
     for duration, levels in ((2.0, (np.nan, np.nan)), (20.0, (0.5, 0.6))):

@@ -1,4 +1,4 @@
-"""Grid studies, what a promised accuracy covers, and the verdict of a grid study on it."""
+"""Grid studies, the numbers that a promised accuracy covers, and the test whether it is kept."""
 
 import math
 
@@ -32,11 +32,11 @@ CRACK = COMMON | {"boundary": "stress", "left": -1.0, "right": 0.0, "beyond": 0.
 CRACK |= {"front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0}
 CRACK |= {"transition_state": "resolved"}
 
-# Numbers that are not promised under either boundary, by the beginning of their names; reasons.
+# Numbers that are not promised under some boundary, by the beginning of their names, with reasons.
 NOT_COVERED = {
     "front_intercept": "a small difference of large numbers",
     "front_speed_error": "an error itself",
-    "late_front_speed": "two samples of a front, a spacing of samples apart",
+    "late_front_speed": "computed from two samples of a front only",
     "pulse": "a position with the lag of the path; under a stress boundary no pulse has a width",
     "trailing_edge": "a position at a stated time",
     ("slip_time", "slip_length"): "its slope vanishes where slip hardly reaches the stated value",
@@ -51,7 +51,7 @@ NOT_COVERED = {
     "beyond": "a parameter",
 }
 
-# Numbers of a run with changes that are covered, and others that are not.
+# A run, changes of its numbers, some numbers that are then covered, and some that are not.
 COVERS = [
     (PULSE, {}, ["front_speed_right", "pulse_width", "transition_time"], ["pulse_acceleration"]),
     (PULSE, {"run_flags": "unresolved_pulse"}, [], ["front_speed_right"]),
@@ -68,16 +68,16 @@ COVERS = [
 ]
 
 
-@pytest.mark.parametrize(("run", "changed", "those", "others"), COVERS)
-def test_the_expected_numbers_are_covered(run, changed, those, others):
+@pytest.mark.parametrize(("run", "changed", "covered", "not_covered"), COVERS)
+def test_the_expected_numbers_are_covered(run, changed, covered, not_covered):
     names = covered_numbers(run | changed, SHARE)
-    assert names.issuperset(those) and names.isdisjoint(others)
+    assert names.issuperset(covered) and names.isdisjoint(not_covered)
     assert "transition_time" not in covered_numbers(CRACK, 0.99)
 
 
 @pytest.fixture(scope="module")
 def tables(shipped):
-    """Measured tables of one run of each boundary, at a spacing and at twice and four times it."""
+    """Measured tables of one run under each boundary, at three spacings."""
     assert shipped["measure"]["share"] == SHARE
     out = []
     for dx in (0.05, 0.1, 0.2):

@@ -1,4 +1,4 @@
-"""The pre-stress: values, symmetry, steps, bumps, integral; and derived parameters of a scene."""
+"""Values, symmetry, steps, bumps and integral of a pre-stress, and derived numbers of a scene."""
 
 import dataclasses
 from itertools import product
@@ -55,7 +55,7 @@ def test_a_scene_can_be_made_from_its_attributes_data_and_measured_row(boundary,
 
 
 def test_a_run_saved_by_xarray_can_be_measured_and_drawn(tmp_path):
-    """A file has numpy's integers and floats where a run has those of Python."""
+    """A file has integers and floats of numpy, whereas a run has integers and floats of Python."""
     scene = sp.Scene(**DISPLACEMENT | {"dx": 0.1, "duration": 6.0, "half_lattice": False})
     run = sp.simulate(scene, sp.Samples([0.0, 3.0], [0.0, 1.0]))
     run.to_netcdf(tmp_path / "run.nc")
@@ -173,7 +173,7 @@ def test_the_integral_equals_a_numerical_integral(name, ends):
 
 @pytest.mark.parametrize("width", [1e-200, 1.0, 1e300])
 def test_the_balance_position_has_its_closed_form(width):
-    """Where the tail of the peak is below rounding: a level, and two halves of a Gaussian."""
+    """Far from the peak the integral is that of the level and of two halves of a Gaussian."""
     position = sp.theory.prestress_balance_position(sp.Prestress(-0.1, 0.0, width))
     assert position / width == pytest.approx(-21.0 * np.sqrt(0.5 * np.pi), rel=tol.ALGEBRA)
 

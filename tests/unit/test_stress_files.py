@@ -1,4 +1,4 @@
-"""Pre-stress from files: what is read, what is refused, and what decides that results are old."""
+"""Pre-stress from files: reading, refusals, and results that depend on a file."""
 
 import os
 
@@ -174,7 +174,7 @@ def test_profiles_without_a_table_have_no_labels(shipped):
 
 
 def test_a_scene_is_sampled_as_far_as_its_fronts_can_go(shipped):
-    """Beyond a ramp a front is as fast as the last level makes it."""
+    """Beyond a ramp, the front speed is that of the last level."""
     common = {"title": "t", "boundary": "displacement", "gamma": 0.65, "duration": 20.0}
     profile = {"points": [[0.0, 0.8], [1.0, 0.3]], "width": 1.0, "damping_ratio": 0.0}
     left = {"points": [[-1.0, 0.3], [0.0, 0.3]], "width": 1.0, "damping_ratio": 0.0}

@@ -6,7 +6,7 @@ import pytest
 
 import slippulse as sp
 
-# A first-order error halves with the spacing, but for a part of second order.
+# A first-order error halves with the spacing, apart from a second-order part.
 FIRST_ORDER = 0.3
 
 
@@ -17,7 +17,7 @@ def measured(boundary: str, prestress: sp.Prestress, duration: float, **values) 
 
 @pytest.mark.parametrize("levels", [(0.6, 0.45), (0.5, -0.5)])
 def test_different_levels_have_the_transition_of_the_exact_rupture(levels):
-    """The lattice tends to it at first order in its spacing."""
+    """The lattice converges to it at first order in its spacing."""
     profile, gamma = sp.Prestress(*levels), 5.0
     exact = sp.theory.Rupture(profile, gamma, 0.1, duration=4.0).transition
     errors = []
