@@ -1,4 +1,4 @@
-"""Chunks of a sweep: each has some of the runs at about equal cost, and joined they are the sweep."""
+"""Chunks of a sweep: each has some of the runs at about equal cost; joined they are the sweep."""
 
 from itertools import chain
 

@@ -60,12 +60,26 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     if fields:
         # This is how the CF conventions describe a contiguous ragged array of profiles.
         attributes["featureType"] = "profile"
-        sizes = np.array([run["x"].size for run in runs])
-        variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
-        for name in ("x", "prestress", *fields):
-            variables[name] = "block", np.concatenate([run[name] for run in runs])
-    for name in DIMENSIONS if "samples" in record else ():
-        axes = [dimension.removeprefix("sample_") for dimension in DIMENSIONS[name]]
-        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
+        variables |= _block_variables(runs, fields)
+    if "samples" in record:
+        variables |= _sample_variables(runs)
     # All variables are passed at once. Adding them one by one would align each with the others.
     return xr.Dataset(variables, attrs=attributes)
+
+
+def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[str, tuple]:
+    """Return the fields of all runs along "block", and the number of blocks of each run."""
+    sizes = np.array([run["x"].size for run in runs])
+    variables: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
+    for name in ("x", "prestress", *fields):
+        variables[name] = "block", np.concatenate([run[name] for run in runs])
+    return variables
+
+
+def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
+    """Return the samples of all runs, along "point" and the dimensions "time" and "position"."""
+    variables: dict[str, tuple] = {}
+    for name, dimensions in DIMENSIONS.items():
+        axes = [dimension.removeprefix("sample_") for dimension in dimensions]
+        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
+    return variables

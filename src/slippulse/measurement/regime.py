@@ -42,11 +42,7 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     change = -1.0
     if largest_before > 0.0:
         change = float(np.max(velocity[-1]) / largest_before) - 1.0
-    # The samples may miss a narrow or distant pulse; the recorded fields do not.
-    if "slip_velocity" in run:
-        x, final_velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    else:
-        x, final_velocity = np.asarray(run["sample_position"]), velocity[-1]
+    x, final_velocity = _final_velocity(run)
     largest = float(np.max(final_velocity))
     centre = float(final_velocity[int(np.argmin(np.abs(x)))])
     speeds = [_late_speed(run, side) for side in ("left", "right")]
@@ -56,11 +52,9 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     running_sides = fast_sides or sliding_sides
     ways = "two-way" if running_sides == 2 else "one-way"
     has_slow_front = running_sides == 1 and min(speeds) > steady_tolerance
-    last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
-    at_rest = largest <= still * max(largest, float(np.max(velocity)))
     if np.isnan(final_velocity).any() or np.isnan(velocity[-1]).any():
         regime = UNDECIDED
-    elif at_rest or last_release < 0.9 * run.attrs["duration"]:
+    elif _is_arrested(run, largest, still):
         regime = "arrested"
     elif not is_pulse(centre, largest, still):
         regime = f"crack-like, {'one front slow' if has_slow_front else ways}"
@@ -73,6 +67,24 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
         "late_front_speed_left": speeds[0],
         "late_front_speed_right": speeds[1],
     }
+
+
+def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and slip velocities at the end of a run.
+
+    They are those of all blocks if recorded, else those of the samples, which may miss a narrow or
+    distant pulse.
+    """
+    if "slip_velocity" in run:
+        return np.asarray(run["x"]), np.asarray(run["slip_velocity"])
+    return np.asarray(run["sample_position"]), np.asarray(run["sample_velocity"])[-1]
+
+
+def _is_arrested(run: AnyRun, largest: float, still: float) -> bool:
+    """Return True if the rupture is nearly at rest at the end, or was released last long before."""
+    last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
+    at_rest = largest <= still * max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
+    return at_rest or last_release < 0.9 * run.attrs["duration"]
 
 
 def is_pulse(centre: float, largest: float, still: float) -> bool:

@@ -112,7 +112,8 @@ def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTab
         x_cell, tau_cell = _cell(body[0], x_column), _cell(body[0], tau_column)
         # The row below the names has units if neither of its values is a number.
         if not (_is_number(x_cell) or _is_number(tau_cell)):
-            x_unit, tau_unit, body = x_cell, tau_cell, body[1:]
+            x_unit, tau_unit = x_cell, tau_cell
+            body = body[1:]
     positions = [_number(row, names, x_column) for row in body]
     values = [_number(row, names, tau_column) for row in body]
     _check_rows([row.number for row in body], positions, values)
