@@ -23,8 +23,11 @@ UNITS = {
 VARIABLES = {
     "x": ("length", "position"),
     "prestress": ("stress", "initial shear stress"),
-    "release_time": ("time", "time of the first release, NaN where never"),
-    "stick_time": ("time", "time of the last stick, NaN where never or sliding at the end"),
+    "release_time": ("time", "time of the first release; NaN if there is none"),
+    "stick_time": (
+        "time",
+        "time of the last stick; NaN if there is none, or if the block slides at the end",
+    ),
     "slip": ("slip", "slip at the end"),
     "slip_velocity": ("slip_velocity", "slip velocity at the end"),
     "slip_acceleration": ("slip_acceleration", "slip acceleration at the end"),
