@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from .checks import as_positions, check_number, check_that, short_repr
-from .removed import AnswersRemoved
+from .removed import ExplainsRemovedNames
 
 # Allowed ranges, in the form that `check_number` takes. A side level of 1 would release infinitely
 # many blocks at t = 0.
@@ -47,7 +47,7 @@ class Interval(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Prestress(AnswersRemoved):
+class Prestress(ExplainsRemovedNames):
     """Non-dimensional pre-stress tau(x) along the interface.
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background

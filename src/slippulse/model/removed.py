@@ -28,19 +28,19 @@ REMOVED = {
 }
 
 
-def new_way(owner: str, name: str) -> str:
+def describe_removal(owner: str, name: str) -> str:
     """Return a line with the replacement of a removed name; empty text for any other name."""
     replacement = REMOVED.get(owner, {}).get(name, "")
     return f"{owner}: {name} was removed; write {replacement}" if replacement else ""
 
 
-def answer_removed(owner: str, name: str) -> None:
+def refuse_removed_argument(owner: str, name: str) -> None:
     """Raise TypeError with the replacement if an argument was removed."""
-    if answer := new_way(owner, name):
-        raise TypeError(answer)
+    if message := describe_removal(owner, name):
+        raise TypeError(message)
 
 
-class AnswersRemoved:
+class ExplainsRemovedNames:
     """Base of classes whose removed attributes raise an error that names the replacement."""
 
     if not TYPE_CHECKING:
@@ -49,4 +49,4 @@ class AnswersRemoved:
             """Raise AttributeError. Python calls this only for an attribute that does not exist."""
             owner = type(self).__name__
             default = f"{owner!r} object has no attribute {name!r}"
-            raise AttributeError(new_way(owner, name) or default, name=name, obj=self)
+            raise AttributeError(describe_removal(owner, name) or default, name=name, obj=self)

@@ -15,7 +15,7 @@ from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import read_recorded_law
 from .release import RELEASES
-from .removed import answer_removed
+from .removed import refuse_removed_argument
 from .runaway import check_runaway
 from .stability import largest_step
 from .table_resolution import check_resolved
@@ -59,7 +59,7 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
         for name in values.keys() - signature.parameters:
-            answer_removed("Scene", name)
+            refuse_removed_argument("Scene", name)
         arguments = signature.bind_partial(self, *given, **values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
