@@ -46,8 +46,8 @@ def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, An
     The result has a fit for each release rule by its name, the fit with the smallest chi-square as
     "best", and the difference of chi-square between the worst and the best rule as "difference". A
     fit has chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, the pulls by reading,
-    and regions: the confidence region of the damping ratio by confidence level, with NaN at an end
-    that the studied damping ratios do not reach.
+    and regions: the confidence region of the damping ratio by confidence level, with NaN for an end
+    that lies outside the studied damping ratios.
 
     part : "profile" for fits without the drawn arrows, "arrows" for fits with them
 

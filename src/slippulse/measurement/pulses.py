@@ -44,7 +44,14 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     velocity, slip = (np.asarray(run[name])[start:] for name in ("slip_velocity", "slip"))
     front, stopped = front_at_end(run, distance, velocity, speed)
     if np.isnan(velocity).any():
-        return LeadingPulse(front, speed, np.nan, np.nan, np.nan, np.nan)
+        return LeadingPulse(
+            front=front,
+            speed=speed,
+            width=np.nan,
+            peak_velocity=np.nan,
+            peak_distance=np.nan,
+            slip=np.nan,
+        )
     pulses = [] if stopped else sliding_stretches(velocity)
     leading_velocity = np.zeros(distance.size)
     for pulse in pulses[-1:]:
@@ -65,7 +72,15 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         if settled.any():
             near = distance > distance[settled].max() - max(0.5 * width, 4.0 * dx)
             final_slip = float(np.mean(slip[settled & near]))
-    return LeadingPulse(front, speed, width, peak, peak_distance, final_slip, len(pulses))
+    return LeadingPulse(
+        front=front,
+        speed=speed,
+        width=width,
+        peak_velocity=peak,
+        peak_distance=peak_distance,
+        slip=final_slip,
+        pulses=len(pulses),
+    )
 
 
 def front_at_end(

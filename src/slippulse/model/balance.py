@@ -97,6 +97,7 @@ def prestress_balance_position(prestress: Prestress) -> float:
 
 @lru_cache(maxsize=1024)
 def _balance_position(prestress: Prestress) -> float:
+    """Compute `prestress_balance_position`; results are cached."""
     # Beyond this distance the profile equals its side levels to machine precision.
     ends = [abs(centre) + 40.0 * width for centre, width in prestress.gaussians]
     ends += [abs(position) + (prestress.width or 1.0) for position, _ in prestress.steps]

@@ -17,10 +17,10 @@ from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 
-# A job that needs more than this is refused unless the user allows it: number of runs, block
-# updates (days on one core) and bytes (the memory of a small machine). All jobs of a sweep together
-# may need this number of times as much.
-JOB_LIMITS = 20_000, 4e13, 4e9
+# A job that exceeds one of these limits is refused unless the user allows it. The block updates
+# take days on one core, and the bytes are the memory of a small machine.
+JOB_LIMITS = {"runs": 20_000, "block_updates": 4e13, "bytes": 4e9}
+# All jobs of a sweep together may need at most this number of times the limits of one job.
 SWEEP_LIMIT_IN_JOBS = 50
 OPTION_TO_ALLOW = "--config allow_large=true"
 # Bytes of a block: its recorded numbers, and the arrays of the solver for each order of the Taylor
@@ -60,8 +60,8 @@ class Bound(NamedTuple):
         """
         fraction = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
         where = f" in each of {chunks} chunks" if chunks > 1 else ""
-        for name, value, limit in zip(self._fields, self, JOB_LIMITS, strict=True):
-            allowed = fraction * limit
+        for name, limit in JOB_LIMITS.items():
+            value, allowed = getattr(self, name), fraction * limit
             if not value <= allowed:
                 cost = f"up to {value:.3g} {name.replace('_', ' ')}{where}"
                 return f"cost: {cost}; allowed: {allowed:.3g}, {remedy}"

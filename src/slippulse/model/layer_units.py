@@ -370,7 +370,7 @@ class Layer:
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
         if isinstance(prestress_in_pascal, Real) and not isinstance(prestress_in_pascal, bool):
             (level,) = self.table_from_pascal("prestress_in_pascal", [prestress_in_pascal]).tolist()
-            return Prestress(level, level, width, peak)
+            return Prestress(left=level, right=level, width=width, peak=peak)
         if isinstance(prestress_in_pascal, str | PathLike):
             key, table = str(prestress_in_pascal), read_in_si(Path(prestress_in_pascal))
         else:
@@ -378,7 +378,8 @@ class Layer:
         x, stress = table
         tau = self.table_from_pascal(key, stress)
         try:
-            return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
+            x = self.convert_from_si(x, "length")
+            return Prestress.through(x, tau, width=width, peak=peak)
         except ValueError as error:
             raise ValueError(f"{error} ({self.units_in_words})") from None
 

@@ -219,7 +219,7 @@ class Prestress(ExplainsRemovedNames):
 
         table = read_dimensionless(path, x, prestress)
         try:
-            return cls.through(table.x, table.prestress, width, peak, bumps)
+            return cls.through(table.x, table.prestress, width=width, peak=peak, bumps=bumps)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
 
@@ -264,7 +264,7 @@ class Prestress(ExplainsRemovedNames):
         from .sampled_function import sample_function
 
         x, tau = sample_function(function, start, stop, tolerance)
-        return cls.through(x, tau, width, peak, bumps)
+        return cls.through(x, tau, width=width, peak=peak, bumps=bumps)
 
     def __repr__(self) -> str:
         """Show the arguments that differ from the defaults; of a long table only its length."""
@@ -431,7 +431,7 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
     is_digest = isinstance(parts["points"], str)
     allowed = "the points themselves, which the data file of the run has"
     check_that(not is_digest, "steps_and_bumps points", parts["points"], allowed)
-    return Prestress(left, right, width, peak, **parts)
+    return Prestress(left=left, right=right, width=width, peak=peak, **parts)
 
 
 # Each measurement of a run starts from its pre-stress, which is therefore kept for a few runs.

@@ -22,8 +22,8 @@ WEAKLY_UNSTABLE_ORDERS = (5, 6)
 # bound to one per cent.
 STABILITY_MARGIN = 0.9
 # The error of a Taylor step may be this fraction of the amplitude of the fastest mode. The error of
-# front speeds is then below 1e-3 (for levels of 0.2 to 0.8 and beta/dx up to 100). This limit is
-# shorter than the stability bound only if damping is strong.
+# front speeds is then below 1e-3 (for levels of 0.2 to 0.8 and beta/dx up to 100). The step that it
+# allows is shorter than the stable step only if damping is strong.
 MAX_STEP_ERROR = 1e-2
 # The search for the bound divides the remaining interval into this many parts in each round.
 SEARCH_ROUNDS, PARTS_PER_ROUND = 5, 32
@@ -119,9 +119,12 @@ def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
 
     A step maps the slip and the velocity of a mode to new ones by a matrix of 2 x 2 numbers. Its
     larger eigenvalue, in absolute value, is the amplification.
+
+    derivatives : array of shape (orders, 2, modes), see `_taylor_bound`
     """
     degrees = np.arange(len(derivatives))
     factorials = [math.factorial(k) for k in degrees]
+    # The terms dt^k/k! of the Taylor series, for each step.
     powers = np.asarray(steps, dtype=float)[:, None] ** degrees / factorials
     slip = np.tensordot(powers, derivatives, 1)
     velocity = np.tensordot(powers[:, :-1], derivatives[1:], 1)

@@ -33,7 +33,11 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
         table[f"exact_front_speed_{side}"] = exact_front_speeds(runs, side)
         table[f"lattice_front_speed_{side}"] = [
             _lattice_speed(
-                far_level(run, side), run.gamma, run.dx, rounded_damping_ratio(run), run.release
+                level=far_level(run, side),
+                gamma=run.gamma,
+                dx=run.dx,
+                ratio=rounded_damping_ratio(run),
+                release=run.release,
             )
             for run in runs
         ]

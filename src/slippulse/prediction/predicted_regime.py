@@ -75,7 +75,9 @@ def final_regime(
         return "crack-like, two-way"
     if high == 0.0:
         return "pulse, one-way, steady"
-    largest_ratio = float(largest_pulse_ratio(high, damping_ratio, release, still))
+    largest_ratio = float(
+        largest_pulse_ratio(level=high, damping_ratio=damping_ratio, release=release, still=still)
+    )
     becomes_pulse = high / -low < largest_ratio
     return "pulse, one-way, growing" if becomes_pulse else "crack-like, one front slow"
 
