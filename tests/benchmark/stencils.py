@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from slippulse.solver.jit import entry, inner
+from slippulse.solver.jit import kernel_entry, kernel_function
 
 
-@inner()
+@kernel_function()
 def second_difference(out, lower, upper, per_dx2, leaf, damping):
     """One derivative of slip from the two before it, over an array between fixed ends."""
     for i in range(out.shape[0]):
@@ -16,7 +16,7 @@ def second_difference(out, lower, upper, per_dx2, leaf, damping):
         )
 
 
-@inner()
+@kernel_function()
 def advance_polynomials(slip, velocity, a, b, c, d, h):
     for i in range(slip.shape[0]):
         slip[i] += h * (
@@ -25,7 +25,7 @@ def advance_polynomials(slip, velocity, a, b, c, d, h):
         velocity[i] += h * (a[i] + h / 2.0 * (b[i] + h / 3.0 * (c[i] + h / 4.0 * d[i])))
 
 
-@entry
+@kernel_entry
 def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
     """Steps of order 4 of slip w[0] and velocity w[1] without events; w has 6 rows."""
     n = tau.shape[0]

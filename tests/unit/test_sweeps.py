@@ -147,7 +147,7 @@ def test_without_tqdm_progress_says_so_in_one_line_and_goes_on(monkeypatch, caps
     ):
         assert run()["release_time"].size
         shown = capsys.readouterr().err
-        assert shown == "progress: tqdm is not installed, so that no bar is drawn\n"
+        assert shown == "progress: no bar is drawn, since tqdm is not installed\n"
 
 
 def test_a_damping_ratio_stands_for_beta():

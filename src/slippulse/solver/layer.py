@@ -21,7 +21,7 @@ import numpy as np
 
 from ..model.checks import check_choice, check_number
 from ..model.prestress import Prestress
-from .jit import entry, inner
+from .jit import kernel_entry, kernel_function
 
 # Fraction of the largest stable time step, h / sqrt(2).
 COURANT = 0.85
@@ -115,7 +115,7 @@ class Fault(NamedTuple):
     work: np.ndarray  # (2,): by the pre-stress, and by the pre-stress less friction; over h
 
 
-@inner()
+@kernel_function()
 def update_stresses(elastic, fields, first, last):
     """Advance the stresses of columns first to last by one step."""
     vx, vy, sxx, syy, sxy = fields
@@ -142,7 +142,7 @@ def update_stresses(elastic, fields, first, last):
             s[i] += factor * (high[i] - low[i] + right[i] - left[i])
 
 
-@inner()
+@kernel_function()
 def update_velocities(elastic, fields, first, last):
     """Advance the velocities of columns first to last by one step, except v_x at the bottom."""
     vx, vy, sxx, syy, sxy = fields
@@ -164,7 +164,7 @@ def update_velocities(elastic, fields, first, last):
             v[i] += ratio * (right[i] - left[i] + over * high[i] - under * low[i])
 
 
-@inner()
+@kernel_function()
 def strength(elastic, fields, fault, i):
     """Strength of one node, by the slip since its release and by the normal stress on it."""
     if fault.nucleus[i]:
@@ -176,7 +176,7 @@ def strength(elastic, fields, fault, i):
     return max(0.0, 1.0 - weakening) - elastic.coupling * normal
 
 
-@inner()
+@kernel_function()
 def slide(elastic, fields, fault, i, dt, time):
     """Advance v_x of one node at the bottom by one step, and add up the work."""
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
@@ -206,7 +206,7 @@ def slide(elastic, fields, fault, i, dt, time):
     fault.work[1] += (fault.tau[i] - friction) * moved
 
 
-@entry
+@kernel_entry
 def advance_layer(elastic, fields, fault, dt, steps, centre):
     """Advance between two steps; ``centre``: a node, and columns without friction on each side."""
     for number in range(steps[0], steps[1]):
