@@ -20,8 +20,8 @@ MAX_NEGATIVE_VELOCITY = {"localised": 1e-9, "fixed_step": 1e-2}
 # for the damping.
 MAX_ENERGY_RESIDUAL = 1e-2
 # A Taylor step is flagged if its relative error in the fastest mode is larger than this. The error
-# of front speeds is at most 7 per cent of that error. In chains with rough pre-stress, no front speed
-# changed by 2 per cent even at ten times this value.
+# of front speeds is at most 7 per cent of that error. In chains with rough pre-stress, no front
+# speed changed by 2 per cent even at ten times this value.
 MAX_STEP_ERROR = 2e-2
 
 # Number of positions within the reach of the waves at which the lowest pre-stress is searched for.
