@@ -18,7 +18,9 @@ from .style import BLACK, GREY, SMALL_TEXT, TEXT_OUTLINE, Look, conditions
 
 # Largest numbers of samples along each axis of a map, of blocks along each front, and of points of
 # a table of pre-stress.
-MAP_SAMPLES, FRONT_POINTS, TABLE_POINTS = 121, 400, 1000
+MAP_SAMPLES = 121
+FRONT_POINTS = 400
+TABLE_POINTS = 1000
 # A jump of the pre-stress is drawn within this fraction of the height of the panel.
 JUMP_WIDTH = 1e-6
 # The panel extends beyond the slipped part by this fraction of it on each side, which leaves room

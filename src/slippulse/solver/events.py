@@ -181,29 +181,28 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     Returns an `EventEffect`.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
+    centre, law_kink = difference.centre, medium.law_kink
     block, now, is_stick, at_law_kink = event
-    velocity_before = loss_slope_change = work_slope_change = friction = 0.0
+    velocity_before = loss_change = work_change = friction = 0.0
     left, right = count_sliding_neighbours(segments, block)
     is_on_axis = medium.is_mirrored and block == 1
     if is_on_axis:
         left = right
     if is_stick:
-        velocity_before = hold_block(difference.centre, w, offset, block, now, top)
+        velocity_before = hold_block(centre, w, offset, block, now, top)
         velocity[block] = 0.0
-        friction = friction_at_stick(motion, medium.law_kink, block)
+        friction = friction_at_stick(motion, law_kink, block)
     elif at_law_kink:
-        work_slope_change = change_weakening(
-            difference.centre, motion, medium.law_kink, block, now, top
-        )
+        work_change = change_weakening(centre, motion, law_kink, block, now, top)
     else:
-        friction = start_sliding(difference.centre, medium, motion, block, now, top)
+        friction = start_sliding(centre, medium, motion, block, now, top)
     if medium.beta > 0.0:
         # Only the block of the event changes its acceleration, and its velocity is 0.
         neighbours = velocity_at(w, block + 1, top, now)
         if not is_on_axis:
             neighbours += velocity_at(w, block - 1, top, now)
-        loss_slope_change = -difference.centre[ACCELERATION] * neighbours
-    work_slope_change += friction * difference.centre[ACCELERATION]
+        loss_change = -centre[ACCELERATION] * neighbours
+    work_change += friction * centre[ACCELERATION]
     spread_difference(difference, medium, motion, event, left, right, top)
     if is_stick:
         # The polynomial of the block of the event was changed when the block was stopped.
@@ -222,14 +221,8 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     lowest = predict_releases(medium, motion, segments, prediction, first - 1, last + 1, now, h)
     drop_predicted_events(prediction, first, last)
     is_finite = predict_sticks(motion, prediction, first, last, last - first, now, h, top)
-    predict_law_kinks(motion, medium.law_kink, prediction, first, last, now, h, top)
+    predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
     first_changed = 0 if with_ghost else first
     return EventEffect(
-        is_finite,
-        first_changed,
-        last,
-        velocity_before,
-        lowest,
-        loss_slope_change,
-        work_slope_change,
+        is_finite, first_changed, last, velocity_before, lowest, loss_change, work_change
     )
