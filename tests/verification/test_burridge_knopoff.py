@@ -33,7 +33,7 @@ def run_of(name: str, beta: float, release: str, **accuracy):
 
 
 def check(run, chain: Chain, error: float) -> None:
-    """Compare the fields of a run with those of the independent integration."""
+    """Compare the fields of a run with the fields of the independent integration."""
     blocks = np.round(run["x"].values).astype(int)
     kept = np.abs(blocks) <= COMPARED_BLOCKS
     for name in ("release_time", "stick_time", "slip", "slip_velocity"):

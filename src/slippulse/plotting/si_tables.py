@@ -1,6 +1,6 @@
 """Conversion of the table of a run to SI units with readable prefixes, before it is drawn.
 
-The column `role` of a table says what a row is drawn as.
+The column `role` of a table decides what is drawn from a row, for example a map or a front.
 """
 
 import pandas as pd

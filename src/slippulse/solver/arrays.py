@@ -116,7 +116,7 @@ class EventEffect(NamedTuple):
     first: int  # first block that changed
     last: int  # block after the last one that changed
     velocity_before: float  # velocity of a block that sticks, which should be 0
-    lowest_stress: float  # of the stuck blocks next to those that changed
+    lowest_stress: float  # of the stuck blocks next to the changed ones
     # Changes of the slope of the dissipation: sum of (v_{i+1} - v_i) times the change of
     # a_{i+1} - a_i, where a is the acceleration, and friction times the change of a
     loss_slope_change: float

@@ -120,7 +120,7 @@ def change_weakening(centre, motion, law_kink, block, now, top):
 
 @kernel_function(inline=True)
 def spread_difference(difference, medium, motion, event, left, right, top):
-    """Compute the derivatives of the difference from those at its centre.
+    """Compute the derivatives of the difference from its derivatives at the centre.
 
     The numbers of sliding blocks to the left and to the right of the event limit its reach.
     """

@@ -55,7 +55,7 @@ def friction_of_block(motion, law_kink, block, reached):
 
 @kernel_function()
 def friction_at_stick(motion, law_kink, block):
-    """Return the friction of a block when it sticks. For a law of slip rate it is counted as 0."""
+    """Return the friction of a block when it sticks. For a law of slip rate it is 0 then."""
     if law_kink is not None and law_kink.rate == 0:
         return friction_of_block(
             motion, law_kink, block, motion.w[SLIP, block] + motion.offset[block]

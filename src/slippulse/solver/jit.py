@@ -37,7 +37,7 @@ LAWS_FOLDER = SOLVER_FOLDER.parent / "model" / "friction_laws"
 def source_digest(folder: Path = SOLVER_FOLDER) -> str:
     """Return a digest of all source files of the kernels.
 
-    Numba itself only checks the file of the compiled function, not those of the functions it calls.
+    Numba itself checks only the file of the compiled function, and not the files of its callees.
     """
     digest = hashlib.sha256()
     for path in [*sorted(folder.glob("*.py")), *sorted(LAWS_FOLDER.glob("*.py"))]:
