@@ -48,8 +48,8 @@ def spectral_radius(a, b, c, d) -> float:
     return float(np.max(np.abs([half_trace + root, half_trace - root])))
 
 
-# Scheme, order, stiffness gamma dx^2 of the leaf springs, and the amplification as a function of the
-# step, the damping ratio and this stiffness.
+# Scheme, order, stiffness gamma dx^2 of the leaf springs, and the amplification as a function of
+# the step, the damping ratio and this stiffness.
 AMPLIFICATIONS = [
     *(("localised", order, 0.0, partial(taylor_amplification, order)) for order in ORDERS),
     *(("fixed_step", 4, leaf, euler_amplification) for leaf in (0.0, 0.3, 5.0)),
