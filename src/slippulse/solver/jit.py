@@ -13,7 +13,7 @@ Each flag was chosen by timing runs with and without it in alternation:
 - ``reassoc`` and ``nsz`` allow sums over many blocks to be reordered. A damped crack runs 1.1 times
   as fast.
 - ``contract`` makes runs 1.00 to 1.07 times as fast, and ``error_model="numpy"`` has no effect on
-  speed. Both affect the last bits of results, so they are kept.
+  speed. Both change the last bits of results.
 
 Some of these flags are private to numba. ``tests/unit/test_kernel_cache.py`` fails if a new version
 of numba changes them.
@@ -79,7 +79,7 @@ def writable_cache() -> str:
     return str(folder or "")
 
 
-# Without this setting, numba would choose a folder whose machine code may be of older sources.
+# Without this setting, numba would choose a folder whose machine code may be of other sources.
 CACHE_FOLDER = writable_cache()
 numba.config.CACHE_DIR = CACHE_FOLDER  # type: ignore[attr-defined]
 
