@@ -7,7 +7,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measurement.promise import covered
+from slippulse.measurement.promise import covered_numbers
 from slippulse.prediction.comparison import measured_table
 
 FRACTION = 0.95
@@ -79,7 +79,7 @@ def test_every_covered_number_keeps_its_promise_without_a_much_finer_lattice_tha
     sweep = sp.run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (scene, exact), run in zip(cases, made, runs, strict=True):
-        promised = covered(run, FRACTION).intersection(exact)
+        promised = covered_numbers(run, FRACTION).intersection(exact)
         # The transition of an undamped crack is not covered.
         undamped_crack = scene.beta == 0.0 and "largest_velocity" in exact
         assert promised == ({"largest_velocity"} if undamped_crack else set(exact)), case

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.sweep_views import AXES
+from ..data.sweep_views import AXES_ATTRIBUTE
 from ..model.checks import check_that
 from ..model.prestress import Prestress
 from ..model.samples import Samples
@@ -81,7 +81,7 @@ def sweep(
     axes = [name for name, values in lists.items() if len(values) > 1]
     # A list of pre-stresses is not a coordinate, although their levels and widths are.
     is_grid = bool(axes) and all(name in data.coords for name in axes)
-    return data.assign_attrs({AXES: " ".join(axes)}) if is_grid else data
+    return data.assign_attrs({AXES_ATTRIBUTE: " ".join(axes)}) if is_grid else data
 
 
 def _values(name: str, value: Any) -> list:

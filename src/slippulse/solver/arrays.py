@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.friction_laws.law import Bend
+from ..model.friction_laws.law import LawKink
 
 # Rows of `Motion.w`: time derivatives of slip.
 SLIP, VELOCITY, ACCELERATION = 0, 1, 2
@@ -73,7 +73,7 @@ class Medium(NamedTuple):
     law_number: int  # position of any other law of friction in the list of laws, 0 if there is none
     law_parameter_1: float
     law_parameter_2: float
-    law_kink: Bend | None  # piecewise linear friction, which the Taylor step solves
+    law_kink: LawKink | None  # piecewise linear friction, which the Taylor step solves
     is_mirrored: bool  # block 1 lies at x = 0, and block 0 is the mirror image of block 2
     damping_counts_for_release: bool  # the damping force is part of the stress compared with 1
 

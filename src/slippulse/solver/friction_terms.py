@@ -10,7 +10,7 @@ None, the functions below are empty and cost nothing.
 from typing import NamedTuple
 
 from ..model.friction import LAWS
-from ..model.friction_laws.law import Bend, Friction
+from ..model.friction_laws.law import Friction, LawKink
 from .arrays import ACCELERATION, SLIP, VELOCITY
 from .jit import kernel_function
 from .stencils import block_range
@@ -23,15 +23,15 @@ class FrictionConstants(NamedTuple):
     law_number: int
     law_parameter_1: float
     law_parameter_2: float
-    law_kink: Bend | None
+    law_kink: LawKink | None
 
 
 def friction_constants(friction: Friction, localised: bool) -> FrictionConstants:
     """Return the constants of a law of friction for the kernels of a scheme."""
     if localised or "continuum" in friction.schemes:
         traits = friction.traits
-        return FrictionConstants(traits.linear_rate, 0, 0.0, 0.0, traits.bend)
-    return FrictionConstants(0.0, LAWS.index(type(friction)), *friction.constants, None)
+        return FrictionConstants(traits.linear_rate, 0, 0.0, 0.0, traits.law_kink)
+    return FrictionConstants(0.0, LAWS.index(type(friction)), *friction.kernel_parameters, None)
 
 
 @kernel_function()
