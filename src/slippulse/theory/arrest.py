@@ -7,7 +7,7 @@ import numpy as np
 from ..model.balance import integral, prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from ..model.removed import AnswersRemoved
+from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
@@ -15,7 +15,7 @@ from .two_fronts import ExactTransition, fast_fronts
 SAMPLES = 400
 
 
-class ArrestingCrack(AnswersRemoved):
+class ArrestingCrack(ExplainsRemovedNames):
     """The crack whose left front slows for ever, without leaf springs.
 
     du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,
@@ -47,7 +47,7 @@ class ArrestingCrack(AnswersRemoved):
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
         # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
-        self.end = 48.0 * prestress.width
+        self.end = max([48.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
         self.fronts = fast_fronts(prestress, damping_ratio, release, self.end)
         self.zero = float(self.fronts.edges[0])
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from slippulse.measurement.front_paths import straight_line
+from slippulse.measurement.front_paths import fit_line
 from slippulse.measurement.regime import UNDECIDED
 from slippulse.measurement.uncertainty import grid_study
 
@@ -74,7 +74,7 @@ def _slope(logs: np.ndarray) -> float:
     ``logs`` has the shape [predicted and measured, run].
     """
     x, y = logs[:, np.isfinite(logs).all(axis=0)]
-    return straight_line(x, y)[0] if x.size > 2 else NAN
+    return fit_line(x, y).slope if x.size > 2 else NAN
 
 
 def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:

@@ -5,7 +5,7 @@ Positions were read off the figure. The study `published_figure` fits the exact 
 
 from typing import Any
 
-from slippulse.measurement.inference import inference
+from slippulse.measurement.inference import infer_parameters
 
 from .evidence import Evidence
 from .kinds import Reading
@@ -16,7 +16,7 @@ ARROW_READINGS = ("arrow_time", "arrow_length")
 
 def left(evidence: Evidence, id: str) -> Reading:
     """Judge the left panel by the best fit to all its readings except the arrows."""
-    best = inference(evidence.tables["published_figure"])["best"]
+    best = infer_parameters(evidence.tables["published_figure"])["best"]
     further = read_off(evidence, "space_time_displacement")
     fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
     return Reading(tolerance=evidence.tolerance(id), **fit, further=further, template_values=best)
@@ -25,7 +25,10 @@ def left(evidence: Evidence, id: str) -> Reading:
 def arrows(evidence: Evidence, id: str) -> Reading:
     """Judge the two arrows of the left panel by how much they raise the chi-square."""
     study = evidence.tables["published_figure"]
-    fits = {"with": inference(study, part="arrows")["best"], "without": inference(study)["best"]}
+    fits = {
+        "with": infer_parameters(study, part="arrows")["best"],
+        "without": infer_parameters(study)["best"],
+    }
     further = {}
     for words, fit in fits.items():
         longer = []
