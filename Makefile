@@ -48,12 +48,13 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) \
         echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test \
+.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify compare test \
     test-library test-pages test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers"
+	@echo "make compare     AGAINST=other/results: old beside new as a page, results/compare.html"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make test-library  the library alone, with the oldest and newest packages: PACKAGES=oldest for one"
@@ -124,6 +125,11 @@ replicate: $(READY)
 
 rulegraph: $(READY)
 	@"$(BIN)/python" workflow/run.py rulegraph
+
+# Old beside new: AGAINST is the folder of the old results.
+compare: $(READY)
+	@test -n "$$AGAINST" || { echo "AGAINST is missing; allowed: a folder of results, such as AGAINST=shipped" >&2; exit 1; }
+	@"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST" results/compare.html
 
 verify: $(READY)
 	@$(if $(AGAINST),"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)

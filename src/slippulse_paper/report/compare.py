@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -20,13 +20,22 @@ from slippulse.data.files import UnreadableFile
 from slippulse.data.tables import load_table
 
 from ..records.provenance import changes
-from .joined_runs import LATTICE, RUN, describe_run, join_runs, varying_parameters
+from .joined_runs import (
+    LATTICE,
+    RUN,
+    JoinedRuns,
+    describe_pair,
+    describe_run,
+    join_runs,
+    varying_parameters,
+)
 
 TEXTS = ("boundary", "release", "quantity")
 # Numbers that agree to DIGITS need no uncertainty, since tables have nine digits. Numbers without
 # uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
 DIGITS, ROUNDING = 1e-8, 1e-6
 SHOWN = 10
+Tables: TypeAlias = Sequence[pd.DataFrame]
 # What is said of a number in both folders.
 AGREES, DIFFERS, UNKNOWN, ALTERED = "agrees", "differs", "no uncertainty", "altered run"
 # Lines about a difference between two files of one name.
@@ -100,16 +109,7 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.
     """Compare one table of measured numbers, with the grid studies of both folders."""
     tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
     joined, varying = join_runs(*tables), varying_parameters(*tables)
-    only = {}
-    for side, table, rows in zip(("new", "old"), tables, joined[3:], strict=True):
-        only[side] = [describe_run(table.loc[row], varying) for row in rows]
-        which = "this" if side == "new" else "the other"
-        result.other += [f"{name}: only in {which} tree: {run}" for run in only[side]]
-    counts = {"same": len(joined.same), "altered": len(joined.altered)}
-    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **only})
-    if len(joined.altered):
-        keys = ", ".join(joined.keys)
-        result.other.append(f"{name}: {len(joined.altered)} runs differ in {keys}")
+    _list_runs(result, name, tables, joined, varying)
     for column in sorted({*tables[0]} ^ {*tables[1]}):
         result.other.append(f"{name}: columns in one tree only: {column}")
     studies = [tree / "uncertainties" / name for tree in trees]
@@ -117,19 +117,20 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.
         result.other.append(f"{name}: uncertainties in one tree only")
     common = tables[0].columns.intersection(tables[1].columns, sort=False)
     common = common.difference(RUN, sort=False)
-    with_text = [column for table in tables for column in table.select_dtypes(
-        exclude=["number", "bool"])]  # fmt: skip
+    plain = ["number", "bool"]
+    with_text = {column for table in tables for column in table.select_dtypes(exclude=plain)}
     numbers = common.difference([*with_text, *LATTICE], sort=False)
-    values = [table[numbers].astype(float) for table in tables]
-    uncertainties = [*map(_uncertainties, studies, values)]
-    found = []
-    for pairs, are_altered in ((joined.same, False), (joined.altered, True)):
-        rows = [_Side(*side, pairs[:, column]) for column, side in enumerate(
-            zip(tables, values, uncertainties, strict=True))]  # fmt: skip
-        found.append(_compare_numbers(rows, varying, are_altered))
-        if not are_altered:
-            _compare_texts(result, name, rows, common.intersection(with_text, sort=False))
-    long = pd.concat(found, ignore_index=True)
+    sides = []
+    for table, path in zip(tables, studies, strict=True):
+        values = table[numbers].astype(float)
+        sides.append(_Side(table, values, _uncertainties(path, values)))
+    same, altered = (
+        [side.take(pairs[:, column]) for column, side in enumerate(sides)]
+        for pairs in (joined.same, joined.altered)
+    )
+    _compare_texts(result, name, same, [column for column in common if column in with_text])
+    compared = [_compare_numbers(same, varying), _compare_numbers(altered, varying, altered=True)]
+    long = pd.concat([rows for rows in compared if len(rows)] or compared[:1], ignore_index=True)
     long.insert(0, "table", Path(name).stem)
     for row in long[long["outcome"] == DIFFERS].itertuples():
         pair = f"{row.new:.6g} against {row.old:.6g}"
@@ -138,11 +139,34 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.
     return long
 
 
-class _Side:
-    """The joined rows of one folder: parameters, numbers and their uncertainties."""
+def _list_runs(
+    result: Comparison, name: str, tables: Tables, joined: JoinedRuns, varying: list[str]
+) -> None:
+    """Record how many runs are joined, and list the runs of one folder alone."""
+    only: dict[str, list[str]] = {}
+    for side, table, rows in zip(("new", "old"), tables, joined[3:], strict=True):
+        only[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
+        which = "this" if side == "new" else "the other"
+        result.other += [f"{name}: only in {which} tree: {run}" for run in only[side]]
+    counts = {"same": len(joined.same), "altered": len(joined.altered)}
+    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **only})
+    if counts["altered"]:
+        many = counts["altered"] > 1
+        pairs = f"{counts['altered']} pairs of runs differ" if many else "1 pair of runs differs"
+        result.other.append(f"{name}: {pairs} in {', '.join(joined.keys)}")
 
-    def __init__(self, table: pd.DataFrame, values: pd.DataFrame, errors: pd.DataFrame, rows: Any):
-        self.table, self.values, self.errors = table.loc[rows], values.loc[rows], errors.loc[rows]
+
+@dataclass
+class _Side:
+    """Runs of one folder: their parameters, numbers, and uncertainties of these."""
+
+    table: pd.DataFrame
+    values: pd.DataFrame
+    errors: pd.DataFrame
+
+    def take(self, rows: np.ndarray) -> "_Side":
+        """Return these rows, in this order."""
+        return _Side(self.table.loc[rows], self.values.loc[rows], self.errors.loc[rows])
 
 
 def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
@@ -151,7 +175,7 @@ def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
     return (new.table[lattice].to_numpy() == old.table[lattice].to_numpy()).all(axis=1)[:, None]
 
 
-def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts: pd.Index) -> None:
+def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts: list[str]) -> None:
     """Add a line for each text that differs between runs with the same lattice."""
     ours, theirs = (side.table[texts].astype(object).fillna("") for side in sides)
     differs = (ours.to_numpy() != theirs.to_numpy()) & _same_lattice(*sides)
@@ -160,29 +184,34 @@ def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts:
         result.apart.append(f"{name}: point {ours.index[row]}, {texts[column]}: {pair}")
 
 
-def _compare_numbers(sides: Sequence[_Side], varying: list[str], are_altered: bool) -> pd.DataFrame:
+def _compare_numbers(
+    sides: Sequence[_Side], varying: list[str], altered: bool = False
+) -> pd.DataFrame:
     """Return one row per number; it is unknown where lattices differ and no study was made."""
     new, old = (side.values.to_numpy() for side in sides)
-    errors = [side.errors.to_numpy() for side in sides]
-    no_study, size = np.isnan(errors).all(axis=0), np.abs(new)
+    new_error, old_error = (side.errors.to_numpy() for side in sides)
+    no_study, size = np.isnan(new_error) & np.isnan(old_error), np.abs(new)
     same_lattice = _same_lattice(*sides)
-    allowed = np.nan_to_num(errors[0]) + np.nan_to_num(errors[1]) + DIGITS * size
+    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + DIGITS * size
     allowed = np.where(no_study & same_lattice, ROUNDING * np.maximum(size, 1.0), allowed)
     known = ~np.isnan([new, old])
-    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not are_altered))
+    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not altered))
     differs = ~(np.abs(new - old) <= allowed)
     outcome = np.where(differs, np.where(no_study & ~same_lattice, UNKNOWN, DIFFERS), AGREES)
-    outcome = np.full_like(outcome, ALTERED, dtype=object) if are_altered else outcome
+    records = [side.table.to_dict("records") for side in sides]
+    runs = [describe_pair(ours, theirs, varying) for ours, theirs in zip(*records, strict=True)]
     row, column = np.nonzero(compared)
-    runs = [[describe_run(run, varying) for _, run in side.table.iterrows()] for side in sides]
-    names = [text if text == other else f"{text} (old: {other})"
-             for text, other in zip(*runs, strict=True)]  # fmt: skip
-    columns = {"point": sides[0].table.index.to_numpy()[row], "run": np.array(names, object)[row]}
-    columns["quantity"] = sides[0].values.columns.to_numpy()[column]
-    for key, array in (("old", old), ("old_uncertainty", errors[1]), ("new", new),
-                       ("new_uncertainty", errors[0]), ("allowed", allowed),
-                       ("outcome", outcome)):  # fmt: skip
-        columns[key] = array[row, column]
+    columns = {
+        "point": sides[0].table.index.to_numpy()[row],
+        "run": np.array(runs, object)[row],
+        "quantity": sides[0].values.columns.to_numpy()[column],
+        "old": old[row, column],
+        "old_uncertainty": old_error[row, column],
+        "new": new[row, column],
+        "new_uncertainty": new_error[row, column],
+        "allowed": allowed[row, column],
+        "outcome": ALTERED if altered else outcome[row, column],
+    }
     return pd.DataFrame(columns)
 
 

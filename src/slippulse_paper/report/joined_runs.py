@@ -1,5 +1,6 @@
 """Runs of two tables, joined by their parameters."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -27,13 +28,13 @@ class JoinedRuns(NamedTuple):
 
 
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
-    """Join the same runs, then the runs that differ only in parameters whose values changed."""
+    """Join the same runs, then the runs that differ only in parameters whose one value changed."""
     parameters = RUN + [name for name in FURTHER if name in new and name in old]
     lattice = [name for name in LATTICE if name in new and name in old]
     left = [new[[*parameters, *lattice]], old[[*parameters, *lattice]]]
     found = []
     for keys in ([*parameters, *lattice], parameters):
-        pairs = _pairs(*left, keys)
+        pairs = _pairs(left, keys)
         found.append(pairs)
         left = [
             rows.drop(rows.index[rows.index.isin(taken)])
@@ -41,20 +42,30 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
         ]
     same = np.concatenate(found)
     same = same[np.argsort(same[:, 0], kind="stable")]
-    changed = [name for name in parameters if {*left[0][name]} != {*left[1][name]}]
+    changed = [name for name in parameters if not {*left[0][name]} & {*left[1][name]}]
+    keys = [name for name in changed if name not in DERIVED]
     altered = np.empty((0, 2), int)
-    if changed and any(map(len, left)) and len(changed) < len(parameters):
-        altered = _pairs(*left, [name for name in parameters if name not in changed])
+    # Only one value in place of one other says which runs belong together.
+    if keys and all(rows[name].nunique(dropna=False) == 1 for rows in left for name in keys):
+        altered = _pairs(left, [name for name in parameters if name not in changed])
     only = [rows.index.difference(taken) for rows, taken in zip(left, altered.T, strict=True)]
-    keys = [name for name in changed if name not in DERIVED] or changed
     return JoinedRuns(same, altered, keys, *(rows.to_numpy() for rows in only))
 
 
-def describe_run(row: pd.Series, keys: list[str]) -> str:
+def describe_run(run: Mapping, keys: Iterable[str]) -> str:
     """Write the parameters of a run as text, such as "left 0.5, gamma 0.3"."""
-    parts = [f"{key} {row[key]:g}" if isinstance(row[key], float) else f"{key} {row[key]}"
-             for key in keys if not pd.isna(row[key])]  # fmt: skip
-    return ", ".join(parts)
+    known = {key: run[key] for key in keys if not pd.isna(run[key])}
+    texts = {key: f"{value:g}" if isinstance(value, float) else f"{value}"
+             for key, value in known.items()}  # fmt: skip
+    return ", ".join(f"{key} {text}" for key, text in texts.items())
+
+
+def describe_pair(new: Mapping, old: Mapping, keys: Iterable[str]) -> str:
+    """Write the parameters of the new run, and those that are others in the old run."""
+    keys = list(keys)
+    other = [key for key in keys if str(new[key]) != str(old[key])]
+    text = describe_run(new, keys)
+    return f"{text} (old: {describe_run(old, other)})" if other else text
 
 
 def varying_parameters(*tables: pd.DataFrame) -> list[str]:
@@ -66,10 +77,10 @@ def varying_parameters(*tables: pd.DataFrame) -> list[str]:
     return independent or varying or names[:4]
 
 
-def _pairs(new: pd.DataFrame, old: pd.DataFrame, keys: list[str]) -> np.ndarray:
+def _pairs(tables: Sequence[pd.DataFrame], keys: list[str]) -> np.ndarray:
     """Return the index pairs of rows with equal keys; equal rows are paired in their order."""
     sides = []
-    for rows, name in ((new, "new"), (old, "old")):
+    for rows, name in zip(tables, ("new", "old"), strict=True):
         # Equal text is an equal number: tables are read back from files of nine digits.
         texts = rows[keys].astype(str)
         sides.append(texts.assign(copy=texts.groupby(keys).cumcount(), **{name: rows.index}))
