@@ -191,7 +191,7 @@ check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check
 
 clean:
-	rm -rf results .snakemake
+	rm -rf results .snakemake .site
 
 distclean: clean
 	rm -rf "$(VENV)"

@@ -77,7 +77,7 @@ class ArrestingCrack(AnswersRemoved):
         return entry + float(self.fronts.arrival(entry)) - position
 
     def transition(self, fraction: float) -> ExactTransition:
-        """Time when the left front has covered a fraction of |x_minus|, and length then.
+        """Time when the left front has covered a fraction of ``|x_minus|``, and length then.
 
         Parameters
         ----------

@@ -68,7 +68,7 @@ def uniform_transition_time(
     """T_trans, like 1/sqrt(gamma), in uniform pre-stress that is nucleated at one point.
 
     Raises ValueError: outside the domain.
-    Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v. With w = 1/v and
+    Source: the first zero of du/dt at x = 0 behind the fronts ``T(x) = |x|/v``. With w = 1/v and
     q = sqrt(gamma) t/(1 + w) it is that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, which
     depends on v alone.
 
