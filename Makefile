@@ -53,7 +53,7 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
         echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
 .PHONY: help setup slurm notebook docs lock describe tutorial reference replicate rulegraph verify compare test \
-    test-library test-pages test-slow test-all faults slurm-test benchmark check clean distclean
+    test-library test-pages test-site test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -63,6 +63,7 @@ help:
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make test-library  the library alone, with the oldest and newest packages: PACKAGES=oldest for one"
 	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility"
+	@echo "make test-site   the pages of the documentation in the same way"
 	@echo "make test-all    these and the slow ones: edits, every example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must not change"
@@ -168,6 +169,10 @@ test-library: $(READY)
 
 test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser
+
+# The pages of the documentation in a headless chromium.
+test-site: docs
+	@PATH="$(CURDIR)/$(BIN):$$PATH" SITE=results/site python -m pytest -m "slow or not slow" tests/browser/test_site.py
 
 test-slow: $(READY)
 	@$(call CHECK_COUNT,KILLS)

@@ -6,6 +6,7 @@ Pages keep the place that they have in the repository, so that their links hold.
 that is no page becomes its text.
 """
 
+import os
 import re
 import shutil
 import sys
@@ -92,7 +93,14 @@ def main(folder: str) -> int:
 
     sources = PROJECT / ".site/sources"
     collect(sources)
-    options = ["-q", "-W", "--keep-going", "-j", "2", "-d", str(PROJECT / ".site/doctrees")]
+    # The kernel of the notebooks reads no settings of the user, and reports errors alone.
+    settings = "profile_default/ipython_kernel_config.py"
+    write(PROJECT / ".site/ipython" / settings, "c.IPKernelApp.log_level = 40\n")
+    os.environ["IPYTHONDIR"] = str(PROJECT / ".site/ipython")
+    # Each page lists the others, so that all are written.
+    if Path(folder, ".buildinfo").exists():
+        shutil.rmtree(folder)
+    options = ["-q", "-a", "-W", "--keep-going", "-j", "2", "-d", str(PROJECT / ".site/doctrees")]
     code = build([*options, "-c", str(PROJECT / "docs/site"), str(sources), folder])
     if code == 0:
         print(f"Open {folder}/index.html")

@@ -12,7 +12,8 @@ sys.path.insert(0, str(SITE))
 
 project = "slippulse"
 author = "The slippulse developers"
-extensions = ["sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "myst_nb", "mathml"]
+extensions = ["sphinx.ext.autodoc", "sphinx.ext.autosummary", "numpydoc", "myst_nb"]
+extensions += ["mathml", "docstrings"]
 root_doc = "index"
 exclude_patterns = ["docs/site/*", "**.ipynb_checkpoints"]
 templates_path = [str(SITE)]
@@ -25,6 +26,8 @@ nb_execution_mode = "cache"
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+# The first run on a machine prints that kernels are compiled.
+nb_output_stderr = "remove"
 
 # The reference
 autosummary_generate = True
@@ -37,9 +40,12 @@ default_role = "py:obj"
 # The look: everything is beside the pages, and the search runs in the browser.
 html_theme = "pydata_sphinx_theme"
 html_title = "slippulse"
-html_static_path = [str(SITE / "style.css")]
+html_static_path = [str(SITE / "style.css"), str(SITE / "keyboard.js")]
 html_css_files = ["style.css"]
 html_math_renderer = "mathml"
+html_js_files = ["keyboard.js"]
+# Browsers refuse to fetch the pages for a summary when the site is opened from a folder.
+html_show_search_summary = False
 html_show_sourcelink = False
 html_copy_source = False
 html_theme_options = {
@@ -48,6 +54,7 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
     "show_prev_next": True,
+    "collapse_navigation": True,
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
     "secondary_sidebar_items": ["page-toc"],

@@ -1,0 +1,7 @@
+// A table that scrolls sideways can be reached and scrolled by the keyboard.
+document.addEventListener("DOMContentLoaded", () => {
+  const boxes = ".pst-scrollable-table-container, .output.text_html";
+  for (const box of document.querySelectorAll(boxes)) {
+    if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+  }
+});
