@@ -101,6 +101,19 @@ def test_the_answer_is_yes_no_or_open_by_the_verdict_of_its_first_line(verdict, 
     assert texts.answer(texts.judged_lines({"verdict": [line]}, ledger, str)) == expected
 
 
+def test_the_index_has_at_most_twelve_statements_of_one_line(manuscript):
+    summary = read(manuscript / "summary.yaml")
+    shipped = read(manuscript / "shipped_verdicts.yaml")
+    assert len(summary["statements"]) <= 12
+    for row in summary["statements"]:
+        assert row["claims"] and set(row["claims"]) <= shipped.keys()
+        # An expression becomes a few characters, and a line of the table has room for about 70.
+        number = EXPRESSION.sub("12 of 12", row["number"])
+        assert len(row["statement"]) <= 65 and len(number) <= 70, row
+        # The words and symbols are explained below the table.
+        assert "$" not in row["statement"] + row["number"]
+
+
 def test_every_tested_sentence_has_a_claim_and_every_claim_a_sentence(manuscript, entries):
     statements = read(manuscript / "statements.yaml")["statements"]
     ids = [sentence["id"] for sentence in statements]
@@ -163,7 +176,6 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
     assert sorted([*placed, "user_defined_sweep"]) == sorted(captions)
     assert len(figures) >= 17 and figures <= set(placed)
     assert sum(name.startswith("fig") for name in figures) == 11
-    assert read(manuscript / "summary.yaml")["picture"] in figures
     assert len({caption.title for caption in captions.values()}) == len(captions)
     for name, caption in captions.items():
         # Plain text stands in headings and alternative texts; a finding is one sentence.
@@ -285,6 +297,8 @@ def test_no_text_has_a_typed_number(manuscript):
         entries.append({key: line[key] for key in ("topic", "named", "text")})
         entries += [line.get("said", {}), line["claims"], line.get("beside", {})]
     entries.append({key: summary[key] for key in ("question", "symbols", "accuracy")})
+    entries += [{key: row[key] for key in ("statement", "number")} for row in summary["statements"]]
+    entries += summary["words"]
     for entry in entries:
         assert list(filter(None, map(in_prose, entry.values()))) == []
     for text in TYPED:

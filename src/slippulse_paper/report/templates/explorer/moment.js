@@ -21,7 +21,7 @@ function reading({ scene, rupture, known }, time, x) {
   const start = `t = ${format(time, 3)}, x = ${format(x, 3)}: `;
   const stress = `Pre-stress ${format(Number(prestressAt(scene, x).toFixed(3)))}.`;
   if (!(time > rupture.arrival(x))) return `${start}not yet released. ${stress}`;
-  if (!known(x, time)) return `${start}not known, see below the map.`;
+  if (!known(x, time)) return `${start}unknown; the text below the map has the reason.`;
   const { times, values, stick } = rupture.history(x, time);
   const slip = format(sums(times, values).at(-1), 3);
   const state = stick <= time ? `stuck again since t = ${format(stick, 3)}`

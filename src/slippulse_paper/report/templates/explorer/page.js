@@ -48,7 +48,7 @@ function note(name) {
 function changeSince(reference, { scene, exact }) {
   const [ratio, speed] = [format(scene.ratio), format(exact.speed)];
   if (Math.abs(exact.speed / reference.exact.speed - 1) <= 5e-5) {
-    return `b is still ${ratio}, and nothing has changed: v = ${speed}.`;
+    return `b is still ${ratio}, so the front speed is unchanged: v = ${speed}.`;
   }
   const [ratioThen, speedThen] = [format(reference.scene.ratio), format(reference.exact.speed)];
   return `b went from ${ratioThen} to ${ratio}, and v from ${speedThen} to ${speed}.`;
@@ -60,7 +60,7 @@ function aboutFronts({ scene, exact, rupture }) {
   if (scene.right > 0) {
     const [speed, paper] = [format(exact.speed), format(paperSpeed(scene.right))];
     sentences.push(`At b = ${format(scene.ratio)} the right front runs at v = ${speed},`
-      + ` where the paper’s formula, b = 0, says ${paper}.`);
+      + ` where the paper’s formula, for b = 0, gives ${paper}.`);
   }
   const { slow } = rupture.left;
   if (slow) {

@@ -50,7 +50,7 @@ function showNearest(scene) {
     const other = Math.abs(there - here) > 1e-9 ? ` (here ${format(here)})` : "";
     return `${name} = ${format(there)}${other}`;
   });
-  const nearness = far < 1e-9 ? "these very settings." : "not these settings, but near.";
+  const nearness = far < 1e-9 ? "exactly these settings." : "close to these settings.";
   at("nearest").textContent = `${words.join(", ")}, rule “${named.release}”: ${nearness}`;
   at("visit").onclick = () => {
     const dx = named.ratio > 0 ? named.beta / named.ratio : settings.dx;
