@@ -8,8 +8,11 @@ from functools import cache
 from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
-# The code is the one beside this file, whatever is installed or on PYTHONPATH.
+# The code is the one beside this file, whatever is installed or on PYTHONPATH; so in the workers.
 sys.path.insert(0, str(PROJECT / "src"))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(PROJECT / "src"), os.environ.get("PYTHONPATH")])
+)
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
@@ -25,9 +28,9 @@ from slippulse_paper.records.job_records import RecordedFiles
 from slippulse_paper.records.lock import take
 from slippulse_paper.records.packages import package_problem
 from slippulse_paper.records.sources import modules_reached, sources_of
-from slippulse_paper.steps.job import Job, JobFailed, run_job
+from slippulse_paper.steps.job import Job, JobFailed
 from slippulse_paper.steps.needs import declared, needs_of
-from slippulse_paper.steps.worker_pool import WorkerPool
+from slippulse_paper.steps.worker_pool import WorkerPool, run_here
 
 # In a module of another workflow, `config` is what the module is given, and paths may get a prefix.
 IS_MODULE = not workflow.modifier.is_main_snakefile()
@@ -68,6 +71,9 @@ try:
         raise ConfigError(f"studies: {', '.join(unknown)}; allowed: {', '.join(STUDY_NEEDS)}")
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
+
+if Path("results").is_file():
+    sys.exit("results is a file; remove or rename it: a folder of that name is needed")
 
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
@@ -146,12 +152,8 @@ def code_of(step, *modules, texts=()):
 def templates(*names):
     """Templates of pages, with those that every page is made with."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
-    paths = [
-        path
-        for name in ("base.html", "style.css", "parts.html", *names)
-        for path in folder.glob(name)
-    ]
-    return [path.relative_to(PROJECT).as_posix() for path in sorted({*paths})]
+    paths = [path for name in ("base.html", "style.css", *names) for path in folder.glob(name)]
+    return [path.relative_to(PROJECT).as_posix() for path in paths]
 
 
 def run_step(step, wildcards, input, output, params, threads, log):
@@ -176,7 +178,7 @@ def run_step(step, wildcards, input, output, params, threads, log):
         sources=SOURCES_BY_DIGEST[params.code],
     )
     try:
-        WORKERS.run(job) if workflow.is_main_process else run_job(job)
+        WORKERS.run(job, workflow.cores) if workflow.is_main_process else run_here(job)
     except JobFailed as reason:
         # Snakemake reads the log of a failed job, which a process that never began has not written.
         with suppress(OSError):
@@ -244,21 +246,13 @@ def check_packages_and_lock():
 
 def report_changed_results():
     """Print one line if results are not what their jobs wrote, which Snakemake does not notice."""
-    recorded = RecordedFiles("results")
-    problems = dict(recorded.problems())
-    if recorded.records and not Path(".snakemake/metadata").exists():
-        print(
-            f"{len(recorded.records)} jobs have results here, but Snakemake's own records"
-            " (.snakemake) are gone: `make replicate` renews the results,"
-            " and so does `snakemake --forceall`",
-            file=sys.stderr,
-        )
-    if problems:
+    if problems := dict(RecordedFiles("results").problems()):
         name, reason = next(iter(problems.items()))
-        count = f"1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        more = " ..." if len(problems) > 5 else ""
         print(
-            f"{count} not as made: {', '.join([*problems][:5])} ({name}: {reason}). Renew:"
-            f" make replicate, or delete and run again",
+            f"{count} not as made: {', '.join([*problems][:5])}{more} ({name}: {reason})."
+            " Renew: make replicate, or snakemake --forcerun and their names",
             file=sys.stderr,
         )
 

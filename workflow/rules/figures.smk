@@ -75,7 +75,7 @@ rule draw_scene:
             "altered": note_of({"data": [wildcards.scene]}),
             "layer": LAYERS[wildcards.scene],
         },
-        code=code_of("draw_scene", texts=templates("scene.html")),
+        code=code_of("draw_scene", texts=templates("scene.html", "parts.html")),
     message:
         "Drawing scene {wildcards.scene}"
     run:

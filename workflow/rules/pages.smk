@@ -56,7 +56,7 @@ rule write_claims:
             "damping_ratio": config["model"]["damping_ratio"],
             "altered": changes(SHIPPED, config),
         },
-        code=code_of("write_claims", texts=[*CLAIM_TEXTS, *templates("claims.html")]),
+        code=code_of("write_claims", texts=[*CLAIM_TEXTS, *templates("claims.html", "parts.html")]),
     message:
         "Judging the claims"
     run:
@@ -82,8 +82,8 @@ rule write_explorer:
 
 rule write_report:
     input:
-        [project(path) for path in REPORT_TEXTS],
-        expand("results/figures/{name}.png", name=NEEDS),
+        texts=[project(path) for path in REPORT_TEXTS],
+        pictures=expand("results/figures/{name}.png", name=NEEDS),
         **inputs_of(REPORT_NEEDS),
         sources=[project(f"manuscript/{document}.md") for document in DOCUMENTS],
         claims="results/claims.json",
@@ -109,7 +109,7 @@ rule write_report:
 
 rule write_scenes_page:
     input:
-        expand("results/scenes/{scene}.png", scene=SCENES),
+        pictures=expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
     log:

@@ -114,7 +114,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     Examples
     --------
-    >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
+    >>> float(damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0)) / 1e6
     5.0
     """
     zone = as_numbers("shear_modulus", shear_modulus, above=0.0)
