@@ -165,13 +165,19 @@ def test_little_motion_is_asked_for_and_given(page):
 
 
 @both_widths
-def test_the_map_stays_in_view(page):
-    narrow = page.viewport_size["width"] < 1000
-    for name in ("end",) if narrow else ("end", "velocity", "simulated"):
-        page.locator(f"#{name}").scroll_into_view_if_needed()
-        for part in ("map", "play"):
-            box = page.locator(f"#{part}").bounding_box()
-            assert box["y"] >= -1.0 and box["y"] + box["height"] < 844, (name, part)
+def test_the_map_stays_in_view_of_every_slider(page):
+    page.locator("#end").scroll_into_view_if_needed()
+    for part in ("map", "play"):
+        box = page.locator(f"#{part}").bounding_box()
+        assert box["y"] >= -1.0 and box["y"] + box["height"] < 844, part
+
+
+def test_on_a_wide_screen_no_column_is_left_empty(page):
+    heights = [page.locator(f".{part}").bounding_box()["height"] for part in ("view", "controls")]
+    assert max(heights) < 1.35 * min(heights)
+    tops = [page.locator(f"#{name}").bounding_box()["y"] for name in ("velocity", "slip", "speeds")]
+    assert max(tops) - min(tops) < 1.0
+    assert tops[0] > page.locator(".controls").bounding_box()["y"] + max(heights)
 
 
 @pytest.mark.parametrize("page", [*product((400, 1440), SCHEMES)], indirect=True)
