@@ -21,7 +21,7 @@ from report.conftest import read
 from slippulse_paper.claims.claim_texts import REASONS, claims_of, coverage
 from slippulse_paper.claims.ledger import KINDS, Ledger
 from slippulse_paper.report import texts
-from slippulse_paper.report.manuscript import DOCUMENTS, NAMED, Gallery
+from slippulse_paper.report.manuscript import DOCUMENTS, FIGURE_CALL, Gallery
 from slippulse_paper.report.texts import Caption, read_captions, read_errata
 
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
@@ -170,7 +170,7 @@ def test_a_text_that_is_not_whole_is_refused(reader, tmp_path):
 
 
 def test_every_figure_has_one_position_and_a_caption(source, captions, project, manuscript):
-    placed = NAMED.findall(source)
+    placed = FIGURE_CALL.findall(source)
     modules = (project / "src/slippulse_paper/figures").glob("*.py")
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "user_defined_sweep"]) == sorted(captions)

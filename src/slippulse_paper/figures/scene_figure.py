@@ -14,7 +14,7 @@ from slippulse.plotting.selection import spaced_indices
 from slippulse.plotting.si_tables import table_in_si, with_unit
 from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE, Look, by_role, panel_letter
 
-from ..text.numerals import MOST, number, with_uncertainty
+from ..text.numerals import MAX_DIGITS, number, with_uncertainty
 from .shared.main_numbers import with_symbols
 
 # The number of blocks drawn of a profile.
@@ -99,7 +99,7 @@ def draw(table: pd.DataFrame) -> Figure:
         measured = f"{with_uncertainty(row.value, row.uncertainty)} {_unit(row)}".strip()
         line = f"{with_symbols(row.label)}: {measured}"
         if math.isfinite(row.theory):
-            line += f" (theory {number(row.theory, MOST)})"
+            line += f" (theory {number(row.theory, MAX_DIGITS)})"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center")
     return figure
