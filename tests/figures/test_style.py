@@ -23,7 +23,7 @@ from pypdf import PdfReader
 from slippulse.data.files import CONFIGURATION
 from slippulse.plotting import style
 from slippulse.plotting.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
-from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
+from slippulse_paper.figures.fig06_burridge_knopoff import STATE_COLOURS
 from slippulse_paper.steps import draw_figure
 
 # Rows of linear red, green, blue.
@@ -78,7 +78,7 @@ def test_a_scale_goes_one_way_in_lightness(quantity, vision):
 
 
 def test_states_of_a_block_are_apart_in_grey():
-    shades = sorted(lab(colour, "grey")[0] for colour in COLOURS.values())
+    shades = sorted(lab(colour, "grey")[0] for colour in STATE_COLOURS.values())
     assert (np.diff(shades) > GREYS_APART).all()
 
 
