@@ -63,6 +63,7 @@ SCENES = {
     "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
     "beta: -0.001; allowed: a finite number and >= 0": {"beta": -1e-3},
     "dx: 0.0; allowed: a finite number and > 0": {"dx": 0.0},
+    "dx: 1e+300; allowed: a finite number and > 0 and >= 1e-100 and <= 1e+40": {"dx": 1e300},
     "prestress.width: 1.0; allowed: >= dx = 1.5": {"dx": 1.5},
     "duration: 0.0; allowed: a finite number and > 0": {"duration": 0.0},
     "duration: 1e+308; allowed: a finite number and <= 9": WITHOUT_SPRINGS | {"duration": 1e308},

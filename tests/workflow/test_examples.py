@@ -151,6 +151,17 @@ def target_error(table, path):
     assert "target_error: accuracy 0.01 kept by 12 of 12 runs" in log.read_text(encoding="utf-8")
 
 
+def layer_map(table, path):
+    """The chunks are joined in the order of the lists."""
+    assert len(table) == 48 and table["fracture_energy"].iloc[:2].tolist() == [0.3, 0.4]
+    assert table["gamma"].is_monotonic_decreasing
+    assert len([*path.with_suffix("").glob("*-of-8.csv")]) == 8
+    brittle = table[table["fracture_energy"] < 0.85]
+    assert (brittle["outcome"] == "steady").all()
+    assert (table.loc[table["fracture_energy"] > 1.02, "outcome"] == "dying").all()
+    assert "growing" not in set(table["outcome"])
+
+
 def laboratory_block(table, path):
     """A whole rupture that stops before the ends of the block, drawn in SI units."""
     drawn = pd.read_csv(path.with_suffix(".csv"))
@@ -201,6 +212,7 @@ TARGETS = {
     halved_spacing: "measurements/space_time_displacement.csv",
     user_defined_sweep: "uncertainties/user_defined_sweep.csv",
     chunked_sweep: "measurements/chunked_sweep.csv",
+    layer_map: "studies/layer_map.csv",
     prestress_ramp: "scenes/prestress_ramp.html",
     stress_file: "scenes/stress_file.html",
     rough_prestress: "uncertainties/rough_prestress.csv",

@@ -267,6 +267,10 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
+# Chunks of the studies that are divided.
+STUDY_CHUNKS = {}
+if (count := config["figures"]["study_layer"].get("chunks", 1)) > 1:
+    STUDY_CHUNKS["layer_map"] = [f"layer_map/{number}-of-{count}" for number in range(1, count + 1)]
 # The simulation of one job is one without chunks, or a chunk of another.
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 
@@ -278,6 +282,7 @@ JOINED = {
     for name in CHUNKS
     for kind in KINDS
 }
+JOINED |= {f"studies/{name}.csv": ("studies", name) for name in STUDY_CHUNKS}
 ALL_FIGURES = NEEDS | SWEEPS
 
 
@@ -297,28 +302,42 @@ def joined_inputs(wildcards):
     """Files of the chunks; uncertainties are joined in the order of the joined measurements."""
     kind, name = JOINED[wildcards.joined]
     finest = made("measured", [name] if kind == "uncertainties" else [])
-    return {"chunks": made(kind, CHUNKS[name]), "finest": finest}
+    return {"chunks": made(kind, (CHUNKS | STUDY_CHUNKS)[name]), "finest": finest}
 
 
 def joined_settings(wildcards):
     """Kind of a joined file, and what the runs of its simulation record."""
     kind, name = JOINED[wildcards.joined]
-    return {"kind": kind, "record": SIMULATIONS[name].record}
+    return {"kind": kind, "record": SIMULATIONS[name].record if name in SIMULATIONS else []}
+
+
+def joined_runs(wildcards):
+    """Number of runs in a joined file; a study has few."""
+    _, name = JOINED[wildcards.joined]
+    return settings_of(name)["runs"] if name in SIMULATIONS else 0
+
+
+def study_of(wildcards):
+    """Name of a study, or of the study that a chunk belongs to."""
+    return wildcards.study.partition("/")[0]
 
 
 def study_inputs(wildcards):
     """Inputs of a study, and the kernels that it runs."""
-    reached = modules_reached(f"slippulse_paper.studies.{wildcards.study}")
+    reached = modules_reached(f"slippulse_paper.studies.{study_of(wildcards)}")
     schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
-    return {**inputs_of(STUDY_NEEDS[wildcards.study]), "kernels": made("kernels", schemes)}
+    return {**inputs_of(STUDY_NEEDS[study_of(wildcards)]), "kernels": made("kernels", schemes)}
 
 
 def study_settings(wildcards):
     """The study, and the values of the configuration that it depends on."""
-    needs = STUDY_NEEDS[wildcards.study]
+    study, _, chunk = wildcards.study.partition("/")
+    needs = STUDY_NEEDS[study]
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
     values = selected(config, needs.get("settings", ()), {"sweeps": swept})
-    return {"study": wildcards.study, "values": values}
+    if chunk:
+        values["chunk"] = [int(number) for number in chunk.split("-of-")]
+    return {"study": study, "values": values}
 
 
 def texts_of(needs):
@@ -366,6 +385,6 @@ wildcard_constraints:
     simulation=one_of(ONE_JOB),
     scene=one_of(SCENES),
     scheme=one_of(KERNELS),
-    study=one_of(STUDY_NEEDS),
+    study=one_of([job for name in STUDY_NEEDS for job in STUDY_CHUNKS.get(name, [name])]),
     figure=one_of([*NEEDS, *SWEEPS]),
     joined=one_of(JOINED),

@@ -13,8 +13,8 @@ rule study:
         settings=study_settings,
         code=lambda wildcards: code_of(
             "run_study",
-            f"slippulse_paper.studies.{wildcards.study}",
-            texts=texts_of(STUDY_NEEDS[wildcards.study]),
+            f"slippulse_paper.studies.{study_of(wildcards)}",
+            texts=texts_of(STUDY_NEEDS[study_of(wildcards)]),
         ),
     message:
         "Studying {wildcards.study}"

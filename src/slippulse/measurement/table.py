@@ -10,7 +10,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.prestress import prestress_from
 from ..model.recorded_law import law_of
-from .front_paths import fit_front, position_at
+from .front_paths import fit_front, limit_time, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
 from .transition import transition_displacement, transition_stress
@@ -117,6 +117,8 @@ def transition(run: AnyRun, fraction: float) -> dict:
 
 def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """Breadth of slip velocity at half its peak, on the right; NaN without a half on both sides."""
+    if np.isnan(pulse.peak_velocity):
+        return np.nan
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     top = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
@@ -134,7 +136,8 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
 def lattice_noise(run: AnyRun) -> float:
     """Power of waves of a few blocks (fourth difference) over that of velocity, on the right."""
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    moving = velocity[(x >= 0.0) & (velocity > 0.0)]
+    moving = velocity[(x >= 0.0) & ~(velocity <= 0.0)]
+    # A velocity that is not known is NaN, and so is the noise.
     if moving.size < FEWEST:
         return np.nan
     # The gain is 1 for waves of two blocks, sin^4(pi/n) for waves of n. At the ends are corners.
@@ -144,6 +147,8 @@ def lattice_noise(run: AnyRun) -> float:
 
 def sliding_at_once(run: AnyRun) -> float:
     """Largest number of blocks on the right that slide at once, over the second half of a run."""
+    if limit_time(run) <= run.attrs["end_time"]:
+        return np.nan
     start = 0.5 * run.attrs["end_time"]
     chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
     release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]

@@ -5,7 +5,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .front_paths import arrival, path, position_at
+from .front_paths import arrival, known_until, path, position_at
 
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the
 # lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).
@@ -61,7 +61,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
-    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (np.nan, np.nan)
+    known = times.size and np.isinf(known_until(run, "left"))
+    arrest, end = (float(np.max(times)), float(distances[-1])) if known else (np.nan, np.nan)
     waited = longest_wait / time
     state, right = "not reached", np.nan
     if not np.isnan(time):

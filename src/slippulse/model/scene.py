@@ -37,7 +37,7 @@ CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "orde
 # Bounds of the numbers, for `check_number`. The square of the least spacing is still a number.
 NUMBERS: dict[str, dict[str, Any]] = {
     "duration": {"above": 0.0},
-    "dx": {"above": 0.0, "at_least": 1e-100},
+    "dx": {"above": 0.0, "at_least": 1e-100, "at_most": 1e40},
     "beta": {"at_least": 0.0},
     "friction_ratio": {"at_least": 0.0},
     "gamma": {},
@@ -100,7 +100,7 @@ class Scene:
     duration : float, units of H / wave speed
         Time to simulate, > 0.
     dx : float, units of H
-        Block spacing, >= 1e-100. At 1 the lattice is the Burridge-Knopoff model.
+        Block spacing, from 1e-100 to 1e40. At 1 the lattice is the Burridge-Knopoff model.
     gamma : float
         Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
     beta : float, units of H times the wave speed

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..model.prestress import Prestress
+from ..model.prestress import Interval, Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
 from .prestress_pieces import analytic
 from .riemann import decay, kernel_of, partial_weights
@@ -28,6 +28,12 @@ GROWTH = 4.0
 SHORTEST = 1e-11
 # A remainder of a panel that is left to the next one.
 REMAINDER = 1e-8
+# Entries that move the front by less than a fraction of the rupture are passed over: those that are
+# rounding at first, and then, as long as they would send the front back, those that the panels do
+# not resolve.
+NEGLIGIBLE = (1e-13, 1e-12, 1e-11, 1e-10)
+# Parameters of a panel at which such entries may end, as fractions of the way to its left end.
+FRACTIONS = np.linspace(0.0, 1.0, 65)
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
 # continued at their speed.
 NEAR_MARK = 1e-5
@@ -42,15 +48,39 @@ AT_END, NEAR_END, MANY = 1e-9, 1e-6, 5
 # A chunk that was shortened to end at an event is searched a little beyond its end.
 BEYOND = 1.2
 MOST_CHUNKS = 60
+# A front is not followed on a curve of more panels.
+MOST_PANELS = 100_000
 MOST_NEWTON_STEPS = 60
 
 
+class Progress(NamedTuple):
+    """What a slow front keeps from one panel to the next.
+
+    The longest chunk that it tries next, and the position where the characteristic that has reached
+    it entered the curve; NaN before its first panel.
+    """
+
+    longest: float = WHOLE
+    entered: float = np.nan
+
+
+class Entry(NamedTuple):
+    """Panel (below 0: none on the curve) and parameter of the next entry.
+
+    The entries between it and the last one, which are negligible, move the front so far.
+    """
+
+    panel: int
+    s: float
+    passed: float = 0.0
+
+
 class Advance(NamedTuple):
-    """The next panel, the reason why it is the last one, and the length of a chunk to try next."""
+    """The next panel, the reason why it is the last one, and what the following panel needs."""
 
     panel: Panel | None
     stop: str | None
-    longest: float = WHOLE
+    progress: Progress = Progress()
 
 
 class Chunk(NamedTuple):
@@ -111,9 +141,14 @@ class FreeBoundary:
         later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         self.weight = np.concatenate([cut, later], axis=1)
         self.d_xi = self.early[:, None] - np.append(curve.early[panel:], self.early)
+        # Without leaf springs and drag the kernel is 1.
+        self.is_plain = front.stiffness == front.alpha == 0.0
+        self.plain_sum = self.weight.sum(axis=1) if self.is_plain else np.zeros(0)
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
         """The step to subtract from positions; None where the front would not be stable."""
+        if self.is_plain:
+            return self.plain_step(x)
         k, alpha = self.front.stiffness, self.front.alpha
         eta = self.early + 2.0 * x
         d_eta = eta[:, None] - np.append(self.late, eta)
@@ -128,9 +163,7 @@ class FreeBoundary:
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
         # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
         # nodes.
-        half = 0.5 * (x - self.front.x0)
-        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
-        area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
+        area, tau = self.crossed_by_front(x)
         fall = tau + growth
         if not np.all(fall < 0.0):
             return None
@@ -141,6 +174,17 @@ class FreeBoundary:
         matrix += np.diag(fall + turn.sum(axis=1))
         return np.linalg.solve(matrix, entered + area + excess @ (tau * slopes))
 
+    def plain_step(self, x: np.ndarray) -> np.ndarray | None:
+        """The same with a kernel of 1."""
+        area, tau = self.crossed_by_front(x)
+        return (self.plain_sum + area) / tau if np.all(tau < 0.0) else None
+
+    def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Integral of the pre-stress from the start of the chunk to positions, and its values."""
+        half = 0.5 * (x - self.front.x0)
+        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+        return half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
+
 
 @dataclass
 class SlowFront:
@@ -148,7 +192,7 @@ class SlowFront:
 
     curve: Curve
     prestress: Prestress
-    level: float  # of the side where the front is
+    background: Interval  # where the front is
     gamma: float
     alpha: float = 0.0
 
@@ -158,7 +202,7 @@ class SlowFront:
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
         self.size = max(float(edges[-1] - edges[0]), abs(self.x0))
 
-    def next_panel(self, mark: float, longest: float = WHOLE) -> Advance:
+    def next_panel(self, mark: float, progress: Progress) -> Advance:
         """Continue the front by one panel of entries at most, or a shorter length.
 
         mark is the end of the negative piece (may be infinite). The stop is "mark" where the new
@@ -166,10 +210,26 @@ class SlowFront:
         "unknown" where its characteristic comes from beyond the left end of the curve, and
         "unresolved" where no panel is short enough. A panel ends where the front stops.
         """
-        entry = self.entry()
-        if entry is None:
-            return Advance(None, "unknown")
-        chunk, corrections = Chunk(*entry, max(entry[1] - longest, -1.0)), 0
+        if len(self.curve.panels) > MOST_PANELS:
+            return Advance(None, "unresolved")
+        for negligible in NEGLIGIBLE:
+            entry = self.entry(progress.entered, negligible)
+            if entry is None:
+                return Advance(None, "unknown")
+            if entry.panel < 0:
+                return Advance(None, "stops")
+            rest = self.rest(entry)
+            if rest is not None:
+                return Advance(rest, None, Progress(entered=self.position(entry)))
+            advance = self.advance_from(entry, mark, progress.longest)
+            if advance.stop != "stops":
+                break
+        return advance
+
+    def advance_from(self, entry: Entry, mark: float, longest: float) -> Advance:
+        """Continue the front by one panel with the entries from one on."""
+        panel, s, _ = entry
+        chunk, corrections = Chunk(panel, s, max(s - longest, -1.0)), 0
         for _ in range(MOST_CHUNKS):
             if chunk.start - chunk.stop < SHORTEST:
                 return self.straight(mark)
@@ -195,16 +255,89 @@ class SlowFront:
             else:
                 to_the_end = s < np.inf or chunk.stop == -1.0
                 length = WHOLE if to_the_end else GROWTH * (chunk.start - chunk.stop)
+                entered = self.position(Entry(chunk.panel, chunk.stop))
                 end = mark if stop == "mark" else None
-                return Advance(self.panel(chunk, x, end), stop, length)
+                return Advance(self.panel(chunk, x, end), stop, Progress(length, entered))
         return Advance(None, "unresolved")
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""
-        return analytic(self.prestress, self.level, x)
+        return analytic(self.prestress, self.background, x)
 
-    def entry(self) -> tuple[int, float] | None:
-        """Panel and parameter where the characteristic of the front entered the curve, or None."""
+    def entry(self, entered: float, negligible: float) -> Entry | None:
+        """The next entry after the position of the last one; None where it is not known.
+
+        T - x is the same to rounding on panels before the front where the pre-stress is nearly 0.
+        So an entry follows the last one along the curve, and is not looked for by its T - x. It
+        passes over entries that are negligible.
+        """
+        panel, s = len(self.curve.panels) - 1, 1.0
+        if np.isfinite(entered):
+            (panel,), (s,) = self.curve.locate(np.array([entered]))
+            # A remainder near rounding cannot be resolved: the next panel takes it over.
+            panel, s = (panel, s) if s + 1.0 >= REMAINDER else (panel - 1, 1.0)
+        gain, passed = 0.0, False
+        while panel >= 0 and not self.is_slow(panel):
+            parameters = s - (s + 1.0) * FRACTIONS
+            moves = gain + self.moves(panel, parameters)
+            # Only pre-stress that is not negative moves no front back.
+            negative = bool(np.min(self.curve.source[panel]) < 0.0)
+            most = self.size * (NEGLIGIBLE[0] if negative else negligible)
+            last = int(np.argmin(np.append(np.abs(moves) <= most, False))) - 1
+            gain, passed = float(moves[last]), passed or last > 0
+            if last < FRACTIONS.size - 1:
+                goes_on = not negative or moves[last + 1] >= moves[last]
+                return self.chosen(
+                    Entry(int(panel), float(parameters[last])), gain, passed, goes_on
+                )
+            panel, s = panel - 1, 1.0
+        if panel >= 0:
+            return self.entry_behind_slow_front()
+        return Entry(-1, 1.0) if passed else None
+
+    def moves(self, panel: int, parameters: np.ndarray) -> np.ndarray:
+        """Motion of the front by the entries on a panel from its first parameter to each one."""
+        weights = partial_weights(parameters)
+        return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
+
+    def chosen(self, entry: Entry, gain: float, passed: bool, goes_on: bool) -> Entry:
+        """The entry with what was passed before it; below 0 where the front does not go on."""
+        if not passed:
+            return entry
+        return entry._replace(passed=max(gain, self.least)) if goes_on else Entry(-1, 1.0)
+
+    @property
+    def least(self) -> float:
+        """The least motion that counts."""
+        return 0.1 * NEGLIGIBLE[0] * self.size
+
+    @property
+    def resistance(self) -> float:
+        """Size of the negative pre-stress right ahead of the front."""
+        return abs(float(self.tau(np.array(self.x0 + NEGLIGIBLE[0] * self.size))))
+
+    def position(self, entry: Entry) -> float:
+        """Position of an entry on the curve."""
+        return float(self.curve.evaluate("x", np.array([entry.panel]), np.array([entry.s]))[0])
+
+    def rest(self, entry: Entry) -> Panel | None:
+        """A panel of a front that hardly moves until the characteristic of an entry comes."""
+        early = self.curve.evaluate("early", np.array([entry.panel]), np.array([entry.s]))[0]
+        x_ends = self.x0, self.x0 + entry.passed
+        time_ends = self.t0, float(early) + x_ends[1]
+        if entry.passed == 0.0 or time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
+            return None
+        x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
+        source = np.full(COUNT, -0.5 * self.resistance * entry.passed)
+        return Panel(x, time, source, x_ends, time_ends)
+
+    def is_slow(self, panel: int) -> bool:
+        """True if the front that made a panel goes right and is slower than the waves."""
+        start, end = self.curve.edge_times[panel : panel + 2]
+        return bool(end > start and np.sum(self.curve.source[panel]) < 0.0)
+
+    def entry_behind_slow_front(self) -> Entry | None:
+        """Panel and parameter where T - x next rises to its value at the front, or None."""
         xi = self.t0 - self.x0
         look = LOOK * max(self.size, abs(xi))
         # A little later the next panel goes on, or another part of the rupture.
@@ -216,10 +349,9 @@ class SlowFront:
         # The look would leave a gap: such an entry is taken at the very end of the panel.
         end = self.curve.ends[1, self.curve.row("early", entries.panel)][1]
         if abs(end - xi) < 10.0 * look:
-            return panel, 1.0
+            return Entry(panel, 1.0)
         s = float(entries.s[0] if entries.panel[0] == panel else entries.s[1])
-        # A remainder near rounding cannot be resolved: the next panel takes it over.
-        return (panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else (panel, s)
+        return Entry(panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Positions of the front by Newton's method; None where the chunk is too long."""

@@ -493,9 +493,23 @@ class DamageZone(Block):
     thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
 
 
+class LayerMap(Block):
+    gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
+    fracture_energy: Distinct[Positive] = key("fracture energies [tau_0^2/(2 gamma)]")
+    cells: int = key("of the grid over the height of the layer", ge=10, le=200)
+    chunks: int = key("how many jobs share the map, at most one per point", 1, ge=1, le=1000)
+
+    @model_validator(mode="after")
+    def _chunks(self) -> Self:
+        points = len(self.gamma) * len(self.fracture_energy)
+        require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
+        return self
+
+
 class Figures(Block):
     fig01_system_sketch: Sketch = key("the sketch of the system")
     fig07_damage_zone: DamageZone = key("the damage zone")
+    study_layer: LayerMap = key("the map of stability of the layer in the plane")
 
 
 class Claim(Block):
