@@ -26,7 +26,7 @@ time_of = lambda page: float(page.locator("#time").input_value())
 
 @contextmanager
 def still(page: Page) -> Iterator[None]:
-    """Let nothing on the page jump, whether the reader has just pressed a key or not."""
+    """Fail if anything on the page jumps inside the block, even right after a key press."""
     page.evaluate(WATCH)
     yield
     settled(page)
@@ -34,7 +34,7 @@ def still(page: Page) -> Iterator[None]:
 
 
 def inside(page: Page, name: str, across: float, down: float) -> tuple[int, int]:
-    """A pixel of a picture, by fractions of its width and height."""
+    """Return a pixel of a picture, given by fractions of its width and height."""
     box = page.locator(f"#{name}").bounding_box()
     return round(box["x"] + across * box["width"]), round(box["y"] + down * box["height"])
 
@@ -126,7 +126,7 @@ def test_readings_and_blocks_are_the_exact_solution_and_blocks_keep_their_order(
     assert heights == sorted(heights, reverse=True)
 
 
-def test_play_advances_pauses_and_begins_anew(page):
+def test_play_advances_pauses_and_starts_again(page):
     page.locator("#time").press("End")
     drawn = page.locator("#blocks").inner_html()
     play = page.locator("#play")

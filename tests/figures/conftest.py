@@ -1,4 +1,4 @@
-"""Every figure drawn from small, really simulated data, through the CSV as the pipeline does it."""
+"""Draw every figure from small simulated data, through the CSV file as in the workflow."""
 
 from functools import cache
 from importlib import import_module
@@ -44,7 +44,7 @@ def in_house_style():
 
 @pytest.fixture(scope="session")
 def draw(shipped, shared, tmp_path_factory, study):
-    """Function that draws a figure by its name, once, from small sweeps and studies."""
+    """Return a function that draws a figure by its name, once, from small sweeps and studies."""
     folder = tmp_path_factory.mktemp("tables")
 
     @cache
@@ -65,7 +65,7 @@ def draw(shipped, shared, tmp_path_factory, study):
         return load_table(path)
 
     def inputs(needs: dict) -> tuple[dict, dict]:
-        """Data and tables, as the workflow joins them."""
+        """Return data and tables, joined as in the workflow."""
         data = {name: simulate(name)[0] for name in needs.get("data", [])}
         tables = {}
         for name, topics in needs.get("measured", {}).items():
@@ -79,7 +79,7 @@ def draw(shipped, shared, tmp_path_factory, study):
 
     @cache
     def drawn(name: str) -> SimpleNamespace:
-        """Table and Figure, what they were drawn from, and the module."""
+        """Return the table and the Figure, the data behind them, and the module."""
         module = import_module(f"slippulse_paper.figures.{name}")
         needs = declared(f"figures.{name}", "NEEDS")
         options = shipped["figures"].get(name, {})

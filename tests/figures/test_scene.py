@@ -1,4 +1,4 @@
-"""A scene by name, and one run: its samples, figure, numbers beside theory, and page."""
+"""A scene by name: its samples, figure, numbers beside theory, and page."""
 
 import re
 from types import SimpleNamespace

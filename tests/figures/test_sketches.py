@@ -1,4 +1,4 @@
-"""Figures 1, 6 and 7: the sketches, and the blocks and springs at positions of the runs."""
+"""Figures 1, 6 and 7 show the right lengths, and blocks and springs at the positions of the runs."""
 
 from itertools import pairwise
 
@@ -66,7 +66,7 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(draw, shipped):
 
 @pytest.fixture
 def drawn(draw):
-    """Runs, their table, and blocks and pre-stress of each panel."""
+    """Return the runs, their table, and the axes of blocks and pre-stress of each panel."""
     made = draw("fig06_burridge_knopoff")
     first_strip, first, second_strip, second = made.figure.axes
     panels = (first, first_strip), (second, second_strip)
@@ -87,7 +87,8 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     assert centres == pytest.approx(np.sort(moved))
     shown = [to_hex(block.get_facecolor()) for block in axes.patches]
     assert sorted(shown) == sorted(part["state"].map(figure.STATE_COLOURS).map(to_hex))
-    gaps = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])]) - figure.BLOCK_WIDTH
+    distances = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])])
+    gaps = distances - figure.BLOCK_WIDTH
     coils = segments(axes, "coil springs")
     assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
     # No blocks overlap, and some springs are stretched.

@@ -48,7 +48,7 @@ def linear(colour) -> np.ndarray:
 
 
 def lab(colour, vision: str) -> np.ndarray:
-    """L*, a*, b* of a colour as it is seen."""
+    """Return L*, a*, b* of a colour as readers with a colour vision deficiency see it."""
     xyz = TO_XYZ @ np.clip(VISION[vision] @ linear(colour), 0.0, 1.0) / WHITE
     f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
     return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])

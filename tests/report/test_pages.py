@@ -1,4 +1,4 @@
-"""The page of results: structure, keyboard, alternative texts, links, nothing from outside."""
+"""The index and the other pages: structure, keyboard, alternative texts, and no outside links."""
 
 import json
 import re
@@ -35,7 +35,7 @@ NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
 class Outline(HTMLParser):
-    """Tags in order, with their attributes; refuses tags that do not close in order."""
+    """The tags of a page in order, with their attributes. Fails if tags are not closed in order."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class Outline(HTMLParser):
 
 @pytest.fixture(scope="module")
 def results(project, shipped, tmp_path_factory):
-    """The folder of a small run with another preset; the texts of its page are next to it."""
+    """Return the folder of a small run with another preset. The texts of its page are next to it."""
     results = tmp_path_factory.mktemp("page") / "results"
     figures = [f"figures/{name}{ending}" for name, ending in product(NAMES, (".pdf", ".csv"))]
     for path in [*TABLES, "scenes/made.html", *figures]:

@@ -67,7 +67,7 @@ def entries(manuscript) -> dict[str, dict]:
 
 
 def test_page_one_answers_in_a_minute(manuscript):
-    """At most eight rows of 350 words, and sentences of at most 25 by the shipped verdicts."""
+    """The table has at most eight rows of 350 words in total, and a sentence at most 25 words."""
     summary = read(manuscript / "summary.yaml")
     shipped = read(manuscript / "shipped_verdicts.yaml")
     claims = [{"id": id, "kind": "exact", "verdict": verdict} for id, verdict in shipped.items()]
@@ -245,7 +245,7 @@ def test_every_derivation_says_where_it_starts_and_is_checked(source, project):
 
 
 def in_code(code: str) -> list[str]:
-    """Numbers in Python other than small whole ones, and digits of its strings outside names."""
+    """Return numbers in Python except small whole ones, and digits in its strings outside names."""
     numbers = []
     for token in tokenize.generate_tokens(io.StringIO(code.strip()).readline):
         if token.type == tokenize.NUMBER and not re.fullmatch(r"\d", token.string):
@@ -256,7 +256,7 @@ def in_code(code: str) -> list[str]:
 
 
 def in_prose(text: str) -> list[str]:
-    """Numbers typed into Markdown without code cells, each with the words next to it."""
+    """Return numbers typed into Markdown outside code cells, each with the words around it."""
     numbers = []
     checks = {EXPRESSION: in_code, MATH: in_formula, CITATION: None, NAME: in_name, REFERENCE: None}
     for pattern, check in checks.items():
@@ -269,7 +269,7 @@ def in_prose(text: str) -> list[str]:
 
 
 def typed_numbers(source: str) -> list[str]:
-    """Numbers typed into a jupytext Markdown source."""
+    """Return the numbers typed into a Markdown source of jupytext."""
     source = HEADER.sub("", source)
     return in_code("\n".join(FENCE.findall(source))) + in_prose(FENCE.sub(" ", source))
 
