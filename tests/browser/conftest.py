@@ -39,7 +39,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def opened(browser):
-    """Return a function that opens a page, and fails if the page logs, fetches or raises anything."""
+    """Return a function that opens a page, and fails if it logs, fetches or raises anything."""
 
     @contextmanager
     def open_page(path: Path, width: int = 1280, scheme: str = "light") -> Iterator[Page]:

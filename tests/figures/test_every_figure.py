@@ -1,4 +1,4 @@
-"""Every figure fits the journal, has labels and finite numbers, and shows runs if it is the paper's."""
+"""Every figure fits the journal and has labels, and the figures of the paper show runs."""
 
 from itertools import combinations, product
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Figures 1, 6 and 7 show the right lengths, and blocks and springs at the positions of the runs."""
+"""Figures 1, 6 and 7 show the right lengths, and blocks at the positions of the runs."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Render the report of a small invented run, whose claims, tables and figures have the right form."""
+"""Render the report of a small invented run with claims, tables and figures of the right form."""
 
 import re
 from pathlib import Path
@@ -117,7 +117,7 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def build(tmp_path_factory):
-    """Return a function that writes a report and returns its files, inputs, claims and documents."""
+    """Return a function that writes a report and returns its files, inputs and claims."""
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")

@@ -60,7 +60,7 @@ class Outline(HTMLParser):
 
 @pytest.fixture(scope="module")
 def results(project, shipped, tmp_path_factory):
-    """Return the folder of a small run with another preset. The texts of its page are next to it."""
+    """Return the folder of a small run with another preset, next to the texts of its page."""
     results = tmp_path_factory.mktemp("page") / "results"
     figures = [f"figures/{name}{ending}" for name, ending in product(NAMES, (".pdf", ".csv"))]
     for path in [*TABLES, "scenes/made.html", *figures]:
