@@ -36,6 +36,21 @@ CLAIMS = {
 }
 
 
+def invented_uncertainties(sweeps: dict[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
+    """Return grid studies in which time and length of the transition are uncertain by 1 %."""
+    studies = {}
+    for name, measured in sweeps.items():
+        parts = []
+        for quantity in ("transition_time", "transition_length"):
+            rows = {
+                "point": range(len(measured)),
+                "uncertainty": 0.01 * measured[quantity].to_numpy(),
+            }
+            parts.append(pd.DataFrame(rows).assign(quantity=quantity))
+        studies[f"uncertainties/{name}"] = pd.concat(parts, ignore_index=True)
+    return studies
+
+
 @pytest.fixture(scope="module", autouse=True)
 def in_house_style():
     with house_style():
@@ -71,6 +86,8 @@ def draw(shipped, shared, tmp_path_factory, study):
         for name, topics in needs.get("measured", {}).items():
             measured = simulate(name)[1]
             tables[name] = measured.join(predict(name, topics)) if topics else measured
+        uncertain = needs.get("uncertainties", [])
+        tables |= invented_uncertainties({name: simulate(name)[1] for name in uncertain})
         for name in needs.get("studies", []):
             tables[name] = study(name, *inputs(declared(f"studies.{name}", "NEEDS")))
         if "lists" in needs:

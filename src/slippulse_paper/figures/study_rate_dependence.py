@@ -34,7 +34,7 @@ def draw(table: pd.DataFrame) -> Figure:
     pulses.legend(loc="upper center")
     draw_halves(maps, roles["map"], "regime")
     for regime, half in roles["map"].groupby("regime"):
-        name = rf"{regime}, {RATE_LABEL[:-1]} = {half['over'].iloc[0]:.2f}$"
+        name = rf"{regime}, {RATE_LABEL[:-1]} = {half['scaled_rate'].iloc[0]:.2f}$"
         height = 0.92 if half["position"].max() > 0.0 else 0.04
         maps.text(0.04, height, name, transform=maps.transAxes)
     maps.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact")
