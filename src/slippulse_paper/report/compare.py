@@ -49,7 +49,7 @@ DIFFERENCE_LINES = {
 
 @dataclass
 class Comparison:
-    """How many numbers agree, and one line for each difference.
+    """Counts of the compared numbers, and one line for each difference.
 
     compared, agree : numbers in both folders, and those of them that agree
     unknown : numbers that differ, but have no uncertainty to judge the difference by
