@@ -4,6 +4,7 @@ which the model integrates.
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -42,67 +43,58 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each boundary condition: layer, substrate, strip, friction and axes."""
     figure, panels = new_panels(COLUMN, 3.4, "a;b")
-    strip = table["strip_width"].iloc[0]
-    box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
-    cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
-    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
+    look: Look = {"color": BLUE, "linewidth": 0.8, "linestyle": ":"}
     for axes, panel in zip(panels, TITLES, strict=True):
-        axes.add_patch(Rectangle((0.0, -RIGID_DEPTH), LAYER_LENGTH, RIGID_DEPTH, **HATCHED_LOOK))
-        axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **box))
-        axes.add_patch(Rectangle((STRIP_CENTRE - 0.5 * strip, 0.0), strip, 1.0, **cut))
-        label(axes, STRIP_CENTRE, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
-        label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
-        white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
-        label(
-            axes, 0.5 * LAYER_LENGTH, -0.5 * RIGID_DEPTH, "rigid substrate", fontsize=8, bbox=white
-        )
-        arrow(axes, (0.27 * LAYER_LENGTH, 0.05), (0.13 * LAYER_LENGTH, 0.05), BLACK, gid="friction")
-        label(axes, 0.7, 0.1, "$f_f$", va="bottom")
-        label(axes, 0.5 * LAYER_LENGTH, -RIGID_DEPTH - 0.08, law, va="top")
-        arrow(axes, (LAYER_LENGTH + 0.13, 0.0), (LAYER_LENGTH + 0.13, 1.0), MUTED_GREY, **TWO_HEADS)
-        for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
-            label(axes, LAYER_LENGTH + 0.23, y, text, MUTED_GREY, ha="left")
-        arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED_GREY)
-        arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED_GREY)
-        label(axes, -0.24, -0.13, "$x$", MUTED_GREY)
-        label(axes, -0.55, 0.25, "$y$", MUTED_GREY)
-        if panel == "stress":
-            for x in np.linspace(0.03, 0.85, 6) * LAYER_LENGTH:
-                arrow(axes, (x, 1.1), (x + 0.12 * LAYER_LENGTH, 1.1), ORANGE, gid="imposed stress")
-            label(axes, 0.5 * LAYER_LENGTH, 1.19, r"$\tau$", ORANGE, va="bottom")
-            label(
-                axes,
-                ZERO_DISPLACEMENT + MAX_DISPLACEMENT + 0.06,
-                0.5,
-                r"$\langle u_x\rangle_y$",
-                BLUE,
-                ha="left",
-            )
-        else:
-            axes.add_patch(
-                Rectangle((0.0, 1.0), LAYER_LENGTH, RIGID_DEPTH, gid="held top", **HATCHED_LOOK)
-            )
-            held = r"$\partial u_x/\partial t = 0$"
-            label(axes, 0.5 * LAYER_LENGTH, 1.03 + RIGID_DEPTH, held, ORANGE, va="bottom")
-            label(
-                axes,
-                ZERO_DISPLACEMENT + 0.5 * MAX_DISPLACEMENT + 0.14,
-                0.5,
-                "$u_x(y)$",
-                BLUE,
-                ha="left",
-            )
+        _draw_layer(axes, table["strip_width"].iloc[0])
+        _draw_top(axes, panel)
         rows = table[table["panel"] == panel]
-        axes.plot(
-            [ZERO_DISPLACEMENT, ZERO_DISPLACEMENT],
-            [0.0, 1.0],
-            color=BLUE,
-            linewidth=0.8,
-            linestyle=":",
-        )
+        axes.plot([ZERO_DISPLACEMENT] * 2, [0.0, 1.0], **look)
         x = ZERO_DISPLACEMENT + rows["displacement"]
         axes.plot(x, rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
         axes.set_title(TITLES[panel], loc="center")
         axes.set(xlim=(-0.65, LAYER_LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
     return figure
+
+
+def _draw_layer(axes: Axes, strip: float) -> None:
+    """Draw the layer on its substrate, a strip of the given width, friction, height and axes."""
+    middle, right = 0.5 * LAYER_LENGTH, LAYER_LENGTH + 0.13
+    box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
+    white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
+    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
+    axes.add_patch(Rectangle((0.0, -RIGID_DEPTH), LAYER_LENGTH, RIGID_DEPTH, **HATCHED_LOOK))
+    axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **box))
+    axes.add_patch(Rectangle((STRIP_CENTRE - 0.5 * strip, 0.0), strip, 1.0, **cut))
+    label(axes, STRIP_CENTRE, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
+    label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
+    label(axes, middle, -0.5 * RIGID_DEPTH, "rigid substrate", fontsize=8, bbox=white)
+    arrow(axes, (0.27 * LAYER_LENGTH, 0.05), (0.13 * LAYER_LENGTH, 0.05), BLACK, gid="friction")
+    label(axes, 0.7, 0.1, "$f_f$", va="bottom")
+    label(axes, middle, -RIGID_DEPTH - 0.08, law, va="top")
+    arrow(axes, (right, 0.0), (right, 1.0), MUTED_GREY, **TWO_HEADS)
+    for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
+        label(axes, LAYER_LENGTH + 0.23, y, text, MUTED_GREY, ha="left")
+    arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED_GREY)
+    arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED_GREY)
+    label(axes, -0.24, -0.13, "$x$", MUTED_GREY)
+    label(axes, -0.55, 0.25, "$y$", MUTED_GREY)
+
+
+def _draw_top(axes: Axes, panel: str) -> None:
+    """Draw the boundary condition on top, and the name of the displacement."""
+    middle = 0.5 * LAYER_LENGTH
+    if panel == "stress":
+        for x in np.linspace(0.03, 0.85, 6) * LAYER_LENGTH:
+            arrow(axes, (x, 1.1), (x + 0.12 * LAYER_LENGTH, 1.1), ORANGE, gid="imposed stress")
+        label(axes, middle, 1.19, r"$\tau$", ORANGE, va="bottom")
+        x = ZERO_DISPLACEMENT + MAX_DISPLACEMENT + 0.06
+        label(axes, x, 0.5, r"$\langle u_x\rangle_y$", BLUE, ha="left")
+    else:
+        look = HATCHED_LOOK | {"gid": "held top"}
+        axes.add_patch(Rectangle((0.0, 1.0), LAYER_LENGTH, RIGID_DEPTH, **look))
+        held = r"$\partial u_x/\partial t = 0$"
+        label(axes, middle, 1.03 + RIGID_DEPTH, held, ORANGE, va="bottom")
+        x = ZERO_DISPLACEMENT + 0.5 * MAX_DISPLACEMENT + 0.14
+        label(axes, x, 0.5, "$u_x(y)$", BLUE, ha="left")
