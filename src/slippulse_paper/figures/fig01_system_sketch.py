@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from slippulse.plotting.style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
+from slippulse.plotting.style import BLACK, BLUE, COLUMN_WIDTH, ORANGE, Look, new_panels
 
 from .shared.sketch import MUTED_GREY, TWO_HEADS, arrow, label
 
@@ -42,7 +42,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each boundary condition: layer, substrate, strip, friction and axes."""
-    figure, panels = new_panels(COLUMN, 3.4, "a;b")
+    figure, panels = new_panels(COLUMN_WIDTH, 3.4, "a;b")
     look: Look = {"color": BLUE, "linewidth": 0.8, "linestyle": ":"}
     for axes, panel in zip(panels, TITLES, strict=True):
         _draw_layer(axes, table["strip_width"].iloc[0])

@@ -7,13 +7,13 @@ from slippulse.plotting import style
 from slippulse.plotting.style import (
     BLACK,
     BLUE,
-    COLUMN,
+    COLUMN_WIDTH,
     GREEN,
     GREY,
-    HALO,
-    OPEN,
+    OPEN_MARKER,
     ORANGE,
     PURPLE,
+    TEXT_OUTLINE,
     Look,
     entry,
 )
@@ -34,7 +34,7 @@ CHOICE_LOOKS: dict[str, Look] = {
 }
 SOLUTION_MARKERS: dict[str, Look] = {
     "exact": {"marker": "o"},
-    "lattice": {"marker": "s"} | OPEN,
+    "lattice": {"marker": "s"} | OPEN_MARKER,
 }
 # Offset of a deviation from its row, by release rule.
 ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
@@ -60,7 +60,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw deviations divided by tolerances, with a row for each claim, the largest on top."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
-    figure = Figure(figsize=(COLUMN, 1.1 + 0.17 * len(farthest)), layout="constrained")
+    figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(farthest)), layout="constrained")
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
@@ -75,7 +75,7 @@ def draw(table: pd.DataFrame) -> Figure:
             )
         if table.loc[table["id"] == id, "over"].min() < MIN_SHOWN_RATIO:
             bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
-            axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=HALO)
+            axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)
     axes.set(xscale="log", xlabel="deviation / tolerance", xlim=(0.7 * MIN_SHOWN_RATIO, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)

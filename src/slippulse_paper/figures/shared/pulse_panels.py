@@ -11,7 +11,16 @@ from slippulse.measurement.pulses import comoving, leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.plotting import style
 from slippulse.plotting.selection import spread_values
-from slippulse.plotting.style import BLACK, LEVEL, PAGE, SMALL, SYMBOLS, Box, Look, entry
+from slippulse.plotting.style import (
+    BLACK,
+    LEVEL_COLUMNS,
+    PAGE_WIDTH,
+    SMALL_TEXT,
+    SYMBOLS,
+    Box,
+    Look,
+    entry,
+)
 
 # Axis labels of the fields, in the units of each boundary condition.
 FIELDS = {
@@ -89,7 +98,7 @@ def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
     styled = runs[STYLED_COLUMN[boundary]]
     styles = dict(zip(np.sort(styled.unique()), LINE_STYLES, strict=False))
-    colours = [*style.colour(LEVEL[boundary], runs["left"])]
+    colours = [*style.colour(LEVEL_COLUMNS[boundary], runs["left"])]
     return runs.assign(colour=colours, dashes=styled.map(styles))
 
 
@@ -107,7 +116,7 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
 
 def plot_fields(table: pd.DataFrame) -> Figure:
     """Draw figure 8 or 9: the three fields of the pulses of one boundary condition."""
-    figure, panels = style.new_panels(PAGE, 2.8, "abc")
+    figure, panels = style.new_panels(PAGE_WIDTH, 2.8, "abc")
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
     panels[1].set_title(title(table), loc="center")
@@ -126,7 +135,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Return the legend entries of one boundary condition: colours, line styles, simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
-    level, styled = SYMBOLS[LEVEL[boundary]], STYLED_COLUMN[boundary]
+    level, styled = SYMBOLS[LEVEL_COLUMNS[boundary]], STYLED_COLUMN[boundary]
     entries = []
     for run in runs.drop_duplicates("left").sort_values("left").itertuples():
         entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
@@ -159,4 +168,4 @@ def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> N
     inset.locator_params(nbins=3, integer=True)
     # Leave room between the peak and the title.
     inset.margins(y=0.12)
-    inset.set_xlabel("$x$", fontsize=SMALL, labelpad=0.0)
+    inset.set_xlabel("$x$", fontsize=SMALL_TEXT, labelpad=0.0)
