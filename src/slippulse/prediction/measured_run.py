@@ -15,7 +15,7 @@ from ..model.checks import check_that
 from ..model.layer_units import layer_of
 from ..model.prestress import prestress_from
 from ..model.scene import check_run_attributes
-from ..theory.prestress_pieces import nucleations
+from ..theory.prestress_pieces import nucleation_intervals
 from .comparison import measured_row
 
 # The settings of `measure` in the shipped configuration, which is not part of the package.
@@ -113,7 +113,7 @@ def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     held = run.attrs["boundary"] == "displacement"
     if held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
         row |= first_stick(run)
-    if several := len(nucleations(profile)) > 1:
+    if several := len(nucleation_intervals(profile)) > 1:
         row |= {name: math.nan for name in LENGTHS if name in row}
     return row | {"transition_reason": _reason(row, several)}
 

@@ -11,7 +11,7 @@ from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .prestress_pieces import uniform
+from .prestress_pieces import uniform_background
 from .slow_front import Progress, SlowFront
 
 # Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
@@ -66,7 +66,7 @@ def barrier_depth(
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)
-    background = uniform(tau_barrier)
+    background = uniform_background(tau_barrier)
     level = Prestress(left=tau_barrier, right=tau_barrier, width=None)
     stop, progress = None, Progress()
     while stop is None:

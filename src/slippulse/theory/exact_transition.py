@@ -50,7 +50,7 @@ def exact_transition_displacement(
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = fast_fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
-    stick = float(Part(fronts, gamma, 2.0 * period).search(np.zeros(1))[0])
+    stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
         reach = float(front_speed(level, damping_ratio, release)) * stick + _extent(prestress)
         fronts = fast_fronts(prestress, damping_ratio, release, reach, gamma)
@@ -94,4 +94,4 @@ def uniform_transition_time(
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges, slowness, tau))
-    return float(Part(curve, 1.0, 10.0).search(np.zeros(1))[0] / np.sqrt(float(gamma)))
+    return float(Part(curve, 1.0, 10.0).find_stick_times(np.zeros(1))[0] / np.sqrt(float(gamma)))

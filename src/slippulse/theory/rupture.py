@@ -16,7 +16,7 @@ from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.removed import AnswersRemoved
 from ..model.roots import root_between
-from .curve import SAME
+from .curve import EQUALITY_TOLERANCE
 from .domains import broadcast_numbers, check_domains
 from .fast_front import FastFront
 from .solved_part import SolvedPart
@@ -95,7 +95,7 @@ class Rupture(AnswersRemoved):
         self.gamma = self.law.gamma
         self.duration = float(duration)
         # A time up to here is the duration but for rounding.
-        self._last = self.duration * (1.0 + SAME)
+        self._last = self.duration * (1.0 + EQUALITY_TOLERANCE)
         until = self.duration * (1.0 + BEYOND)
         self.stretches, self._unknown = spread(self.law, until)
         self._parts = []
@@ -156,7 +156,7 @@ class Rupture(AnswersRemoved):
         time = self._time(time)
         check_number("x", x)
         for part in self._parts:
-            if part.curve.arrival(x) <= time * (1.0 + SAME):
+            if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
                 return part.curve.front_at(time, x, LEFT), part.curve.front_at(time, x, RIGHT)
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
@@ -210,7 +210,7 @@ class Rupture(AnswersRemoved):
         """Time and position of the first sticking; None for none until ``duration``."""
         first = min(filter(None, (part.first_stick() for part in self._solved)), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
-        last = self.limit.time * (1.0 + SAME) if self.limit else np.inf
+        last = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
         if not first or first.time > min(last, self._last):
             return None
         return FirstStick(min(first.time, self.duration), first.x)
@@ -236,7 +236,7 @@ class Rupture(AnswersRemoved):
         """
         check_choice("side", side, ("right", "left"))
         time = self._time(time)
-        if not self.first_stick or time <= self.first_stick.time * (1.0 + SAME):
+        if not self.first_stick or time <= self.first_stick.time * (1.0 + EQUALITY_TOLERANCE):
             return np.nan
         x = self.first_stick.x
         front = self.fronts_at(time, x)[side == "right"]
@@ -332,7 +332,7 @@ class Rupture(AnswersRemoved):
         positions, index = self._distinct(x)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved:
-            part.fill(out, positions, index, time)
+            part.fill_fields(out, positions, index, time)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
@@ -354,7 +354,7 @@ class Rupture(AnswersRemoved):
         return np.where(known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
-        return time * (1.0 + SAME) >= self.horizon(x)
+        return time * (1.0 + EQUALITY_TOLERANCE) >= self.horizon(x)
 
     @cached_property
     def _limits(self) -> list[Limit]:

@@ -15,10 +15,10 @@ from .curve import power_basis, value_and_slope, with_slopes
 from .front_speeds import log_prestress_in_chunks, slowness_nearly_one
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
-COUNT = 14
-NODES = legendre.leggauss(COUNT)[0]
-TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
-TO_POWERS = with_slopes(np.pad(power_basis(COUNT), ((0, 2), (0, 0))))
+NODE_COUNT = 14
+NODES = legendre.leggauss(NODE_COUNT)[0]
+NODES_TO_SERIES = np.linalg.inv(legendre.legvander(NODES, NODE_COUNT - 1))
+SERIES_TO_POWERS = with_slopes(np.pad(power_basis(NODE_COUNT), ((0, 2), (0, 0))))
 RESOLVED = 2e-12
 NARROWEST = 1e-7
 # So near 1, in 1 - tau, the panels lose as many digits as the first terms in 1/v leave out.
@@ -72,7 +72,7 @@ def _panels(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray,
     done = []
     while todo:
         left, right = todo.pop()
-        series = TO_SERIES @ prestress(left + 0.5 * (right - left) * (1.0 + NODES))
+        series = NODES_TO_SERIES @ prestress(left + 0.5 * (right - left) * (1.0 + NODES))
         if np.max(np.abs(series[-2:])) < RESOLVED or right - left < NARROWEST:
             done.append((left, right, series))
         else:
@@ -81,5 +81,5 @@ def _panels(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray,
     done.sort(key=lambda panel: panel[0])
     edges = np.array([done[0][0]] + [right for _, right, _ in done])
     inner = prestress(edges[1:-1])
-    powers = TO_POWERS @ np.array([series for *_, series in done]).T
+    powers = SERIES_TO_POWERS @ np.array([series for *_, series in done]).T
     return edges, np.concatenate([[0.0], inner, [1.0]]), powers

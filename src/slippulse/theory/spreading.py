@@ -6,9 +6,9 @@ from itertools import pairwise, product
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import SAME, Curve, Panel, Point, seen_from
+from .curve import EQUALITY_TOLERANCE, Curve, Panel, Point, turned_to_right
 from .fast_front import FastFront
-from .prestress_pieces import nucleations
+from .prestress_pieces import nucleation_intervals
 from .slow_front import Progress, SlowFront
 
 # Reasons why a slow front cannot be followed further.
@@ -51,23 +51,23 @@ class Stretch:
         left = [side * x for x in self.restarts[-side]]
         right = [side * x for x in self.restarts[side]]
         if side not in self.curves:
-            self.curves[side] = Curve(seen_from(side, self.panels))
+            self.curves[side] = Curve(turned_to_right(side, self.panels))
         return self.curves[side].restarted((left, right))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels, and their end, of a front whose side is turned to the right."""
-        new = seen_from(side, panels)
+        new = turned_to_right(side, panels)
         self.panels = self.panels + new if side > 0.0 else new + self.panels
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
-            self.curves[-side] = Curve(seen_from(LEFT, panels)).joined(self.curves[-side])
+            self.curves[-side] = Curve(turned_to_right(LEFT, panels)).joined(self.curves[-side])
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
         """Take away the panels beyond x."""
         kept = []
-        for panel in seen_from(side, self.panels):
+        for panel in turned_to_right(side, self.panels):
             left, right = panel.x_ends
             if right <= side * x:
                 kept.append(panel)
@@ -76,7 +76,7 @@ class Stretch:
                 if s > -1.0:
                     kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels, self.curves = seen_from(side, kept), {}
+        self.panels, self.curves = turned_to_right(side, kept), {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < side * x]
 
@@ -108,7 +108,7 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
 
 def _nucleated(law: FastFront) -> list[Stretch]:
     """One stretch for each interval that is released at t = 0."""
-    starts = nucleations(law.prestress)
+    starts = nucleation_intervals(law.prestress)
     if not starts:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
@@ -119,7 +119,7 @@ def _nucleated(law: FastFront) -> list[Stretch]:
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
         stretch = Stretch(ends, {LEFT: -before, RIGHT: after})
         if left < right:
-            panels, _ = law.rightwards(Point(left, 0.0), right, np.inf)
+            panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         out.append(stretch)
     return out
@@ -128,7 +128,7 @@ def _nucleated(law: FastFront) -> list[Stretch]:
 def _run(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Let a front go on while it outruns the waves, as far as the next nucleation point."""
     start, stop = stretch.ends[side], stretch.next_start[side]
-    panels, end = law.rightwards(Point(side * start.x, start.time), stop, until)
+    panels, end = law.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
     if end.time >= until:
@@ -146,7 +146,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     if stop in ("stops", *UNKNOWN):
-        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > SAME
+        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > EQUALITY_TOLERANCE
         stretch.end_reason[side] = "loaded" if loaded else stop
     elif stretch.ends[side].time >= until:
         stretch.end_reason[side] = "duration"

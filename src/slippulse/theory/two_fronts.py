@@ -6,9 +6,9 @@ import numpy as np
 
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from .curve import Curve, Point, seen_from
+from .curve import Curve, Point, turned_to_right
 from .fast_front import FastFront
-from .prestress_pieces import nucleations
+from .prestress_pieces import nucleation_intervals
 
 
 class ExactTransition(NamedTuple):
@@ -27,12 +27,12 @@ def fast_fronts(
     """
     law = FastFront(prestress, gamma, damping_ratio, release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
-    starts = nucleations(prestress)
+    starts = nucleation_intervals(prestress)
     if len(starts) > 1 or starts[0][0] != starts[0][1]:
         raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
     start = Point(0.0, 0.0)
-    right, _ = law.rightwards(start, reach, np.inf)
+    right, _ = law.panels_to_right(start, reach, np.inf)
     left = right
     if not prestress.symmetric:
-        left, _ = law.mirrored().rightwards(start, reach, np.inf)
-    return Curve(seen_from(-1.0, left) + right)
+        left, _ = law.mirrored().panels_to_right(start, reach, np.inf)
+    return Curve(turned_to_right(-1.0, left) + right)
