@@ -99,7 +99,7 @@ class FastFront:
 
     @property
     def marks(self) -> list[float]:
-        """Positions where the background jumps, or where the front changes between fast and slow."""
+        """Positions where the background jumps or where the front turns fast or slow."""
         return [
             piece.right
             for piece, after in pairwise(self.pieces)

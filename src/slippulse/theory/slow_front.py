@@ -119,7 +119,7 @@ class Entry(NamedTuple):
 
 
 class Advance(NamedTuple):
-    """The next panel, the reason why the front ends (or None), and the state for the following one."""
+    """The next panel, the reason why the front ends (or None), and the state for the next one."""
 
     panel: Panel | None
     stop: str | None

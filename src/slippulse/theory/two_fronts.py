@@ -1,4 +1,4 @@
-"""Both fronts of one nucleation point at x = 0."""
+"""The two fast fronts of a single nucleation point at x = 0."""
 
 from typing import NamedTuple
 
@@ -12,7 +12,11 @@ from .prestress_pieces import nucleation_intervals
 
 
 class ExactTransition(NamedTuple):
-    """T_trans, when something first sticks or a front has stopped, and L_trans, the length then."""
+    """The crack-pulse transition: T_trans and L_trans.
+
+    T_trans is the time at which something first sticks, or a front has stopped; L_trans is the
+    length of the rupture at that time.
+    """
 
     time: float
     length: float
@@ -21,9 +25,10 @@ class ExactTransition(NamedTuple):
 def fast_fronts(
     prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
 ) -> Curve:
-    """Both fronts of a nucleation at x = 0 alone, up to a distance, while they outrun the waves.
+    """Return both fronts of a single nucleation point at x = 0, up to a distance.
 
-    Its panels resolve the waves of leaf springs of gamma.
+    They end where they are not faster than the waves. The panels resolve the waves of leaf springs
+    with the elasticity ratio gamma.
     """
     law = FastFront(prestress, gamma, damping_ratio, release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
