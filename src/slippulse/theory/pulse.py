@@ -19,8 +19,8 @@ def steady_pulse(
 
     Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
     complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
-    is dropped. With alpha = beta = 0 it is the result of appendix C of the paper before its last step, at any
-    speed.
+    is dropped. With alpha = beta = 0 it is the result of appendix C of the paper before its last
+    step, at any speed.
     Raises ValueError: outside these ranges, or where the pulse is too large or small.
 
     Parameters
