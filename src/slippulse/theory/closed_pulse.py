@@ -105,7 +105,7 @@ def pulse_at_speed(
             raise OverflowError
     except (ArithmeticError, ValueError):
         place, critical = f"at gamma = {gamma:.6g}", critical_rate_strengthening(gamma, v)
-        message = f"speed: {v:.6g} {place}; allowed: numbers whose pulse can be computed"
+        message = f"speed: {v:.6g} {place}; allowed: values whose pulse can be computed"
         if abs(alpha) > 0.5 * critical:
             allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
             message = f"rate_strengthening: {alpha!r}; allowed: {allowed}, or no pulse is steady"

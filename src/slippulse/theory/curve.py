@@ -269,18 +269,20 @@ class Curve:
         # halve the distance to it, or leave the panel, so a level at an end is not iterated.
         distance = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         todo = np.flatnonzero(distance > 1e-15 * np.abs(level))
-        least = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
-        s, level, rising, least = np.array([out, level, np.sign(span), least])[:, todo]
+        min_slope = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
+        s, level, rising, min_slope = np.array([out, level, np.sign(span), min_slope])[:, todo]
         coefficients = self.coefficients(columns[todo])
         for _ in range(40):
             if not todo.size:
                 break
             value, slope = value_and_slope(coefficients, s)
-            new = (s + rising * (level - value) / np.maximum(rising * slope, least)).clip(-1.0, 1.0)
+            new = (s + rising * (level - value) / np.maximum(rising * slope, min_slope)).clip(
+                -1.0, 1.0
+            )
             out[todo] = new
             going = np.abs(new - s) >= 1e-9
             todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
-            s, level, rising, least = np.array([new, level, rising, least])[:, going]
+            s, level, rising, min_slope = np.array([new, level, rising, min_slope])[:, going]
         return out
 
 

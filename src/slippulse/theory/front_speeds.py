@@ -92,15 +92,15 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
         damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & ((release == "total") | (ratio < 1e3))
     )
     out[near] = 1.0 / slowness_nearly_one(tau[near], ratio[near], release)
-    rest = damped & ~near
-    if np.any(rest):
-        tau, ratio = tau[rest], ratio[rest]
+    is_solved = damped & ~near
+    if np.any(is_solved):
+        tau, ratio = tau[is_solved], ratio[is_solved]
         # Elements with similar speeds share a contour.
         order = np.argsort(first_guess(tau, ratio, release))
         speed = np.empty(tau.size)
         for part in np.split(order, range(ELEMENTS_PER_CHUNK, order.size, ELEMENTS_PER_CHUNK)):
             speed[part] = speeds_into(tau[part], Lattice(ratio[part], release))
-        out[rest] = speed
+        out[is_solved] = speed
     return out if out.ndim else float(out)
 
 
@@ -152,13 +152,15 @@ def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str)
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """Return ln(v - 1) estimated from its limits for weak and strong damping and from b = 1."""
-    rest = 1.0 - tau
-    undamped = np.log(tau) * 2.0 - np.log(rest * (1.0 + tau) + np.sqrt(rest * (1.0 + tau)))
+    distance_to_1 = 1.0 - tau
+    undamped = np.log(tau) * 2.0 - np.log(
+        distance_to_1 * (1.0 + tau) + np.sqrt(distance_to_1 * (1.0 + tau))
+    )
     if release == "elastic":
-        damped = np.log(tau) - np.log(rest + np.sqrt(rest))
+        damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
         return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
     weight = np.minimum(ratio, 1.0)
-    damped = np.log(tau / rest) + np.log(np.maximum(ratio, 1.0))
+    damped = np.log(tau / distance_to_1) + np.log(np.maximum(ratio, 1.0))
     return (1.0 - weight) * undamped + weight * damped
 
 

@@ -40,8 +40,8 @@ def lattice_front_speed(
     damping and tends to `front_speed` as gamma dx^2 -> 0. Sticking behind the front is left out.
     The relative error is below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
     Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any
-    front faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
-    velocity, so fast that slip behind it does not run away).
+    front faster than the waves and than sqrt(4 + gamma dx^2)/pi. (If friction weakens with
+    slip velocity, the front must also be so fast that slip behind it does not run away.)
 
     Parameters
     ----------
@@ -74,12 +74,12 @@ def lattice_front_speed(
             strength = damping_ratio * speed if release == "total" else 0.0
             slowed = springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
             return speed * (1.0 - slowed)
-    slowest, least = _least_prestress(tau0, lattice)
-    if tau0 <= least:
+    slowest, least_prestress = _least_prestress(tau0, lattice)
+    if tau0 <= least_prestress:
         rate = f", rate_strengthening = {rate_strengthening:g}" if drag else ""
         raise ValueError(
-            f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at"
-            f" gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
+            f"tau0: {tau0!r}; allowed: > {least_prestress:.6g}, values whose front outruns the"
+            f" waves at gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
         )
     if damping_ratio == drag == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)

@@ -69,16 +69,16 @@ class _Exponentials:
 
     def __init__(self, b: float, inertia: float, stiffness: float, load: float, start: np.ndarray):
         self.exponents = np.sort_complex(np.roots([b, inertia, 0.0, stiffness]))
-        self.rest = load / stiffness
+        self.static_slip = load / stiffness
         powers = np.vander(self.exponents, 3, increasing=True).T
-        self.amplitudes = np.linalg.solve(powers, start - np.array([self.rest, 0.0, 0.0]))
+        self.amplitudes = np.linalg.solve(powers, start - np.array([self.static_slip, 0.0, 0.0]))
 
     def at(self, xi: float | np.ndarray, derivative: int = 0) -> np.ndarray:
         """Return U, or a derivative of it, at xi <= 0."""
         factors = self.amplitudes * self.exponents**derivative
         with np.errstate(over="ignore", invalid="ignore"):
             terms = factors * np.exp(np.multiply.outer(xi, self.exponents))
-        return terms.sum(axis=-1).real + (self.rest if derivative == 0 else 0.0)
+        return terms.sum(axis=-1).real + (self.static_slip if derivative == 0 else 0.0)
 
     def samples(self) -> np.ndarray:
         """Return positions behind xi = 0 that resolve the first turns of each exponential."""
@@ -140,7 +140,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
     beta : float, damping, > 0 (H times the wave speed)
-    weakening : float, slip d_c over which friction falls from 1 to 0 (U), > 0 and < 1/gamma
+    weakening : float, slip d_c during which friction falls from 1 to 0 (U), > 0 and < 1/gamma
 
     Returns
     -------
@@ -164,9 +164,9 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     while upper < MAX_SPEED and too_fast(upper) < 0.0:
         upper *= SPEED_FACTOR
     if not MIN_SPEED < upper < MAX_SPEED:
-        numbers = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
-        allowed = f"numbers with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
-        raise ValueError(f"weakening: {numbers}; allowed: {allowed}")
+        values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
+        allowed = f"values with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
+        raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(too_fast, upper / SPEED_FACTOR, upper)
     zone_end, tail = _zone_and_tail(speed, tau0, gamma, beta, weakening)
     turn, _ = tail.first_turn()
@@ -225,7 +225,7 @@ def rate_pulse(
     def slopes(distance: float, state: np.ndarray) -> list[float]:
         if next(evaluations) == MAX_EVALUATIONS:
             place = f"{gamma!r}, where the pulse is not found in {MAX_EVALUATIONS} evaluations"
-            raise ValueError(f"gamma: {place}; allowed: larger numbers, or weaker friction")
+            raise ValueError(f"gamma: {place}; allowed: larger values, or weaker friction")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *constants)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]

@@ -100,11 +100,16 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     def gains(sign: float) -> np.ndarray:
         """Return what pre-stress of one sign adds to F: from c to a and to b, and in total."""
         source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
-        whole = source @ WEIGHTS
+        panel_integrals = source @ WEIGHTS
         panel, s, _ = points
         cut = np.sum(partial_weights(s) * source[panel], axis=-1)
-        at = ((np.cumsum(whole) - whole)[panel] + cut).reshape(4, -1)
-        return np.array([at[1] - at[0] + at[3] - at[2], at[3] - at[0]])
+        cumulative = ((np.cumsum(panel_integrals) - panel_integrals)[panel] + cut).reshape(4, -1)
+        return np.array(
+            [
+                cumulative[1] - cumulative[0] + cumulative[3] - cumulative[2],
+                cumulative[3] - cumulative[0],
+            ]
+        )
 
     at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
     lost, negative = gains(-1.0)

@@ -380,8 +380,8 @@ class Rupture(AnswersRemoved):
 
     def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return times of events; NaN where an event is not known to happen before the end."""
-        known = (time <= self._latest_time) & ~self._is_beyond_horizon(x, time)
-        return np.where(known, np.minimum(time, self.duration), np.nan)
+        is_known = (time <= self._latest_time) & ~self._is_beyond_horizon(x, time)
+        return np.where(is_known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
         """Return a mask of the points in whose past the construction has ended."""

@@ -156,6 +156,14 @@ def _first_event(x: np.ndarray, mark: float, limit: float) -> tuple[float, str |
     return min(events, key=lambda event: event[0], default=(np.inf, None))
 
 
+def _must_be_corrected(event: float, corrections: int) -> bool:
+    """Return True if a chunk does not end at an event yet (inf: none), after corrections."""
+    if event == np.inf:
+        return False
+    distance = EVENT_AT_END if corrections <= MAX_EXACT_CORRECTIONS else EVENT_NEAR_END
+    return corrections == 0 or abs(event - 1.0) >= distance
+
+
 def _goes_back(x: np.ndarray) -> bool:
     """Return True if the front would run back from the start of the chunk on."""
     slope = NODES_TO_DERIVATIVES @ x
@@ -302,8 +310,7 @@ class SlowFront:
                 chunk, corrections = chunk.half(), 0
                 continue
             s, stop = _first_event(x, mark, SEARCH_LIMIT if corrections else 1.0)
-            near = EVENT_AT_END if corrections <= MAX_EXACT_CORRECTIONS else EVENT_NEAR_END
-            if s < np.inf and (corrections == 0 or abs(s - 1.0) >= near):
+            if _must_be_corrected(s, corrections):
                 # Beyond an event the solution may be meaningless: the chunk is solved again so that
                 # it ends at the event.
                 chunk = chunk._replace(stop=float(chunk.parameters(np.array(s))))
@@ -313,14 +320,17 @@ class SlowFront:
                 # the front behind its start.
                 chunk, corrections = chunk.half(), 0
             else:
-                to_the_end = s < np.inf or chunk.stop == -1.0
-                length = (
-                    PANEL_LENGTH if to_the_end else MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
-                )
-                last_entry = self.position(Entry(chunk.panel, chunk.stop))
                 end = mark if stop == "mark" else None
-                return Advance(self.panel(chunk, x, end), stop, Progress(length, last_entry))
+                progress = self.progress_after(chunk, ends_at_event=s < np.inf)
+                return Advance(self.panel(chunk, x, end), stop, progress)
         return Advance(None, "unresolved")
+
+    def progress_after(self, chunk: Chunk, ends_at_event: bool) -> Progress:
+        """Return the state after a chunk; a chunk that was shortened limits the next one."""
+        length = PANEL_LENGTH
+        if not ends_at_event and chunk.stop != -1.0:
+            length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
+        return Progress(length, self.position(Entry(chunk.panel, chunk.stop)))
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Return the pre-stress ahead of the front."""

@@ -124,10 +124,10 @@ class StickSearch:
             hits = np.flatnonzero(below)
             zeros = self._zeros_in_steps(fine, hits, below[hits])
             out[rows[hits]] = np.fmin(out[rows[hits]], zeros)
-            rest = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
-            middle = np.clip(np.argmin(fine.velocity[rest], axis=1), 1, FINE_PARTS - 1)
-            rows = rows[rest]
-            low, high = fine.time[rest, middle - 1], fine.time[rest, middle + 1]
+            positive = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
+            middle = np.clip(np.argmin(fine.velocity[positive], axis=1), 1, FINE_PARTS - 1)
+            rows = rows[positive]
+            low, high = fine.time[positive, middle - 1], fine.time[positive, middle + 1]
         return out
 
     def _zeros_in_steps(

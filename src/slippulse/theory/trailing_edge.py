@@ -85,6 +85,29 @@ class PartWithEdge(Part):
     @cached_property
     def knots(self) -> Knots:
         """Knots that are dense enough to interpolate the trailing edge between them."""
+        x = self._first_positions()
+        knots = self._make_knots(x, self.find_stick_times(x))
+        if x.size < 2:
+            return knots
+        # Every second knot lies in the middle between its neighbours.
+        outer = Knots._make(values[::2] for values in knots)
+        middle = Knots._make(values[1::2] for values in knots)
+        is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
+        # Left ends of the halves of the intervals that are not fine enough yet.
+        left = x[:-1][~np.repeat(is_predicted, 2)]
+        x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
+        knots = self._with_more_knots(knots, x, self.find_stick_times(x), left)
+        while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
+            knots = self._with_more_knots(knots, x, self.find_stick_times(x))
+        # An edge that may become slower than the waves between two knots is checked once more.
+        x = knots.positions_to_recheck
+        return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
+
+    def _first_positions(self) -> np.ndarray:
+        """Return the positions of the first knots, every second of them in a middle.
+
+        The others are ends of panels, marks, and the positions of the fronts at the final time.
+        """
         curve = self.curve
         left, right = curve.edges[[0, -1]]
         if self.one_side:
@@ -97,24 +120,7 @@ class PartWithEdge(Part):
         x = np.unique([left, *edges, *self.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.until)]
         x = x[np.diff(x, append=np.inf) > EQUALITY_TOLERANCE * (right - left)]
-        # The middles are computed together with the other knots, and as independently as these.
-        halfway = 0.5 * (x[:-1] + x[1:])
-        x = np.sort(np.append(x, halfway))
-        knots = self._make_knots(x, self.find_stick_times(x))
-        if x.size < 2:
-            return knots
-        coarse = Knots._make(values[::2] for values in knots)
-        middle = Knots._make(values[1::2] for values in knots)
-        is_predicted = coarse.predicts_middle(np.arange(halfway.size), middle)
-        # Left ends of the halves of the intervals that are not fine enough yet.
-        left = x[:-1][~np.repeat(is_predicted, 2)]
-        x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
-        knots = self._with_more_knots(knots, x, self.find_stick_times(x), left)
-        while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
-            knots = self._with_more_knots(knots, x, self.find_stick_times(x))
-        # An edge that may become slower than the waves between two knots is checked once more.
-        x = knots.positions_to_recheck
-        return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
+        return np.sort(np.append(x, 0.5 * (x[:-1] + x[1:])))
 
     def _with_more_knots(
         self, knots: Knots, x: np.ndarray, stick: np.ndarray, left: Sequence[float] = ()
@@ -149,12 +155,14 @@ class PartWithEdge(Part):
         arrival = self.curve.arrival(marks)
         out, near = [], LANDING_OFFSET * self.scale
         for side in (-1.0, 1.0):
+            # The phase is 0 where the wave that a mark sends to this side meets the edge.
             phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
             fast = knots.outruns_waves(np.arange(knots.x.size - 1))[:, None]
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
             left, right = knots.x[k], knots.x[k + 1]
             x = left + (right - left) * before / (before - after)
+            # Two steps of Newton's method on du/dt along the wave.
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
                 domains = self.domains(x, time)
@@ -190,21 +198,16 @@ class PartWithEdge(Part):
         PIECES_PER_CUT pieces; others are halved. Halves are looked at again if the interpolation
         did not predict the middle, pieces if they contain the jump or the end.
         """
-        k = np.searchsorted(knots.x, left)
-        # Nothing is known in the future of a jump, whose position in its interval is not known
-        # exactly. An interval is kept only if some part of it is earlier.
-        ends, lengths = knots.ends_before_jumps(k)
-        sides = np.array([k, k + 1])[..., None]
-        earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
-        k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
-        jumps, at_end = knots.has_jump(k), knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        size, scale = self.curve.edges[-1] - self.curve.edges[0], self.scale
-        short = np.full(k.size, MIN_INTERVAL * scale)
-        short[at_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * scale
-        short[jumps] = JUMP_TOLERANCE * size
-        long = knots.x[k + 1] - knots.x[k] > short
-        cut = k[long & (jumps | at_end)]
-        halved = k[long & ~jumps & ~at_end]
+        k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left))
+        jumps = knots.has_jump(k)
+        reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
+        min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
+        min_length[jumps] = JUMP_TOLERANCE * self._length
+        is_long = knots.x[k + 1] - knots.x[k] > min_length
+        cut = k[is_long & (jumps | reaches_end)]
+        halved = k[is_long & ~jumps & ~reaches_end]
+        # Left ends of the pieces, [piece, interval], and the middles of the other intervals.
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
         middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
         x = np.append(pieces[1:].ravel(), middle)
@@ -212,21 +215,43 @@ class PartWithEdge(Part):
             return knots, x
         new = self._make_knots(x, self._stick_time(x, knots))
         in_middle = Knots._make(values[x.size - middle.size :] for values in new)
-        surprise = ~knots.predicts_middle(halved, in_middle)
+        is_predicted = knots.predicts_middle(halved, in_middle)
+        refined = knots.joined(new)
+        self._mark_steep_pieces(refined, pieces)
         halves = np.append(knots.x[halved], middle)
-        refined, left = knots.joined(new), np.append(halves, pieces)
+        left = np.append(halves, pieces)
         k = np.searchsorted(refined.x, left)
-        # Only one of the pieces contains a jump. If all of them are steep, the edge is slower than
-        # the waves, although its slopes at the knots are just below 1.
-        parted, far_apart = (
-            k[halves.size :].reshape(PIECES_PER_CUT, -1),
-            SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * size,
-        )
-        slow = refined.has_jump(parted).all(axis=0) & (pieces[1] - pieces[0] > far_apart)
-        refined.kind[parted[:, slow]] = refined.kind[parted[-1, slow] + 1] = SLOWER_THAN_WAVES
-        again = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        again[: halves.size] = np.tile(surprise, 2)
-        return refined, left[again]
+        look_again = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        look_again[: halves.size] = np.tile(~is_predicted, 2)
+        return refined, left[look_again]
+
+    @property
+    def _length(self) -> float:
+        """Length of the part."""
+        return self.curve.edges[-1] - self.curve.edges[0]
+
+    def _not_behind_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
+        """Return those of the intervals k that are not completely in the future of a jump.
+
+        Nothing is known in the future of a jump. Its position in its own interval is not known
+        exactly, so that twice the interval length is added to its time.
+        """
+        ends, lengths = knots.ends_before_jumps(k)
+        sides = np.array([k, k + 1])[..., None]
+        delay = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
+        is_earlier = delay.min(axis=0) < knots.stick[ends] + 2.0 * lengths
+        return k[is_earlier.all(axis=1)]
+
+    def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
+        """Set the kind SLOWER_THAN_WAVES at knots of intervals all of whose pieces are steep.
+
+        Only one of the pieces contains a jump. If all of them are steep, the edge is slower than
+        the waves, although its slopes at the knots are just below 1.
+        """
+        k = np.searchsorted(knots.x, pieces)
+        is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
+        slow = k[:, knots.has_jump(k).all(axis=0) & is_long]
+        knots.kind[slow] = knots.kind[slow[-1] + 1] = SLOWER_THAN_WAVES
 
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times, accurate to a fraction of the knot spacing.
@@ -334,30 +359,41 @@ class PartWithEdge(Part):
         stuck = knots.kind != SLIDING
         if not stuck.any():
             return None
-        # Where a front has stopped, the stick time is that of the front itself, which is exact.
-        fall = np.where(
-            knots.kind == BRIEF_SLIP, np.inf, np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
-        )
-        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING_ERROR)
-        error[error < TIME_ERROR] = 0.0
+        error = self._stick_time_errors()
         # If several positions stick first, the one nearest to x = 0 is returned.
         latest = np.where(stuck, knots.stick + error, np.inf)
         first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
-        k = np.arange(knots.x.size - 1)
-        # Between two knots the edge may have a minimum if its slope, or du/dt at the final time,
-        # points downwards into the interval at both ends.
-        down = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
-        down &= knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        down &= error[:-1] + error[1:] == 0.0
-        lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
-        for low in np.flatnonzero(down & (lowest < out.time)).tolist():
-            minimum = self._minimum_between(*knots.x[[low, low + 1]].tolist())
+        # An interval cannot contain a stick before this time.
+        earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
+        for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < out.time)).tolist():
+            minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
             # A kink or an equal time does not count as a minimum.
             if minimum and minimum.time < out.time - ROUNDING_ERROR:
                 out = minimum
         return out
+
+    def _stick_time_errors(self) -> np.ndarray:
+        """Return the errors of the stick times of knots, 0 where they are negligible."""
+        knots = self.knots
+        fall = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
+        # Where a front has stopped, the stick time is that of the front itself, which is exact.
+        fall = np.where(knots.kind == BRIEF_SLIP, np.inf, fall)
+        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING_ERROR)
+        error[error < TIME_ERROR] = 0.0
+        return error
+
+    def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
+        """Return a mask of the intervals in which the trailing edge may have a minimum.
+
+        Its slope, or du/dt at the final time, falls into such an interval from both ends.
+        """
+        knots = self.knots
+        k = np.arange(knots.x.size - 1)
+        falls_inwards = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
+        is_fast = knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        return falls_inwards & is_fast & (error[:-1] + error[1:] == 0.0)
 
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
         """Return positions between knots that have stuck before the first stick at a knot."""

@@ -45,8 +45,8 @@ def roots_between(
         f3, f2 = np.where(keeps_sign, (f1, f2), (f2, f1))
         out[alive] = np.where(np.abs(f2) < np.abs(f), x2, x)
         # The tolerance is at least the spacing of floating-point numbers.
-        least = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
-        going = (least < 0.5) & (f != 0.0)
+        min_fraction = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
+        going = (min_fraction < 0.5) & (f != 0.0)
         alive = alive[going]
         x1, x2, x3 = np.array([x, x2, x3])[:, going]
         f1, f2, f3 = np.array([f, f2, f3])[:, going]
@@ -57,7 +57,7 @@ def roots_between(
         second = (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         inside = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
         fraction = np.where(inside, first + second, 0.5)
-        fraction = np.clip(fraction, least[going], 1.0 - least[going])
+        fraction = np.clip(fraction, min_fraction[going], 1.0 - min_fraction[going])
     return out
 
 
