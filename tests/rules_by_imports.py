@@ -46,7 +46,7 @@ SOME_OF["study_grid"] = SOME_OF["simulate"]
 RULES = {*MODULES}
 # The templates that pages begin with, by the rules that write them.
 PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer", "index")}
-PAGES_OF |= {"write_report": ["report.html", "report.typ"]}
+PAGES_OF |= {"write_report": ["report.html", "report.typ", "report.csl"]}
 PAGES_OF |= {"draw_scene": ["scene.html"], "write_scenes_page": ["scenes.html"]}
 # Texts beside the package, by the rules that read them; all others only the report reads.
 ON_CLAIMS = {"write_report", "write_claims"}
