@@ -51,8 +51,8 @@ FAINT_VELOCITY, MIN_FAINT_INTERVAL = 1e-5, 1e-2
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
     """Return positions between pairs of sliding ones that have stuck until a time.
 
-    The result is empty if the bound is positive everywhere. x is [left and right, pair]. first is
-    the position that sticks at this time, if it is known.
+    The result is empty if nothing has stuck. x is [left and right, pair]. first is the position
+    that sticks at this time, if it is known.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:

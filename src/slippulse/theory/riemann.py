@@ -33,6 +33,7 @@ import math
 from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -46,6 +47,7 @@ from .curve import (
     NODES_TO_POWERS,
     POWERS_TO_WEIGHTS,
     WEIGHTS,
+    Crossing,
     Curve,
     value_and_slope,
 )
@@ -60,6 +62,19 @@ KERNEL_AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
 MAX_EXPONENT = 300.0
 
 
+class StaticValues(NamedTuple):
+    """A static solution p along a curve, and derivatives of the curve by its parameter s.
+
+    With g = T - x and h = T + x: p, dp/dx, dT/ds, dg/ds and dh/ds.
+    """
+
+    p: np.ndarray
+    slope: np.ndarray
+    d_time: np.ndarray
+    d_t_minus_x: np.ndarray
+    d_t_plus_x: np.ndarray
+
+
 class StaticSolution:
     """One static solution p of p'' - gamma p + tau = 0 along a curve.
 
@@ -71,7 +86,7 @@ class StaticSolution:
 
     def __init__(self, curve: Curve, gamma: float) -> None:
         if gamma == 0.0:
-            # p = p' = 0 at the left end.
+            # Without leaf springs the solution with p = p' = 0 at the left end is used.
             slope = -_integral(curve.source)
             p = _integral(slope * (curve.x @ NODES_TO_DERIVATIVES.T))
         else:
@@ -84,13 +99,13 @@ class StaticSolution:
             values @ NODES_TO_DERIVATIVES.T
             for values in (curve.time, curve.t_minus_x, curve.t_plus_x)
         )
-        # Five quantities at the nodes, [quantity, panel, node]: p, p', dT/ds, dg/ds and dh/ds.
+        # The fields of StaticValues at the nodes, [field, panel, node].
         self.node_values = np.stack([p, slope, *derivatives])
         self._powers = [NODES_TO_POWERS @ values.T for values in (p, slope)]
 
-    def on(self, panels: slice) -> np.ndarray:
-        """Return the quantities of `node_values` at the nodes of some panels."""
-        return self.node_values[:, panels].reshape(len(self.node_values), -1)
+    def on(self, panels: slice) -> StaticValues:
+        """Return the values at the nodes of some panels."""
+        return StaticValues(*self.node_values[:, panels].reshape(len(self.node_values), -1))
 
     def evaluate(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """Return p (order 0) or p' (order 1) at a parameter on each panel."""
@@ -98,7 +113,7 @@ class StaticSolution:
 
 
 def _integral(values: np.ndarray) -> np.ndarray:
-    """Return the integral of values d/ds from the left end of the curve, [panel, node]."""
+    """Return the integral of values ds from the left end of the curve, [panel, node]."""
     gain = values @ WEIGHTS
     return (np.cumsum(gain) - gain)[:, None] + values @ NODES_TO_INTEGRALS.T
 
@@ -143,17 +158,9 @@ class DependenceDomains:
 
         Each consists of what enters at the end of the integral and of the change of the kernel.
         """
-        # E tau dx/dg at the left end and E tau dx/dh at the right end of the integral.
-        per_slope = []
-        ends = zip(
-            ("t_minus_x", "t_plus_x"), (self.left, self.right), self._decay_at_ends(), strict=True
-        )
-        for name, end, decayed in ends:
-            slope = self.curve.evaluate(name, end.panel, end.s, order=1)
-            # Where this slope is 0, tau is 0 too, and the end contributes nothing.
-            slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-            per_slope.append(decayed * self.curve.evaluate("source", end.panel, end.s) / slope)
-        left, right = per_slope
+        decay_left, decay_right = self._decay_at_ends()
+        left = self._source_at_end("t_minus_x", self.left, decay_left)
+        right = self._source_at_end("t_plus_x", self.right, decay_right)
         # The decay E depends on xi and on eta in the same way.
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
@@ -167,15 +174,25 @@ class DependenceDomains:
         by_xi, by_eta = self._integrate(integrand, (2,))
         return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
 
+    def _source_at_end(self, phase: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
+        """Return E tau dx/dg or E tau dx/dh at an end of each integral."""
+        slope = self.curve.evaluate(phase, end.panel, end.s, order=1)
+        # Where this slope is 0, tau is 0 too, and the end contributes nothing.
+        slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
+        return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
+
     def slip(self, static_solution: StaticSolution) -> np.ndarray:
         """Return u at the points."""
         k, alpha = self.stiffness, self.alpha
 
         def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            p, slope, d_time, d_t_minus_x, d_t_plus_x = static_solution.on(panels)
-            push = -slope * d_time - 0.25 * alpha * p * (d_t_plus_x - d_t_minus_x)
-            sides = d_eta * (k * p * d_t_minus_x) - d_xi * (k * p * d_t_plus_x)
-            return kernel(0) * push + kernel(1) * sides
+            at = static_solution.on(panels)
+            # These are the factors of K and of K' in the formula for 2 u.
+            with_kernel = -at.slope * at.d_time
+            with_kernel -= 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
+            with_slope = d_eta * (k * at.p * at.d_t_minus_x)
+            with_slope -= d_xi * (k * at.p * at.d_t_plus_x)
+            return kernel(0) * with_kernel + kernel(1) * with_slope
 
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
@@ -187,12 +204,13 @@ class DependenceDomains:
             return out
 
         def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            p, slope, d_time, d_t_minus_x, d_t_plus_x = static_solution.on(panels)
+            at = static_solution.on(panels)
             first = kernel(1)
-            growth = k**2 * kernel(2) * (d_eta * (p * d_t_minus_x) - d_xi * (p * d_t_plus_x))
-            sides = first * (k * p * (d_t_minus_x + d_t_plus_x))
-            push = k * (slope * d_time + 0.25 * alpha * p * (d_t_plus_x - d_t_minus_x))
-            return (d_eta - d_xi) * (first * push - growth) + sides
+            growth = d_eta * (at.p * at.d_t_minus_x) - d_xi * (at.p * at.d_t_plus_x)
+            growth = k**2 * kernel(2) * growth
+            sides = first * (k * at.p * (at.d_t_minus_x + at.d_t_plus_x))
+            push = at.slope * at.d_time + 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
+            return (d_eta - d_xi) * (first * (k * push) - growth) + sides
 
         at_left, at_right = self._at_ends(static_solution, 0)
         d_xi = self.xi - curve.evaluate("t_minus_x", self.right.panel, self.right.s)
@@ -245,18 +263,21 @@ class DependenceDomains:
             d_eta = self.eta[points, None] - curve.t_plus_x[panels].ravel()
             z = self.stiffness * d_xi
             z *= d_eta
+            # Only the panels at the two ends, which are cut, may have nodes outside of the domain.
             kernel = kernel_function(self.stiffness, z, z.reshape(low.size, -1, NODE_COUNT)[ends])
             values = integrand(d_xi, d_eta, kernel, panels)
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)
-            boxes = values.reshape(*components, low.size, -1, NODE_COUNT)
+            by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
             # Sum over the whole panels between both ends, and over the parts of the panels at the
             # ends.
             panel = np.arange(last - first)
             inside = (panel >= low[:, None]) & (panel < high[:, None])
-            total = np.add.reduce((boxes @ WEIGHTS) * inside, axis=-1)
+            total = np.add.reduce((by_panel @ WEIGHTS) * inside, axis=-1)
             weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-            cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, NODE_COUNT), axis=-1)
+            cut = np.add.reduce(
+                by_panel[..., *ends, :] * weights.reshape(2, -1, NODE_COUNT), axis=-1
+            )
             out[..., points] = total + cut[..., 0, :] - cut[..., 1, :]
         # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
@@ -270,11 +291,13 @@ class DependenceDomains:
         values = np.broadcast_to(
             integrand(zero, zero, lambda _: 1.0, all_panels), (1, self.curve.x.size)
         )
-        boxes = values.reshape(-1, NODE_COUNT)
-        sums = np.concatenate([[0.0], np.cumsum(boxes @ WEIGHTS)])
+        by_panel = values.reshape(-1, NODE_COUNT)
+        sums = np.concatenate([[0.0], np.cumsum(by_panel @ WEIGHTS)])
         low, high = np.minimum(self.left.panel, self.right.panel), self.right.panel
-        at_low = sums[low] + np.add.reduce(partial_weights(self.left.s) * boxes[low], axis=-1)
-        at_high = sums[high] + np.add.reduce(partial_weights(self.right.s) * boxes[high], axis=-1)
+        at_low = sums[low] + np.add.reduce(partial_weights(self.left.s) * by_panel[low], axis=-1)
+        at_high = sums[high] + np.add.reduce(
+            partial_weights(self.right.s) * by_panel[high], axis=-1
+        )
         return np.where(self.left.panel > self.right.panel, 0.0, at_high - at_low)
 
 
