@@ -53,7 +53,9 @@ class ArrestingCrack(AnswersRemoved):
         # Beyond this position the profile is 0 to rounding, and the right front runs at the wave
         # speed.
         self.end = max([48.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
-        self.fronts = fast_fronts(prestress, damping_ratio, release, self.end)
+        self.fronts = fast_fronts(
+            prestress, damping_ratio=damping_ratio, release=release, reach=self.end
+        )
         self.zero = float(self.fronts.edges[0])
 
     def _entry_of(self, position: float) -> float:

@@ -71,7 +71,12 @@ def barrier_depth(
     place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
     check_number(f"front speed {place}", speed, at_most=MAX_SPEED)
     # The depth is computed at gamma = 1, behind a front that is as long as the memory of its pulse.
-    memory = MEMORY_FACTOR * pulse_at_speed(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    memory = (
+        MEMORY_FACTOR
+        * pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
+        / (speed - 1.0)
+        * speed
+    )
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / MAX_PANEL_LENGTH)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)

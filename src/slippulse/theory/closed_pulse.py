@@ -99,9 +99,9 @@ def pulse_at_speed(
         slip = tau0 / gamma * (1.0 + np.exp(-p * width))
         amplitude = v * tau0 * np.hypot(p, q) / gamma
         peak = amplitude * np.exp(-p / q * np.arctan2(q, p))
-        width_slip_peak = float(width), float(slip), float(peak)
+        width, slip, peak = float(width), float(slip), float(peak)
         # Python's floats can overflow without an error.
-        if not all(0.0 < size < math.inf for size in width_slip_peak):
+        if not all(0.0 < size < math.inf for size in (width, slip, peak)):
             raise OverflowError
     except (ArithmeticError, ValueError):
         place, critical = f"at gamma = {gamma:.6g}", critical_rate_strengthening(gamma, v)
@@ -110,7 +110,19 @@ def pulse_at_speed(
             allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
             message = f"rate_strengthening: {alpha!r}; allowed: {allowed}, or no pulse is steady"
         raise ValueError(message) from None
-    return SteadyPulse(tau0, gamma, beta, v, *width_slip_peak, float(gamma * slip), p, q, alpha)
+    return SteadyPulse(
+        tau0=tau0,
+        gamma=gamma,
+        beta=beta,
+        speed=v,
+        width=width,
+        slip=slip,
+        peak_velocity=peak,
+        stress_drop=float(gamma * slip),
+        growth=p,
+        wavenumber=q,
+        rate_strengthening=alpha,
+    )
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
@@ -156,7 +168,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     2.0
     """
     check_domains(tau0=tau0)
-    return pulse_at_speed(tau0, gamma, 0.0, 1.0 / math.sqrt(1.0 - tau0 * tau0))
+    return pulse_at_speed(tau0, gamma=gamma, beta=0.0, speed=1.0 / math.sqrt(1.0 - tau0 * tau0))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:

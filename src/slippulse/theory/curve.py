@@ -224,9 +224,11 @@ class Curve:
         On the left T - x rises to xi = t - y, going left from y; on the right T + x rises to eta =
         t + y, going right.
         """
-        right, meets_right = _panels_of_crossings(self.edges, self._lowest_exits[0], y, eta)
+        right, meets_right = _panels_of_crossings(
+            self.edges, regions=self._lowest_exits[0], y=y, level=eta
+        )
         mirrored, meets_left = _panels_of_crossings(
-            -self.edges[::-1], self._lowest_exits[1], -y, xi
+            -self.edges[::-1], regions=self._lowest_exits[1], y=-y, level=xi
         )
         left = len(self.panels) - 1 - mirrored
         columns = np.concatenate([self.columns("t_minus_x", left), self.columns("t_plus_x", right)])

@@ -69,7 +69,7 @@ def layer_results(
     check_number("initial_stress", initial_stress, above=lowest, below=highest)
     tau0, gamma = float(layer.convert_from_si(initial_stress, "stress")), layer.gamma
     speed = float(front_speed(tau0, damping_ratio, release))
-    time = uniform_transition_time(tau0, gamma, damping_ratio, release)
+    time = uniform_transition_time(tau0, gamma=gamma, damping_ratio=damping_ratio, release=release)
     paper, exact = paper_pulse(tau0, gamma), steady_pulse(tau0, gamma, speed=speed)
     paper_time, paper_length = paper_transition_displacement(tau0, gamma)
     # The peak velocity is twice this, since the peak of the paper's pulse is 1/sqrt(gamma).

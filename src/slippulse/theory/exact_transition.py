@@ -50,13 +50,17 @@ def exact_transition_displacement(
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins where x + T(x) = t, so that x < t.
-    fronts = fast_fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
+    fronts = fast_fronts(
+        prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
+    )
     stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
         reach = float(front_speed(level, damping_ratio, release)) * stick + _distance_to_uniform(
             prestress
         )
-        fronts = fast_fronts(prestress, damping_ratio, release, reach, gamma)
+        fronts = fast_fronts(
+            prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
+        )
     return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
 
 

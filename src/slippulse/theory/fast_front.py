@@ -195,5 +195,13 @@ def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Pane
         half, slope = 0.5 * (right - left), slowness if left + right > 0.0 else -slowness
         x = left + half * (1.0 + NODES)
         source = np.full(NODE_COUNT, tau * half)
-        panels.append(Panel(x, slope * x, source, (left, right), (slope * left, slope * right)))
+        panels.append(
+            Panel(
+                x=x,
+                time=slope * x,
+                source=source,
+                x_ends=(left, right),
+                time_ends=(slope * left, slope * right),
+            )
+        )
     return panels

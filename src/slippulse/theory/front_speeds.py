@@ -179,4 +179,4 @@ def speeds_into(tau: np.ndarray, lattice: Lattice, slowest: float = MIN_LOG_EXCE
 
     low, high = np.full(tau.size, slowest), np.full(tau.size, MAX_LOG_EXCESS)
     guess = np.clip(first_guess(tau, lattice.ratio, lattice.release), low + 0.1, high - 1.0)
-    return 1.0 + np.exp(increasing_roots(mismatch, guess, low, high))
+    return 1.0 + np.exp(increasing_roots(mismatch, guess=guess, lower=low, upper=high))

@@ -66,7 +66,9 @@ def lattice_front_speed(
     drag = float(rate_strengthening) * float(dx)
     if springs < MIN_SPRINGS and abs(drag) < MIN_DRAG:
         return float(front_speed(tau0, damping_ratio, release))
-    lattice = Lattice(np.array([float(damping_ratio)]), release, springs, drag)
+    lattice = Lattice(
+        ratio=np.array([float(damping_ratio)]), release=release, springs=springs, drag=drag
+    )
     if 1.0 - tau0 < NEARLY_ONE_DISTANCE and damping_ratio > 0.0 and springs <= MAX_SPRINGS:
         speed = front_speed(tau0, damping_ratio, release)
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:

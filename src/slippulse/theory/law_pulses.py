@@ -118,7 +118,9 @@ def _zone_and_tail(
     The end is NaN if the slip stops inside the zone.
     """
     b, inertia = beta * v, (v - 1.0) * (v + 1.0)
-    zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
+    zone = _Exponentials(
+        b=b, inertia=inertia, stiffness=gamma - 1.0 / weakening, load=tau0 - 1.0, start=np.zeros(3)
+    )
     xi = zone.samples()
     weak = zone.at(xi) >= weakening
     first = int(np.argmax(weak))
@@ -127,7 +129,7 @@ def _zone_and_tail(
     before = 0.0 if first == 0 else float(xi[first - 1])
     end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
-    return end, _Exponentials(b, inertia, gamma, tau0, start)
+    return end, _Exponentials(b=b, inertia=inertia, stiffness=gamma, load=tau0, start=start)
 
 
 def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> SteadyRupture:
@@ -157,7 +159,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
     def too_fast(v: float) -> float:
-        end, tail = _zone_and_tail(v, tau0, gamma, beta, weakening)
+        """Return 1 if v is above the speed of the rupture, -1 if not."""
+        end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
         return -1.0 if math.isnan(end) or tail.first_turn()[1] else 1.0
 
     upper = MIN_SPEED
@@ -168,7 +171,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         allowed = f"values with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(too_fast, upper / SPEED_FACTOR, upper)
-    zone_end, tail = _zone_and_tail(speed, tau0, gamma, beta, weakening)
+    zone_end, tail = _zone_and_tail(speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
     turn, _ = tail.first_turn()
     if tail.creeps_forever() or not turn.size:
         return SteadyRupture(speed, math.inf, tau0 / gamma)
@@ -223,6 +226,7 @@ def rate_pulse(
     evaluations = count()
 
     def slopes(distance: float, state: np.ndarray) -> list[float]:
+        """Return the derivatives of slip and strain by the distance behind the front."""
         if next(evaluations) == MAX_EVALUATIONS:
             place = f"{gamma!r}, where the pulse is not found in {MAX_EVALUATIONS} evaluations"
             raise ValueError(f"gamma: {place}; allowed: larger values, or weaker friction")
@@ -231,9 +235,11 @@ def rate_pulse(
         return [strain, (tau0 - resistance - gamma * slip) / inertia]
 
     def strain(distance: float, state: np.ndarray) -> float:
+        """Return the strain, which is 0 where the slip stops."""
         return state[1]
 
     def curvature(distance: float, state: np.ndarray) -> float:
+        """Return the derivative of the strain, which is 0 at the peak of slip velocity."""
         return slopes(distance, state)[1]
 
     strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
@@ -246,5 +252,7 @@ def rate_pulse(
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(state[1]) for state in path.y_events[1])
     if path.status != 1:
-        return SteadyRupture(v, math.inf, tau0 / gamma, peak)
-    return SteadyRupture(v, float(path.t[-1]), float(path.y[0, -1]), peak)
+        return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)
+    return SteadyRupture(
+        speed=v, width=float(path.t[-1]), slip=float(path.y[0, -1]), peak_velocity=peak
+    )

@@ -66,7 +66,9 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
             velocity.min(axis=0) > ROUNDING_ERROR, MIN_INTERVAL, MIN_INTERVAL_AT_REST
         )
         min_length[is_faint] = MIN_FAINT_INTERVAL
-        is_open = (x[1] - x[0] > min_length * part.scale) & ~stays_positive(part, x, velocity, time)
+        is_open = (x[1] - x[0] > min_length * part.scale) & ~stays_positive(
+            part, x=x, velocity=velocity, time=time
+        )
         is_open &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
         edges = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
         inner_velocity = velocity_at(edges[1:-1])

@@ -51,7 +51,9 @@ class Part:
 
     def domains(self, x: np.ndarray, time: np.ndarray) -> DependenceDomains:
         """Return the domains of dependence of points (x, time) that slide."""
-        return DependenceDomains(self.curve, self.gamma, self.alpha, x, time)
+        return DependenceDomains(
+            curve=self.curve, gamma=self.gamma, alpha=self.alpha, y=x, time=time
+        )
 
     def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return du/dt at points (x, time) that slide."""

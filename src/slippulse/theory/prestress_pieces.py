@@ -35,7 +35,7 @@ class Piece(NamedTuple):
 
 def uniform_background(level: float) -> Interval:
     """Return the background of one level everywhere."""
-    return Interval(-np.inf, np.inf, level, level)
+    return Interval(left=-np.inf, right=np.inf, left_value=level, right_value=level)
 
 
 def continued_prestress(prestress: Prestress, background: Interval, x: np.ndarray) -> np.ndarray:
@@ -72,9 +72,11 @@ def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     samples = np.unique(np.concatenate([[], *rows]))
     out = []
     for background in prestress.intervals:
-        above, changes = _sign_changes(prestress, background, samples, value)
+        above, changes = _sign_changes(
+            prestress, background=background, samples=samples, value=value
+        )
         for start, end in pairwise([background.left, *changes, background.right]):
-            out.append(Piece(start, end, background, above))
+            out.append(Piece(left=start, right=end, background=background, above=above))
             above = not above
     return out
 
@@ -108,6 +110,7 @@ def _sign_changes(
     x = np.concatenate([[first], inner, [last]])
 
     def excess(position: float) -> float:
+        """Return tau - value at a position."""
         return float(continued_prestress(prestress, background, np.asarray(position))) - value
 
     differences = continued_prestress(prestress, background, x) - value

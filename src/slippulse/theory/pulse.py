@@ -46,4 +46,6 @@ def steady_pulse(
     if speed is None:
         check_domains(tau0=tau0, damping_ratio=damping_ratio)
         speed = float(front_speed(tau0, damping_ratio, release))
-    return pulse_at_speed(tau0, gamma, beta, speed, rate_strengthening)
+    return pulse_at_speed(
+        tau0, gamma=gamma, beta=beta, speed=speed, rate_strengthening=rate_strengthening
+    )

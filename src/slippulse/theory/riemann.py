@@ -91,8 +91,10 @@ class StaticSolution:
             p = _integral(slope * (curve.x @ NODES_TO_DERIVATIVES.T))
         else:
             k = float(np.sqrt(gamma))
-            right = _decaying(k, curve.x, curve.source, curve.edges)
-            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])
+            right = _decaying(k, x=curve.x, source=curve.source, edges=curve.edges)
+            left = _decaying(
+                k, x=-curve.x[::-1, ::-1], source=curve.source[::-1, ::-1], edges=-curve.edges[::-1]
+            )
             left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         derivatives = (

@@ -96,7 +96,12 @@ class Rupture(AnswersRemoved):
     ) -> None:
         check_domains(duration=duration)
         self.law = FastFront(
-            prestress, gamma, damping_ratio, release, refinement, rate_strengthening
+            prestress=prestress,
+            gamma=gamma,
+            damping_ratio=damping_ratio,
+            release=release,
+            refinement=refinement,
+            alpha=rate_strengthening,
         )
         check_number("rate_strengthening", rate_strengthening, at_most=MAX_DECAY / duration)
         self.prestress = prestress
@@ -268,6 +273,7 @@ class Rupture(AnswersRemoved):
         front = self.fronts_at(time, x)[side == "right"]
 
         def delay(position: float) -> float:
+            """Return how much later than the given time a position sticks."""
             stick = np.nan_to_num(
                 self._stick_time_beyond_end(np.array(position)), nan=2.0 * self.duration
             )
@@ -360,7 +366,7 @@ class Rupture(AnswersRemoved):
         positions, index = self._distinct_positions(x)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved:
-            part.fill_fields(out, positions, index, time)
+            part.fill_fields(out, x=positions, index=index, time=time)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)

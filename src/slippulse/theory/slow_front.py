@@ -361,7 +361,10 @@ class SlowFront:
             if last < ENTRY_FRACTIONS.size - 1:
                 goes_on = not negative or motions[last + 1] >= motions[last]
                 return self.entry_after_skipped(
-                    Entry(int(panel), float(parameters[last])), gain, has_skipped, goes_on
+                    Entry(int(panel), float(parameters[last])),
+                    gain=gain,
+                    has_skipped=has_skipped,
+                    goes_on=goes_on,
                 )
             panel, s = panel - 1, 1.0
         if panel >= 0:
@@ -417,7 +420,7 @@ class SlowFront:
             return None
         x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
         source = np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion)
-        return Panel(x, time, source, x_ends, time_ends)
+        return Panel(x=x, time=time, source=source, x_ends=x_ends, time_ends=time_ends)
 
     def is_slow_to_right(self, panel: int) -> bool:
         """Return True if a panel belongs to a front that runs right, slower than the waves."""
@@ -485,7 +488,11 @@ class SlowFront:
         last = float(NODES_TO_ENDS[1] @ x) if end is None else end
         x_ends, time_ends = (self.x0, last), (self.t0, float(last_t_minus_x) + last)
         return Panel(
-            x, np.array(t_minus_x) + x, self.tau(x) * (NODES_TO_DERIVATIVES @ x), x_ends, time_ends
+            x=x,
+            time=np.array(t_minus_x) + x,
+            source=self.tau(x) * (NODES_TO_DERIVATIVES @ x),
+            x_ends=x_ends,
+            time_ends=time_ends,
         )
 
     def straight(self, mark: float) -> Advance:
@@ -498,5 +505,11 @@ class SlowFront:
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
         x_ends, time_ends = (self.x0, mark), (self.t0, self.t0 + 2.0 * half)
-        panel = Panel(x, self.t0 + x - self.x0, self.tau(x) * half, x_ends, time_ends)
+        panel = Panel(
+            x=x,
+            time=self.t0 + x - self.x0,
+            source=self.tau(x) * half,
+            x_ends=x_ends,
+            time_ends=time_ends,
+        )
         return Advance(panel, "mark")

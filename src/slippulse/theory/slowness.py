@@ -84,6 +84,7 @@ def _make_panels(damping_ratio: float, release: str) -> FrontLawPanels:
     """Return panels on which the front law is resolved."""
 
     def prestress(psi: np.ndarray) -> np.ndarray:
+        """Return the pre-stress of fronts with 1/v = cos(psi)."""
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
         return np.exp(log_prestress_in_chunks(excess, np.full(excess.size, damping_ratio), release))
 

@@ -106,13 +106,19 @@ class SolvedPart(PartWithEdge):
         end = time[row, np.minimum(column + 1, GRID_SIZE - 1)]
 
         def acceleration(time: np.ndarray, which: np.ndarray) -> np.ndarray:
+            """Return the slip acceleration at times, for some of the positions."""
             return np.add(*self.domains(x[which], time).velocity_slopes())
 
         rise, fall = acceleration(start, row), acceleration(end, row)
         row = np.flatnonzero((rise > 0.0) & (fall < 0.0))
         start, end, rise, fall = np.array([start, end, rise, fall])[:, row]
         peak = roots_between(
-            lambda time, k: acceleration(time, row[k]), start, end, rise, fall, 1e-7 * self.scale
+            lambda time, k: acceleration(time, row[k]),
+            lower=start,
+            upper=end,
+            at_lower=rise,
+            at_upper=fall,
+            xtol=1e-7 * self.scale,
         )
         out = values.max(axis=1)
         out[row] = np.maximum(out[row], self.velocity(x[row], peak))

@@ -108,12 +108,12 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
     laws = {RIGHT: law, LEFT: law.mirrored()}
     stretches = _nucleate(law)
     for stretch, side in product(stretches, SIDES):
-        _advance_fast_front(laws[side], stretch, side, until)
+        _advance_fast_front(laws[side], stretch=stretch, side=side, until=until)
     stretches = _join_met_stretches(stretches)
     # The earliest slow front advances first, since each depends on what the others did before.
     while moving := [(s, side) for s, side in product(stretches, SIDES) if not s.end_reason[side]]:
         stretch, side = min(moving, key=lambda front: front[0].ends[front[1]].time)
-        _advance_slow_front(laws[side], stretch, side, until)
+        _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
         stretches = _join_met_stretches(stretches)
     stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
     unknown = [
@@ -165,7 +165,13 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
     """Add a panel of a slow front; a fast front follows where the pre-stress is positive again."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
-    front = SlowFront(stretch.curve(side), law.prestress, piece.background, law.gamma, law.alpha)
+    front = SlowFront(
+        curve=stretch.curve(side),
+        prestress=law.prestress,
+        background=piece.background,
+        gamma=law.gamma,
+        alpha=law.alpha,
+    )
     panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
@@ -181,7 +187,7 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
         elif law.piece_right_of(mark).above:
             stretch.progress[side] = Progress()
             stretch.restarts[side].append(side * mark)
-            _advance_fast_front(law, stretch, side, until)
+            _advance_fast_front(law, stretch=stretch, side=side, until=until)
 
 
 def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
@@ -203,6 +209,7 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     first, second = left.curve(), right.curve()
 
     def delay_of_left(x: float) -> float:
+        """Return how much later the left stretch reaches x than the right one."""
         return float(first.arrival(x) - second.arrival(x))
 
     low = max(right.ends[LEFT].x, float(first.edges[0]))

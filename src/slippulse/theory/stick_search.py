@@ -153,8 +153,16 @@ class StickSearch:
         out, rises = time[1].copy(), np.flatnonzero(velocity[0] > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
+            """Return du/dt less its target, for some of the rows with a bracket."""
             return self.velocity(x[rises[which]], time) - target[rises[which]]
 
         (start, end), (at_start, at_end) = time[:, rises], velocity[:, rises]
-        out[rises] = roots_between(above_target, start, end, at_start, at_end, TIME_TOLERANCE)
+        out[rises] = roots_between(
+            above_target,
+            lower=start,
+            upper=end,
+            at_lower=at_start,
+            at_upper=at_end,
+            xtol=TIME_TOLERANCE,
+        )
         return out

@@ -96,7 +96,7 @@ class PartWithEdge(Part):
         # Left ends of the halves of the intervals that are not fine enough yet.
         left = x[:-1][~np.repeat(is_predicted, 2)]
         x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
-        knots = self._with_more_knots(knots, x, self.find_stick_times(x), left)
+        knots = self._with_more_knots(knots, x=x, stick=self.find_stick_times(x), left=left)
         while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
             knots = self._with_more_knots(knots, x, self.find_stick_times(x))
         # An edge that may become slower than the waves between two knots is checked once more.
@@ -147,7 +147,14 @@ class PartWithEdge(Part):
         slow = (by_xi >= 0.0) | (by_eta >= 0.0)
         kind = np.where(sticks, np.where(slow, SLOWER_THAN_WAVES, FASTER_THAN_WAVES), SLIDING)
         kind[sticks & (time - self.curve.arrival(x) <= MIN_INTERVAL * self.scale)] = BRIEF_SLIP
-        return Knots(x, time, kind, velocity, by_xi, by_eta)
+        return Knots(
+            x=x,
+            stick=time,
+            kind=kind,
+            velocity=velocity,
+            velocity_by_xi=by_xi,
+            velocity_by_eta=by_eta,
+        )
 
     def _positions_of_landings(self, knots: Knots) -> np.ndarray:
         """Return positions on both sides of where waves from the marks meet the trailing edge."""
@@ -188,7 +195,14 @@ class PartWithEdge(Part):
         at_left, at_right = velocity[:, meets]
         left, right = knots.x[k[meets]], knots.x[k[meets] + 1]
         near = 0.4 * MIN_INTERVAL_AT_END * self.scale
-        x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
+        x = roots_between(
+            self._velocity_at_end,
+            lower=left,
+            upper=right,
+            at_lower=at_left,
+            at_upper=at_right,
+            xtol=0.5 * near,
+        )
         return np.clip([x - near, x + near], left, right).ravel()
 
     def _refine(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
@@ -271,7 +285,9 @@ class PartWithEdge(Part):
             return self.find_stick_times(x)
         k = knots.interval_of(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        out = self._stick_times_by_newton(knots, x, k, inside & knots.outruns_waves(k))
+        out = self._stick_times_by_newton(
+            knots, x=x, k=k, is_requested=inside & knots.outruns_waves(k)
+        )
         # Where both neighbouring knots slide at the final time, a position whose du/dt is positive
         # then has not stuck before.
         slides = np.flatnonzero(inside & knots.has_end_kinds(k, SLIDING, SLIDING))
@@ -409,7 +425,7 @@ class PartWithEdge(Part):
             inner = [first.x] if left < first.x < right else []
             intervals += pairwise([left, *inner, right])
         x = np.array(intervals).reshape(-1, 2).T
-        return stuck_between(self, x, first.time, first.x)
+        return stuck_between(self, x=x, time=first.time, first=first.x)
 
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
         """Return the first sticking between two positions.
@@ -418,6 +434,7 @@ class PartWithEdge(Part):
         """
 
         def edge_slope(position: float) -> float:
+            """Return the slope of the trailing edge at a position."""
             x = np.array([position])
             return float(self._make_knots(x, self._stick_time(x)).slope[0])
 

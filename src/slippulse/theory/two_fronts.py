@@ -30,7 +30,7 @@ def fast_fronts(
     They end where they are not faster than the waves. The panels resolve the waves of leaf springs
     with the elasticity ratio gamma.
     """
-    law = FastFront(prestress, gamma, damping_ratio, release)
+    law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
     starts = nucleation_intervals(prestress)
     if len(starts) > 1 or starts[0][0] != starts[0][1]:

@@ -98,7 +98,9 @@ def log_prestress(
         angle = max(CONTOUR_ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
     contour = nodes(int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH)), angle)
-    f = log_factor(contour, excess[:, None], ratio[:, None], springs, drag)
+    f = log_factor(
+        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
+    )
     out = (f @ (contour.weight / contour.z)).imag / np.pi
     if springs > 0.0:
         edge = 0.5 * np.sqrt(springs)
@@ -128,7 +130,7 @@ def log_factor(
     """
     z = contour.z
     iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio, springs, drag)
+    q, r = roots(iw, ratio=ratio, springs=springs, drag=drag)
     both = r + q
     rho = (1.0 + ratio * iw) / both**2
     factor = 2.0 * q / both - rho * contour.exp_minus_1
@@ -194,7 +196,12 @@ def nodes(panels: int, angle: float) -> Nodes:
     z = np.concatenate([inner * turn, size * turn, CONTOUR_REACH * turn + leg * LEG_DIRECTION])
     weights = inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION
     weight = np.concatenate(weights)
-    return Nodes(z, weight, np.expm1(1j * z), _exp_minus_two_terms(1j * z))
+    return Nodes(
+        z=z,
+        weight=weight,
+        exp_minus_1=np.expm1(1j * z),
+        exp_minus_2_terms=_exp_minus_two_terms(1j * z),
+    )
 
 
 def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
