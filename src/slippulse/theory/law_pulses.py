@@ -161,7 +161,10 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     def too_fast(v: float) -> float:
         """Return 1 if v is above the speed of the rupture, -1 if not."""
         end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
-        return -1.0 if math.isnan(end) or tail.first_turn()[1] else 1.0
+        if math.isnan(end):
+            return -1.0
+        _, stops = tail.first_turn()
+        return -1.0 if stops else 1.0
 
     upper = MIN_SPEED
     while upper < MAX_SPEED and too_fast(upper) < 0.0:
@@ -203,7 +206,7 @@ def rate_pulse(
 
     Returns
     -------
-    SteadyRupture : of infinite width and slip tau_0/gamma where slip creeps_forever on
+    SteadyRupture : with infinite width and slip tau_0/gamma if slip creeps on
 
     Examples
     --------

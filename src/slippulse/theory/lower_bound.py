@@ -32,6 +32,9 @@ from .curve import WEIGHTS
 from .part import Part
 from .riemann import MAX_EXPONENT, partial_weights
 
+# Points on the curve, from left to right: where the past of a begins, where that of c begins and
+# ends, and where that of b ends.
+A_BEGINS, C_BEGINS, C_ENDS, B_ENDS = range(4)
 # The square of the first zero of the Bessel function J0.
 SQUARED_FIRST_ZERO = 5.783185962946784
 # An interval whose bound is not positive is cut into this number of parts. The shortest interval,
@@ -66,9 +69,8 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
             velocity.min(axis=0) > ROUNDING_ERROR, MIN_INTERVAL, MIN_INTERVAL_AT_REST
         )
         min_length[is_faint] = MIN_FAINT_INTERVAL
-        is_open = (x[1] - x[0] > min_length * part.scale) & ~stays_positive(
-            part, x=x, velocity=velocity, time=time
-        )
+        is_open = x[1] - x[0] > min_length * part.scale
+        is_open &= ~stays_positive(part, x=x, velocity=velocity, time=time)
         is_open &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
         edges = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
         inner_velocity = velocity_at(edges[1:-1])
@@ -89,9 +91,11 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     (left, right), curve, alpha = x, part.curve, part.alpha
     span, middle = right - left, 0.5 * (left + right)
     apex_time = time - 0.5 * (right - left)
+    # Where the past of a begins on the curve, and where that of b ends.
     begin, end = curve.crossings(middle, time - left, time + right)
     domains = part.domains(middle, apex_time)
     k, slipped = domains.stiffness, curve.arrival(middle) < apex_time
+    # In the order of A_BEGINS, C_BEGINS, C_ENDS and B_ENDS.
     points = [
         np.concatenate(at) for at in zip(begin, domains.left, domains.right, end, strict=True)
     ]
@@ -99,24 +103,20 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     # In units of exp(alpha t/2), where t is the time.
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
 
-    def gains(sign: float) -> np.ndarray:
+    def gains(sign: float) -> tuple[np.ndarray, np.ndarray]:
         """Return what pre-stress of one sign adds to F: from c to a and to b, and in total."""
         source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
         panel_integrals = source @ WEIGHTS
         panel, s, _ = points
         cut = np.sum(partial_weights(s) * source[panel], axis=-1)
-        cumulative = ((np.cumsum(panel_integrals) - panel_integrals)[panel] + cut).reshape(4, -1)
-        return np.array(
-            [
-                cumulative[1] - cumulative[0] + cumulative[3] - cumulative[2],
-                cumulative[3] - cumulative[0],
-            ]
-        )
+        integral = ((np.cumsum(panel_integrals) - panel_integrals)[panel] + cut).reshape(4, -1)
+        outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
+        return outside_c, integral[B_ENDS] - integral[A_BEGINS]
 
     at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
     lost, negative = gains(-1.0)
     if k > 0.0:
-        added = gains(1.0)[0]
+        added, _ = gains(1.0)
         curved = k * span**2 / 16.0 * (at_apex + added)
         lowest = sum(velocity) - at_apex - added - curved
     else:

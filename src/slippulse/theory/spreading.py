@@ -28,11 +28,11 @@ from .slow_front import Progress, SlowFront
 
 # Messages for the reasons why a slow front cannot be followed further.
 REASONS_UNKNOWN = {
-    "unknown": "what decides on a slow front comes from another part of the rupture",
+    "unknown": "a slow front depends on another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
     "loaded": "a front stops where the pre-stress is positive",
 }
-REASON_OVERRUN = "a front comes to where another one has stopped"
+REASON_OVERRUN = "a front arrives where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
 # Two fronts are compared at this distance before the point where they meet. A front that needs a
 # longer time than this for it is slow.
@@ -115,10 +115,11 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
         stretch, side = min(moving, key=lambda front: front[0].ends[front[1]].time)
         _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
         stretches = _join_met_stretches(stretches)
-    stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
-    unknown = [
-        (point, REASONS_UNKNOWN[reason]) for point, reason in stops if reason in REASONS_UNKNOWN
-    ]
+    unknown = []
+    for stretch, side in product(stretches, SIDES):
+        reason = str(stretch.end_reason[side])
+        if reason in REASONS_UNKNOWN:
+            unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
     # The motion of a front beyond a point where another one has stopped for good is unknown.
     for (left, right), side in product(pairwise(stretches), SIDES):
         stopped, arriving = (left, right) if side == LEFT else (right, left)

@@ -1,15 +1,16 @@
-r"""Search for the first zero in time of the slip velocity, for each position by itself.
+"""Search for the first zero in time of the slip velocity, for each position by itself.
 
 The velocity is sampled from the release on at equal time steps, and where waves arrive. The first
 sample below 0 brackets the stick time. A dip below 0 between two samples would be missed by the
 signs alone, so that each lowest of three samples is looked at again, with finer steps:
 
     du/dt
-      |   .  .
-      | .      .        .     the lowest of three samples: searched again
-      |          .    .
-    0 +------------\/----.--- first sample below 0: brackets a zero
-                             `.
+      |    . .
+      |  .     .          .
+      | .        .     .     .        the lowest of three samples is looked at again
+      |            . .         .
+    0 +--------------------------.--- t
+      |                            .  the first sample below 0 brackets the stick time
 """
 
 from collections.abc import Callable
