@@ -11,7 +11,7 @@ import numpy as np
 from ..model.balance import integral, prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from ..model.removed import AnswersRemoved
+from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
@@ -19,7 +19,7 @@ from .two_fronts import ExactTransition, fast_fronts
 SAMPLES_PER_SECTION = 400
 
 
-class ArrestingCrack(AnswersRemoved):
+class ArrestingCrack(ExplainsRemovedNames):
     """A crack without leaf springs, whose left front slows down for ever.
 
     du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.prestress import ROUNDING_OF_TABLE, Interval, Prestress
+from ..model.prestress import TABLE_THRESHOLD_TOLERANCE, Interval, Prestress
 from ..model.roots import root_between
 
 # Beyond this many widths a Gaussian is 0 to rounding.
@@ -115,7 +115,7 @@ def _sign_changes(
 
     differences = continued_prestress(prestress, background, x) - value
     # The far tail of a Gaussian leaves differences as small as rounding errors.
-    rounding = ROUNDING_OF_TABLE if prestress.points else ROUNDING_ERROR
+    rounding = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING_ERROR
     differences[np.abs(differences) <= rounding] = 0.0
     above = differences >= 0.0
     changes = []

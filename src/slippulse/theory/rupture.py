@@ -20,7 +20,7 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
-from ..model.removed import AnswersRemoved
+from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .curve import EQUALITY_TOLERANCE
 from .domains import broadcast_numbers, check_domains
@@ -55,7 +55,7 @@ class FrontEnd(Limit):
     """The last point of a front: where it stops, or where it is at the end of the duration."""
 
 
-class Rupture(AnswersRemoved):
+class Rupture(ExplainsRemovedNames):
     """The exact rupture of a pre-stress in the continuum limit.
 
     Parameters
