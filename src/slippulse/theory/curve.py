@@ -239,7 +239,7 @@ class Curve:
 
     @cached_property
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """`_lowest_exit_beyond` of T + x going right, and of T - x going left.
+        """Lowest exits (`_lowest_exit_beyond`) of T + x going right, and of T - x going left.
 
         The exit of a panel is the value at the end where the characteristic leaves it.
         """

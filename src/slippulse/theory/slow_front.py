@@ -356,6 +356,7 @@ class SlowFront:
             # Only entries with negative pre-stress can move the front back.
             negative = bool(np.min(self.curve.source[panel]) < 0.0)
             negligible_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if negative else negligible)
+            # The last of the entries from the first one on that are all negligible.
             last = int(np.argmin(np.append(np.abs(motions) <= negligible_motion, False))) - 1
             gain, has_skipped = float(motions[last]), has_skipped or last > 0
             if last < ENTRY_FRACTIONS.size - 1:
@@ -385,9 +386,9 @@ class SlowFront:
         """
         if not has_skipped:
             return entry
-        return (
-            entry._replace(skipped_motion=max(gain, self.min_motion)) if goes_on else Entry(-1, 1.0)
-        )
+        if not goes_on:
+            return Entry(-1, 1.0)
+        return entry._replace(skipped_motion=max(gain, self.min_motion))
 
     @property
     def min_motion(self) -> float:
@@ -408,15 +409,12 @@ class SlowFront:
 
         It is None if no entry was skipped, or if the characteristic has arrived already.
         """
-        t_minus_x = self.curve.evaluate("t_minus_x", np.array([entry.panel]), np.array([entry.s]))[
-            0
-        ]
+        at_entry = np.array([entry.panel]), np.array([entry.s])
+        xi = float(self.curve.evaluate("t_minus_x", *at_entry)[0])
         x_ends = self.x0, self.x0 + entry.skipped_motion
-        time_ends = self.t0, float(t_minus_x) + x_ends[1]
-        if (
-            entry.skipped_motion == 0.0
-            or time_ends[1] - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
-        ):
+        time_ends = self.t0, xi + x_ends[1]
+        has_arrived = time_ends[1] - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
+        if entry.skipped_motion == 0.0 or has_arrived:
             return None
         x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
         source = np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion)

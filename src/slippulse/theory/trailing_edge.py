@@ -324,13 +324,13 @@ class PartWithEdge(Part):
             )
             step[todo] = velocity[todo] / acceleration[todo]
             time[todo] -= step[todo]
-            good = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
+            is_near = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
             size, before = np.abs(step[todo]), np.where(last == 0.0, 1.0, np.abs(last))
-            done = good & (
-                (size < NEWTON_TOLERANCE) | (size * before < NEXT_STEP_TOLERANCE * span[todo])
-            )
+            next_size = size * before
+            done = (size < NEWTON_TOLERANCE) | (next_size < NEXT_STEP_TOLERANCE * span[todo])
+            done &= is_near
             out[todo[done]] = time[todo[done]]
-            todo = todo[good & ~done]
+            todo = todo[is_near & ~done]
         return out
 
     def slow_points(self) -> list[Point]:

@@ -87,6 +87,35 @@ def log_prestress(
     M_+(0)/M_+(i/(b v)) = tau_0. Both hold with leaf springs as without: a block ahead of the front
     has not slipped, so that its leaf spring is relaxed.
     """
+    contour, angle = _choose_contour(excess, ratio=ratio, springs=springs, drag=drag)
+    log_values = log_factor(
+        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
+    )
+    out = (log_values @ (contour.weight / contour.z)).imag / np.pi
+    if springs > 0.0:
+        edge = 0.5 * np.sqrt(springs)
+        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
+        # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
+        # residue.
+        out = (0.5 - angle / np.pi) * origin + out
+    else:
+        # The closed form at b = 1, whose ratio to the factor has been integrated.
+        out += np.log(excess / (1.0 + excess))
+    if release == "elastic" and np.any(ratio > 0.0):
+        # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
+        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
+        from_pole = contour.z - 1j * y[:, None]
+        at_pole = np.sum(log_values * (contour.weight / from_pole), axis=1).imag / np.pi
+        if springs == 0.0:
+            at_pole += np.log((excess * y + _exp_minus_two_terms(-y).real) / ((1.0 + excess) * y))
+        out -= np.where(ratio > 0.0, at_pole, 0.0)
+    return out
+
+
+def _choose_contour(
+    excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> tuple[Nodes, float]:
+    """Return a contour that serves all fronts, and the angle at which it leaves 0."""
     # No zero and no branch point lies nearer to 0, where the contour starts, than this.
     nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
     angle = CONTOUR_ANGLE
@@ -97,28 +126,8 @@ def log_prestress(
         size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
         angle = max(CONTOUR_ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    contour = nodes(int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH)), angle)
-    f = log_factor(
-        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
-    )
-    out = (f @ (contour.weight / contour.z)).imag / np.pi
-    if springs > 0.0:
-        edge = 0.5 * np.sqrt(springs)
-        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
-        # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
-        # residue.
-        out = (0.5 - angle / np.pi) * origin + out
-    else:
-        out += np.log(excess / (1.0 + excess))
-    if release == "elastic" and np.any(ratio > 0.0):
-        # For b = 0 both rules are the same, since M_+(i infinity) = 1.
-        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
-        from_pole = contour.z - 1j * y[:, None]
-        at_pole = np.sum(f * (contour.weight / from_pole), axis=1).imag / np.pi
-        if springs == 0.0:
-            at_pole += np.log((excess * y + _exp_minus_two_terms(-y).real) / ((1.0 + excess) * y))
-        out -= np.where(ratio > 0.0, at_pole, 0.0)
-    return out
+    panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH))
+    return nodes(panels, angle), angle
 
 
 def log_factor(
