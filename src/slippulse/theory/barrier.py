@@ -18,17 +18,18 @@ from .front_speeds import front_speed
 from .prestress_pieces import uniform_background
 from .slow_front import Progress, SlowFront
 
-# Largest length of a panel before the barrier, in units of 1/sqrt(gamma), and the distance that the
-# panels cover, in units of the memory of the pulse.
+# Largest length of a panel before the barrier, in units of 1/sqrt(gamma).
 MAX_PANEL_LENGTH = 2.0
+# Length that the panels before the barrier cover, in units of the memory of the pulse.
 MEMORY_FACTOR = 1.5
-# The smallest pre-stress before a barrier, and the largest front speed, whose pulse needs 12000
-# panels.
+# The smallest pre-stress before a barrier.
 MIN_PRESTRESS = 1e-4
+# The largest front speed, for which the pulse needs 12000 panels.
 MAX_SPEED = 5e3
-# Slow fronts are known to be resolved in barriers between these: the weakest, in units of the
-# pre-stress before it, and the strongest.
+# The weakest barrier in which slow fronts are known to be resolved, in units of the pre-stress
+# before it.
 MIN_BARRIER_RATIO = 0.005
+# The strongest such barrier.
 MAX_BARRIER = 1e6
 
 

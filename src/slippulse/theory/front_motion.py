@@ -55,10 +55,8 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
     period = np.linalg.matrix_power(step, SUBSTEPS_PER_PERIOD)
     # One period later each block is one position farther behind, and a block at rest leads.
     to_next_block = np.kron(np.eye(2), np.eye(count, k=-1))
-    matrix, load = (
-        np.eye(size) - to_next_block @ period[:size, :size],
-        to_next_block @ period[:size, size],
-    )
+    matrix = np.eye(size) - to_next_block @ period[:size, :size]
+    load = to_next_block @ period[:size, size]
     state = np.linalg.solve(matrix, load)
     states = [np.append(state, 1.0)]
     for _ in range(SUBSTEPS_PER_PERIOD):

@@ -19,9 +19,12 @@ NEARLY_ONE_DISTANCE = 1e-7
 MIN_SPRINGS, MAX_SPRINGS, MIN_DRAG = 1e-30, 1e30, 1e-15
 # Factor by which a front is at least faster than the speed at which slip runs away.
 SPEED_MARGIN = 1.0 + 1e-6
-# The least pre-stress is searched at this number of speeds, and then repeatedly at a smaller number
-# of speeds around the lowest one.
-SCAN_SPEEDS, NARROW_SCAN_SPEEDS, NARROW_SCANS = 64, 17, 6
+# The least pre-stress is first searched at this number of speeds.
+SCAN_SPEEDS = 64
+# Around the lowest one it is then searched at this number of speeds ...
+NARROW_SCAN_SPEEDS = 17
+# ... this number of times.
+NARROW_SCANS = 6
 
 
 def lattice_front_speed(

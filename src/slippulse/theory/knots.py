@@ -15,9 +15,11 @@ from .curve import EQUALITY_TOLERANCE
 # where the edge is faster than the waves, where it is slower, and, next to the point where a slow
 # front has stopped, after a slip too brief to tell which of the two it is.
 SLIDING, FASTER_THAN_WAVES, SLOWER_THAN_WAVES, BRIEF_SLIP = range(4)
-# An interval is resolved if its cubic predicts the stick time in the middle to this fraction of its
-# length, and the slope of the stick time to this error.
-STICK_TIME_TOLERANCE, SLOPE_TOLERANCE = 1e-5, 0.05
+# An interval is resolved if its cubic predicts the stick time in its middle to this fraction of its
+# length ...
+STICK_TIME_TOLERANCE = 1e-5
+# ... and the slope of the stick time there to this error.
+SLOPE_TOLERANCE = 0.05
 # An edge that is nearly as slow as the waves is checked again at this fraction of each interval,
 # which differs from the middle that has been checked before.
 OFF_CENTRE_FRACTION = 0.382

@@ -32,14 +32,19 @@ from .front_speeds import front_speed
 MIN_SPEED, MAX_SPEED = 0.05, 50.0
 # Ratio of successive trial speeds from the lowest one upwards.
 SPEED_FACTOR = 1.1
-# Distances of samples behind a front: from a fraction of the shortest length of the exponentials to
-# a multiple of the longest, and the ratio of successive distances.
-MIN_SAMPLE_DISTANCE, MAX_SAMPLE_DISTANCE, SAMPLE_FACTOR = 1e-2, 60.0, 1.01
+# The nearest sample behind a front, as a fraction of the shortest length of the exponentials.
+MIN_SAMPLE_DISTANCE = 1e-2
+# The farthest sample, as a multiple of the longest length of the exponentials.
+MAX_SAMPLE_DISTANCE = 60.0
+# Ratio of successive sample distances.
+SAMPLE_FACTOR = 1.01
 # The growing exponential is absent if its amplitude is below this fraction of the others.
 ABSENT_FRACTION = 1e-6
 # Under laws of slip rate, slip that has not stopped within this number of half-periods of leaf
-# springs creeps on. Each half-period has this number of steps, so that no stop is missed.
-MAX_HALF_PERIODS, STEPS_PER_HALF_PERIOD = 12.0, 100
+# springs creeps on.
+MAX_HALF_PERIODS = 12.0
+# Number of steps in each half-period, which is large enough not to miss a stop.
+STEPS_PER_HALF_PERIOD = 100
 # The most evaluations of the slopes, which take 5 s. A stiff law with weak leaf springs would need
 # more.
 MAX_EVALUATIONS = 10**6

@@ -37,18 +37,22 @@ from .riemann import MAX_EXPONENT, partial_weights
 A_BEGINS, C_BEGINS, C_ENDS, B_ENDS = range(4)
 # The square of the first zero of the Bessel function J0.
 SQUARED_FIRST_ZERO = 5.783185962946784
-# An interval whose bound is not positive is cut into this number of parts. The shortest interval,
-# in units of `Part.scale`, if both ends have slip velocity, and if one of them does not move yet.
-PARTS_PER_CUT, MIN_INTERVAL, MIN_INTERVAL_AT_REST = 4, 1e-6, 1e-3
+# An interval whose bound is not positive is cut into this number of parts.
+PARTS_PER_CUT = 4
+# Shortest interval that is cut, in units of `Part.scale`, if both ends have slip velocity.
+MIN_INTERVAL = 1e-6
+# Shortest interval that is cut if one end does not move yet.
+MIN_INTERVAL_AT_REST = 1e-3
 # Within this distance of the first stick, in units of `Part.scale`, the trailing edge itself shows
 # that this one is the first.
 FIRST_STICK_DISTANCE = 0.2
 # Slip velocities below this are 0.
 ROUNDING_ERROR = 1e-12
-# Strong rate strengthening leaves a creep that is far slower than what pre-stress adds to it, and
-# than the error of the bound. If du/dt is below the first number at both ends of an interval that
-# has not been cut yet, it is cut only down to the second length, in units of `Part.scale`.
-FAINT_VELOCITY, MIN_FAINT_INTERVAL = 1e-5, 1e-2
+# Slip velocity below which motion is faint. Strong rate strengthening leaves a creep that is much
+# slower than what pre-stress adds to it, and than the error of the bound.
+FAINT_VELOCITY = 1e-5
+# Shortest interval that is cut if the motion was faint at both ends of the first interval.
+MIN_FAINT_INTERVAL = 1e-2
 
 
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:

@@ -3,10 +3,11 @@
 The construction has four steps, each in a module of its own:
 
 1. Where tau(x) > 0, a front is faster than the waves (`fast_front`). Its arrival time T(x) is the
-integral of 1/v(tau(x), beta/dx). The damping beta = (beta/dx) dx tends to 0 and acts at the front
-alone. 2. Where tau < 0, the front is slower than the waves, and a free boundary (`slow_front`). 3.
-Behind the fronts the undamped equation has Riemann's solution (`riemann`). 4. It holds up to the
-trailing edge, where blocks stick (`trailing_edge`).
+   integral of 1/v(tau(x), beta/dx). The damping beta = (beta/dx) dx tends to 0 and acts at the
+   front alone.
+2. Where tau < 0, the front is slower than the waves, and a free boundary (`slow_front`).
+3. Behind the fronts the undamped equation has Riemann's solution (`riemann`).
+4. It holds up to the trailing edge, where blocks stick (`trailing_edge`).
 
 `spreading` combines the first two steps for all nucleation points, and `Rupture` answers questions
 about the result.
@@ -35,9 +36,11 @@ from .two_fronts import ExactTransition
 EXTRA_DURATION = 1e-6
 # The largest product of alpha and the duration, which leaves exponentials far from overflow.
 MAX_DECAY = 600.0
+# Names of the fields.
 FIELDS = ("slip_velocity", "slip", "strain")
 # The largest number of points of a map, which takes 100 bytes for each.
 MAX_MAP_POINTS = 10**7
+# Reasons of limits that come from the trailing edge.
 SLOW_EDGE = "the trailing edge is slower than the waves"
 FALLING_SLIP = "the slip would fall"
 

@@ -82,9 +82,12 @@ SEARCH_OFFSET = 1e-11
 # An event this close to the first entry of a chunk, in its parameter, is the one that ended the
 # previous chunk.
 EVENT_AT_START = 1e-6
-# A chunk ends at an event if the event is this close to its last entry. After the given number of
-# corrections the looser distance is sufficient.
-EVENT_AT_END, EVENT_NEAR_END, MAX_EXACT_CORRECTIONS = 1e-9, 1e-6, 5
+# A chunk ends at an event if the event is this close to its last entry.
+EVENT_AT_END = 1e-9
+# After more corrections of the end than this number, a larger distance is sufficient.
+MAX_EXACT_CORRECTIONS = 5
+# The larger distance.
+EVENT_NEAR_END = 1e-6
 # In a chunk that was shortened to end at an event, events are searched up to this parameter, a
 # little beyond its end.
 SEARCH_LIMIT = 1.2

@@ -8,17 +8,22 @@ from .curve import Point
 from .trailing_edge import PartWithEdge
 from .vector_roots import roots_between
 
-# The grid for the largest velocity has this number of positions for each knot. Knots nearer to each
-# other than the second number, in units of `Part.scale`, count once.
-POSITIONS_PER_KNOT, MIN_KNOT_DISTANCE = 3, 0.01
-# Number of positions and of times of each grid, and the length of the last interval, in units of
-# `Part.scale`.
-GRID_SIZE, MIN_INTERVAL = 17, 1e-6
-# At most this number of peaks is followed, of those that reach this fraction of the highest.
-MAX_PEAKS, PEAK_FRACTION = 2, 0.97
-# Slip is checked at positions this far apart, in units of `Part.scale`. It falls if it decreases by
-# more than this fraction of the largest slip.
-CHECK_DISTANCE, FALL_TOLERANCE = 0.25, 1e-6
+# Number of positions for each knot in the grid for the largest velocity.
+POSITIONS_PER_KNOT = 3
+# Knots nearer to each other than this, in units of `Part.scale`, count once in this grid.
+MIN_KNOT_DISTANCE = 0.01
+# Number of positions, and of times, of the finer grids around a peak of the velocity.
+GRID_SIZE = 17
+# Length of the last of these grids, in units of `Part.scale`.
+MIN_INTERVAL = 1e-6
+# At most this number of peaks is followed ...
+MAX_PEAKS = 2
+# ... of those that reach this fraction of the highest.
+PEAK_FRACTION = 0.97
+# Slip is checked at positions this far apart, in units of `Part.scale`.
+CHECK_DISTANCE = 0.25
+# Slip falls if it decreases by more than this fraction of the largest slip.
+FALL_TOLERANCE = 1e-6
 
 
 class SolvedPart(PartWithEdge):

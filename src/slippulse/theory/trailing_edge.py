@@ -12,9 +12,11 @@ of the panels of the curve, the marks (positions from which waves come that chan
 and the middles between all of these. Then knots are added:
 
 1. on both sides of each point where the wave from a mark meets the edge, because the edge has a
-kink there; 2. on both sides of each point where the edge reaches the final time; 3. in the middle
-of every interval whose interpolation does not predict its middle knot, again and again; 4. in small
-pieces around each jump of the edge.
+   kink there;
+2. on both sides of each point where the edge reaches the final time;
+3. in the middle of every interval whose interpolation does not predict its middle knot, again and
+   again;
+4. in small pieces around each jump of the edge.
 
 No stick is missed between two positions that slide at the same time. A stuck region grows to both
 sides faster than the waves. If neither position has felt it yet, it began in the triangle between
@@ -46,30 +48,38 @@ from .lower_bound import stuck_between
 from .part import Part
 from .vector_roots import roots_between
 
-# The following constants are lengths and times in units of `Part.scale`. The shortest interval that
-# is halved, which is also the time below which a slip counts as brief; and the shortest interval in
-# which the edge reaches the final time or a stopped front.
-MIN_INTERVAL, MIN_INTERVAL_AT_END = 1e-3, 0.01
-# Distance of the two knots from the point where the wave from a mark meets the edge.
+# Shortest interval that is halved, in units of `Part.scale`. A slip that takes less time counts as
+# brief.
+MIN_INTERVAL = 1e-3
+# Shortest interval that is halved if the edge reaches the final time or a stopped front in it, in
+# the same units.
+MIN_INTERVAL_AT_END = 0.01
+# Distance of two knots from the point between them where the wave from a mark meets the edge, in
+# units of `Part.scale`.
 LANDING_OFFSET = 1e-5
-# Of several panel ends in a cell of this length only one becomes a knot.
+# Of several panel ends in a cell of this length, in units of `Part.scale`, only one becomes a knot.
 CELL_LENGTH = 0.1
 # A jump of the edge, or a change of its kind, is located to this fraction of the length of the
-# part. Intervals around it are cut into this number of pieces.
-JUMP_TOLERANCE, PIECES_PER_CUT = 1e-10, 8
+# part.
+JUMP_TOLERANCE = 1e-10
+# Number of pieces into which an interval with a jump is cut.
+PIECES_PER_CUT = 8
 # An interval at least this long, in units of JUMP_TOLERANCE times the length of the part, has at
 # most one jump.
 SINGLE_JUMP_LENGTH = 1e3
-# Newton's method for a stick time ends when its last step is below the first number, or when the
-# next one, which is about the product of the last two, is below the second, in units of the
-# interval.
-NEWTON_TOLERANCE, NEXT_STEP_TOLERANCE = 1e-11, 1e-14
+# Newton's method for a stick time ends when its last step is below this.
+NEWTON_TOLERANCE = 1e-11
+# It also ends when its next step, which is about the product of the last two, is below this
+# fraction of the interval.
+NEXT_STEP_TOLERANCE = 1e-14
 # Stick times that differ by less than this are equal, and slip velocities below it are 0.
 ROUNDING_ERROR = 1e-12
 # Error of du/dt. It makes a stick time uncertain where du/dt falls through 0 slowly, as it does
-# next to where a slow front has stopped. Knots that may be the first within this uncertainty all
-# count as the first, if the uncertainty exceeds the second number.
-VELOCITY_ERROR, TIME_ERROR = 1e-11, 1e-9
+# next to where a slow front has stopped.
+VELOCITY_ERROR = 1e-11
+# Uncertainties of stick times below this are neglected. Knots whose larger uncertainty does not
+# exclude that they are the first all count as first.
+TIME_ERROR = 1e-9
 
 
 class FirstStick(NamedTuple):
