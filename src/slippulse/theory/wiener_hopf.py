@@ -36,9 +36,12 @@ The right half of C (the left half is its mirror image):
          |             ` -/  ray: at CONTOUR_ANGLE below the axis,
          |                   up to the distance CONTOUR_REACH
 
-Since nothing oscillates on the legs, no tail of the integral is left, whatever b is. At b = 1, g =
-0 the root r is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed form, hence M_+(0) = 1
-- 1/v. For g = 0 only the ratio to this closed form is integrated.
+Since nothing oscillates on the legs, no tail of the integral is left, whatever b is. At b = 1 and
+g = 0 the root r is 1 + i w/2, and the factor has a closed form,
+
+    M_+(k) = (1 + i v k - e^{ik})/(i v k),   hence   M_+(0) = 1 - 1/v.
+
+For g = 0 only the ratio to this closed form is integrated.
 """
 
 from functools import lru_cache
