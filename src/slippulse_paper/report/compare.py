@@ -1,4 +1,4 @@
-"""Comparison of two folders of results: whether their numbers agree within their uncertainties.
+"""Compare two folders of results: do their numbers agree within their uncertainties?
 
 python -m slippulse_paper.report.compare results other/results [results/compare.html]
 
@@ -21,8 +21,8 @@ from slippulse.data.tables import load_table
 
 from ..records.provenance import changes
 from .joined_runs import (
-    LATTICE,
-    RUN,
+    LATTICE_COLUMNS,
+    RUN_COLUMNS,
     JoinedRuns,
     describe_pair,
     describe_run,
@@ -30,16 +30,18 @@ from .joined_runs import (
     varying_parameters,
 )
 
-TEXTS = ("boundary", "release", "quantity")
-# Numbers that agree to DIGITS need no uncertainty, since tables have nine digits. Numbers without
-# uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
-DIGITS, ROUNDING = 1e-8, 1e-6
-SHOWN = 10
+TEXT_COLUMNS = ("boundary", "release", "quantity")
+# Relative difference that is always allowed, since tables have nine digits.
+TABLE_PRECISION = 1e-8
+# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
+# number or to 1, whichever is larger.
+EQUAL_LATTICE_TOLERANCE = 1e-6
+MAX_SHOWN_LINES = 10
 Tables: TypeAlias = Sequence[pd.DataFrame]
-# What is said of a number in both folders.
+# Outcomes of comparing a number that is in both folders.
 AGREES, DIFFERS, UNKNOWN, ALTERED = "agrees", "differs", "no uncertainty", "altered run"
 # Lines about a difference between two files of one name.
-LINES = {
+DIFFERENCE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
 }
@@ -80,7 +82,9 @@ class Comparison:
 
     def summary(self) -> str:
         """Say in one sentence how many numbers agree."""
-        agree = f"{self.agree} of {self.compared} numbers agree within both uncertainties together"
+        agree = (
+            f"{self.agree} of {self.compared} numbers agree within the sum of both uncertainties"
+        )
         return f"{agree}; {self.unknown} differ and have no uncertainty"
 
 
@@ -93,7 +97,7 @@ def compare(here: Path, other: Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    for name, line in LINES.items():
+    for name, line in DIFFERENCE_LINES.items():
         contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
         if len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
@@ -107,7 +111,7 @@ def compare(here: Path, other: Path) -> Comparison:
 
 def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.DataFrame:
     """Compare one table of measured numbers, with the grid studies of both folders."""
-    tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
+    tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
     joined, varying = join_runs(*tables), varying_parameters(*tables)
     _list_runs(result, name, tables, joined, varying)
     for column in sorted({*tables[0]} ^ {*tables[1]}):
@@ -116,10 +120,10 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.
     if len({path.exists() for path in studies}) > 1:
         result.other.append(f"{name}: uncertainties in one tree only")
     common = tables[0].columns.intersection(tables[1].columns, sort=False)
-    common = common.difference(RUN, sort=False)
+    common = common.difference(RUN_COLUMNS, sort=False)
     plain = ["number", "bool"]
     with_text = {column for table in tables for column in table.select_dtypes(exclude=plain)}
-    numbers = common.difference([*with_text, *LATTICE], sort=False)
+    numbers = common.difference([*with_text, *LATTICE_COLUMNS], sort=False)
     sides = []
     for table, path in zip(tables, studies, strict=True):
         values = table[numbers].astype(float)
@@ -171,7 +175,7 @@ class _Side:
 
 def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
     """Return whether the two runs of each pair have the same lattice, as a column."""
-    lattice = new.table.columns.intersection(old.table.columns).intersection(LATTICE)
+    lattice = new.table.columns.intersection(old.table.columns).intersection(LATTICE_COLUMNS)
     return (new.table[lattice].to_numpy() == old.table[lattice].to_numpy()).all(axis=1)[:, None]
 
 
@@ -192,8 +196,10 @@ def _compare_numbers(
     new_error, old_error = (side.errors.to_numpy() for side in sides)
     no_study, size = np.isnan(new_error) & np.isnan(old_error), np.abs(new)
     same_lattice = _same_lattice(*sides)
-    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + DIGITS * size
-    allowed = np.where(no_study & same_lattice, ROUNDING * np.maximum(size, 1.0), allowed)
+    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + TABLE_PRECISION * size
+    allowed = np.where(
+        no_study & same_lattice, EQUAL_LATTICE_TOLERANCE * np.maximum(size, 1.0), allowed
+    )
     known = ~np.isnan([new, old])
     compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not altered))
     differs = ~(np.abs(new - old) <= allowed)
@@ -216,19 +222,19 @@ def _compare_numbers(
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
-    """Read a table with these columns, and with no text in a column of numbers."""
+    """Read a table; ValueError if a needed column is missing or a column of numbers has text."""
     with _readable(path):
         table = load_table(path)
         for column in needed:
             if column not in table:
                 raise ValueError(f"no column {column}")
-            if table[column].dtype.kind not in "biuf" and column not in TEXTS:
+            if table[column].dtype.kind not in "biuf" and column not in TEXT_COLUMNS:
                 raise ValueError(f"text in column {column}")
     return table
 
 
 def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
-    """Uncertainty of every number; NaN where there is no study, or one of another value."""
+    """Return the uncertainty of every number; NaN without a study of exactly this number."""
     if not path.exists():
         return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
@@ -236,11 +242,14 @@ def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
     with _readable(path):
         study = table.pivot(index="point", columns="quantity", values=parts).astype(float)
         studied, uncertainty = (study[part].reindex_like(values) for part in parts)
-    return uncertainty.mask((values - studied).abs() > DIGITS * values.abs())
+    return uncertainty.mask((values - studied).abs() > TABLE_PRECISION * values.abs())
 
 
 def _content(path: Path) -> dict:
-    """The configuration without the preset, whose lattices the uncertainties cover; or verdicts."""
+    """Return what a file has to compare: the configuration, or the verdicts by claim.
+
+    The preset is left out, because the uncertainties cover its lattices.
+    """
     with _readable(path):
         content = json.loads(path.read_text(encoding="utf-8"))
         if path.stem == "provenance":
@@ -250,7 +259,7 @@ def _content(path: Path) -> dict:
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Name the file that cannot be read, or does not hold what a run writes."""
+    """Turn an error inside the block into one that names the unreadable file."""
     try:
         yield
     except UnreadableFile:
@@ -276,8 +285,12 @@ def main(arguments: Sequence[str]) -> int:
     print(result.summary())
     for title, lines in (("Apart", result.apart), ("Not in both, or altered", result.other)):
         if lines:
-            rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
-            print("\n  ".join([f"{title}:", *lines[:SHOWN], *rest]))
+            rest = (
+                [f"... and {len(lines) - MAX_SHOWN_LINES} more"]
+                if len(lines) > MAX_SHOWN_LINES
+                else []
+            )
+            print("\n  ".join([f"{title}:", *lines[:MAX_SHOWN_LINES], *rest]))
     if pages:
         print(f"Open {pages[0]}")
         return 0

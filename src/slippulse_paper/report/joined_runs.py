@@ -7,14 +7,23 @@ import numpy as np
 import pandas as pd
 
 # These columns make a run the same run in another tree, whatever its lattice.
-RUN = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
+RUN_COLUMNS = [
+    "boundary",
+    "left",
+    "right",
+    "width",
+    "gamma",
+    "damping_ratio",
+    "duration",
+    "release",
+]
 # Tables of today have these parameters too.
-FURTHER = ["peak", "steps_and_bumps", "friction"]
+FURTHER_COLUMNS = ["peak", "steps_and_bumps", "friction"]
 # A number without uncertainty depends on these as well. Among runs with equal parameters, those
 # with the same lattice belong together.
-LATTICE = ["scheme", "dx", "order", "max_step"]
+LATTICE_COLUMNS = ["scheme", "dx", "order", "max_step"]
 # A parameter that follows from altered ones is no alteration of its own.
-DERIVED = ["beta", "duration"]
+DERIVED_COLUMNS = ["beta", "duration"]
 
 
 class JoinedRuns(NamedTuple):
@@ -29,8 +38,8 @@ class JoinedRuns(NamedTuple):
 
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     """Join the same runs, then the runs that differ only in parameters whose one value changed."""
-    parameters = RUN + [name for name in FURTHER if name in new and name in old]
-    lattice = [name for name in LATTICE if name in new and name in old]
+    parameters = RUN_COLUMNS + [name for name in FURTHER_COLUMNS if name in new and name in old]
+    lattice = [name for name in LATTICE_COLUMNS if name in new and name in old]
     left = [new[[*parameters, *lattice]], old[[*parameters, *lattice]]]
     found = []
     for keys in ([*parameters, *lattice], parameters):
@@ -43,7 +52,7 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     same = np.concatenate(found)
     same = same[np.argsort(same[:, 0], kind="stable")]
     changed = [name for name in parameters if not {*left[0][name]} & {*left[1][name]}]
-    keys = [name for name in changed if name not in DERIVED]
+    keys = [name for name in changed if name not in DERIVED_COLUMNS]
     altered = np.empty((0, 2), int)
     # Only one value in place of one other says which runs belong together.
     if keys and all(rows[name].nunique(dropna=False) == 1 for rows in left for name in keys):
@@ -70,10 +79,14 @@ def describe_pair(new: Mapping, old: Mapping, keys: Iterable[str]) -> str:
 
 def varying_parameters(*tables: pd.DataFrame) -> list[str]:
     """Return the parameters that tell the runs of these tables apart."""
-    names = [name for name in [*RUN, *FURTHER, "dx"] if all(name in table for table in tables)]
+    names = [
+        name
+        for name in [*RUN_COLUMNS, *FURTHER_COLUMNS, "dx"]
+        if all(name in table for table in tables)
+    ]
     joined = pd.concat([table[names] for table in tables])
     varying = [name for name in names if joined[name].nunique(dropna=False) > 1]
-    independent = [name for name in varying if name not in DERIVED]
+    independent = [name for name in varying if name not in DERIVED_COLUMNS]
     return independent or varying or names[:4]
 
 
