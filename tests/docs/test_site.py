@@ -115,4 +115,5 @@ def test_every_page_is_in_a_list_of_the_site():
     lists = ("index.md", "howto.md", "reference.md", "development.md", "gallery/index.md")
     listed = "\n".join((docs / name).read_text(encoding="utf-8") for name in lists)
     for path in docs.glob("*.md"):
-        assert path.name == "index.md" or re.search(rf"^(.*<)?(/docs/)?{path.stem}>?$", listed, re.M), path
+        line = rf"^(.*<)?(/docs/)?{path.stem}>?$"
+        assert path.name == "index.md" or re.search(line, listed, re.MULTILINE), path
