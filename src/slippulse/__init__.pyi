@@ -3,6 +3,7 @@ from . import theory as theory
 from .data.point import point as point
 from .model.friction import friction as friction
 from .model.prestress import Prestress as Prestress
+from .model.rough_prestress import rough as rough
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene
 from .plotting.run_plot import plot as plot

@@ -6,6 +6,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import slippulse as sp
+from slippulse.model.balance import integral
 from slippulse.theory import ArrestingCrack, Rupture, barrier_depth, front_speed
 from slippulse.theory.slowness import slowness
 
@@ -56,6 +57,51 @@ def test_a_slow_front_without_leaf_springs_is_the_closed_form():
     ((left, right),) = Rupture(sp.Prestress(-0.5, 0.5), 0.65, 0.1, "total", 8.0).front_ends
     assert (left.reason, right.reason) == ("stops", "duration")
     assert left.x == pytest.approx(-3.62, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("edge", "ratio", "refinements"),
+    [(8.0, 0.0, (1, 3)), (12.0, 0.0, (1, 3, 10)), (20.0, 0.1, (1, 3)), (50.0, 0.0, (1, 3))],
+)
+def test_a_slow_front_behind_a_stretch_of_nearly_no_prestress_is_exact(edge, ratio, refinements):
+    """The characteristics that move it entered where T - x is the same to rounding."""
+    profile = sp.Prestress(-0.2, 0.0, 2.0, steps=((edge, -0.3),))
+    entry = brentq(lambda e: integral(profile, e, edge + 2.0), 0.0, edge, xtol=1e-14)
+    rate = lambda x: float(slowness(profile(np.asarray(x)), ratio))
+    exact = quad(rate, 0.0, entry, epsabs=1e-12)[0] - entry + edge + 2.0
+    panels = set()
+    for refinement in refinements:
+        rupture = Rupture(profile, 0.0, ratio, "total", edge + 3.0, refinement)
+        assert float(rupture.release_time(edge + 2.0)) == pytest.approx(exact, rel=1e-9)
+        assert rupture.limit is None
+        panels.add(len(rupture.stretches[0].panels))
+    assert len(panels) == len(refinements)
+
+
+@pytest.mark.parametrize("edge", [12.0, 20.0])
+def test_held_displacement_does_not_change_that(edge):
+    profile = sp.Prestress(0.5, 0.0, 2.0, steps=((edge, -0.3),))
+    times = []
+    for refinement in (1, 3, 6):
+        rupture = Rupture(profile, 0.1, 0.0, "total", edge + 1.0, refinement)
+        times.append(float(rupture.release_time(edge + 1.0)))
+        assert rupture.limit is None
+    assert times == pytest.approx([times[-1]] * 3, rel=1e-9)
+
+
+def test_a_front_that_rests_goes_on_when_prestress_far_away_moves_it():
+    """Between the Gaussian and the far level the pre-stress is 0: no source comes to the front."""
+    profile = sp.Prestress(-0.6, 0.0, steps=((15.0, 0.01),))
+    rupture = Rupture(profile, 0.0, 0.1, "total", 60.0)
+    for x in (-5.44, -5.5, -5.6):
+        entry = brentq(lambda e, x=x: integral(profile, x, e), 0.0, 200.0, xtol=1e-14)
+        rate = lambda x: float(slowness(profile(np.asarray(x)), 0.1))
+        arrival = quad(rate, 0.0, 15.0, epsabs=1e-12, points=[4.0])[0]
+        arrival += (entry - 15.0) * float(slowness(0.01, 0.1))
+        exact = arrival + entry - x
+        assert float(rupture.release_time(x)) == pytest.approx(exact, rel=1e-9)
+    resting = rupture.fronts_at(25.0)[0]
+    assert rupture.fronts_at(34.0)[0] == pytest.approx(resting, abs=1e-9)
 
 
 @pytest.mark.parametrize(("ratio", "depth"), [(0.0, 3.617884220), (0.1, 3.036086347)])

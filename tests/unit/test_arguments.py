@@ -227,6 +227,9 @@ def test_an_argument_that_is_no_number_is_refused(argument, call):
         # Arrays, an empty one too, are good where one number is.
         if isinstance(value, list) and not value and argument in ("tau0", "x"):
             continue
+        # Without a width there is no Gaussian at x = 0.
+        if value is None and argument == "prestress.width":
+            continue
         with pytest.raises((ValueError, TypeError)) as refusal:
             call(value)
         assert re.fullmatch(rf"{argument}[ \w]*: .*; allowed: .+", str(refusal.value)), value

@@ -204,6 +204,31 @@ def test_exact_and_lattice_datasets_have_one_form_and_are_empty_where_nothing_is
     assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene.duration
 
 
+def test_beyond_what_is_known_no_number_of_a_run_is_given():
+    """Lattices stick at x = 2 at 4.2 first, and last at 5.7 and 5.68 for dx = 0.04 and 0.02."""
+    profile = sp.Prestress(0.5, 0.5, bumps=((8.0, 0.5, 1.0),))
+    scene = sp.Scene("displacement", profile, 9.0, 0.04, 0.65, 0.1 * 0.04)
+    samples = sp.Samples(np.linspace(0.0, 9.0, 10), np.linspace(-12.0, 20.0, 65))
+    run, lattice = exactly(scene, samples), sp.simulate(scene, samples)
+    assert run.attrs["run_flags"] == "construction_ended"
+    x = np.linspace(-10.0, 18.0, 141)
+    stick, last = (one.stick_time.sel(x=x, method="nearest").values for one in (run, lattice))
+    known = np.isfinite(stick) & np.isfinite(last)
+    assert known.any() and not known[np.abs(x - 2.0) < 0.1].any()
+    assert stick[known] == pytest.approx(last[known], abs=0.05)
+    numbers, expected = sp.measure(run), sp.measure(lattice)
+    unknown = "largest_velocity", "pulse_width", "pulse_slip", "sliding_at_once", "lattice_noise"
+    for name in (*unknown, "pulse_half_width", "trailing_edge_5", "trailing_edge_9"):
+        assert np.isnan(numbers[name]), name
+    assert numbers["regime"] == "undecided"
+    # What came before, and fronts that outrun the waves, is known.
+    for name in ("first_stick_time", "transition_length", "front_speed_right", "pulse_front"):
+        assert numbers[name] == pytest.approx(expected[name], rel=0.01), name
+    rupture = sp.theory.Rupture(profile, 0.65, 0.1, duration=9.0)
+    assert float(rupture.stick_time(2.0)) == pytest.approx(4.2018, abs=1e-4)
+    assert np.isnan(rupture.final_slip(2.0))
+
+
 def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
     """A second nucleation whose waves hold a position that is about to stick."""
     profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))

@@ -7,7 +7,7 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
-from .points import DIMENSIONS, Recorded
+from .points import DIMENSIONS, Recorded, runs_in
 
 PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
 FRONTS = ("release_time", "stick_time")
@@ -24,6 +24,16 @@ FILE = {
 def versions() -> str:
     """Names and versions of packages, the same on every machine with the same lock."""
     return ", ".join(f"{package} {version(package)}" for package in PACKAGES)
+
+
+def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) -> xr.Dataset:
+    """Return a sweep with additional numbers of each run; the same if there are none."""
+    if not labels:
+        return data
+    runs = [*runs_in(data)]
+    for run, label in zip(runs, labels, strict=True):
+        run.attrs |= label
+    return combine(runs, record)
 
 
 def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:

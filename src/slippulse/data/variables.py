@@ -12,6 +12,8 @@ VARIABLES = {
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
+    "profile": "number of the pre-stress in the list of profiles, from 1; where one is a table",
+    "seed": "seed of a rough pre-stress, NaN where it is not rough",
     "duration": "time that is simulated, in units of H over the wave speed",
     "dx": "spacing of the blocks, in units of H",
     "release": "whether the released stress includes the damping force: total or elastic",

@@ -21,8 +21,32 @@ def path(
     return time[start:][reached], x[start:][reached]
 
 
+def limit_time(run: AnyRun) -> float:
+    """Time until which an exact solution knows the whole rupture; inf for a lattice, or the end."""
+    limit = run.attrs.get("limit_time", np.nan)
+    return np.inf if np.isnan(limit) else float(limit)
+
+
+def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") -> float:
+    """Time until which a front or a trailing edge is known; inf for all of its path."""
+    if np.isinf(limit_time(run)) or edge == "stick_time":
+        return limit_time(run)
+    times, distances = path(run, side)
+    if not times.size:
+        return limit_time(run)
+    # The front outruns all waves unless nothing is known of the block ahead of it.
+    ahead = (1.0 if side == "right" else -1.0) * (distances[-1] + run.attrs["dx"])
+    cone = limit_time(run) + abs(ahead - run.attrs["limit_position"])
+    block = int(np.argmin(np.abs(np.asarray(run["x"]) - ahead)))
+    unknown = np.isnan(run["slip"][block]) if "slip" in run else cone <= run.attrs["end_time"]
+    return float(np.max(times)) if unknown else np.inf
+
+
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
-    """Distance of a front or trailing edge from x = 0 at some times; NaN before its first event."""
+    """Distance of a front or trailing edge from x = 0 at some times.
+
+    It is NaN before the first event, and where an exact solution does not know it.
+    """
     times, distances = path(run, side, edge)
     time = np.asarray(time, dtype=float)
     if times.size == 0:
@@ -31,7 +55,8 @@ def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_tim
     latest = np.maximum.accumulate(times)
     # np.interp needs increasing times: the farthest of several blocks with one time counts.
     last = np.concatenate([np.diff(latest) > 0.0, [True]])
-    return np.where(time < latest[0], np.nan, np.interp(time, latest[last], distances[last]))
+    unknown = (time < latest[0]) | (time > known_until(run, side, edge))
+    return np.where(unknown, np.nan, np.interp(time, latest[last], distances[last]))
 
 
 def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
@@ -45,10 +70,13 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
 
 
 def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
-    """`straight_line` through the last fraction of a front's path; NaN with fewer than 4 blocks."""
+    """`straight_line` through the last fraction of a front's path.
+
+    NaN with fewer than 4 blocks, and where an exact solution does not know the last fraction.
+    """
     times, distances = path(run, side)
     chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
-    if chosen.sum() < 4:
+    if chosen.sum() < 4 or np.isfinite(known_until(run, side)):
         return np.nan, np.nan, np.nan
     times, distances = times[chosen], distances[chosen]
     # A front that outruns the waves after a pause is measured after it.

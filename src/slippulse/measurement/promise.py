@@ -51,6 +51,11 @@ def covered(run: Mapping, fraction: float) -> set[str]:
 def fast_sides(run: Mapping) -> set[str]:
     """Sides whose front has crossed no less than LOWEST_PRESTRESS; not if its path is unknown."""
     sides = set()
+    if "lowest_prestress_left" in run:
+        lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
+        # A sweep may have tables and other profiles.
+        if all(map(math.isfinite, lowest.values())):
+            return {side for side, tau in lowest.items() if tau >= LOWEST_PRESTRESS}
     for side, sign in (("left", -1.0), ("right", 1.0)):
         speed, start = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
         reach = sign * (start + speed * run["end_time"])

@@ -5,14 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.points import AnyRun
-from .front_paths import fit_front, path
+from .front_paths import fit_front, known_until, path
 
 # Blocks slower than this fraction of the leading pulse are remains of the nucleation, not a pulse.
 REMAINS = 0.05
 
 
 class LeadingPulse(NamedTuple):
-    """The pulse behind the right front, at the end of a run."""
+    """The pulse behind the right front, at the end of a run; NaN where its part is not known."""
 
     front: float  # distance from x = 0, between blocks
     speed: float  # of the front
@@ -30,6 +30,8 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     start = np.searchsorted(run["x"], 0.0)
     r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
     front, stopped = front_at_end(run, r, velocity, speed)
+    if np.isnan(velocity).any():
+        return LeadingPulse(front, speed, np.nan, np.nan, np.nan, np.nan)
     pulses = [] if stopped else sliding_stretches(velocity)
     leading = np.zeros(r.size)
     for pulse in pulses[-1:]:
@@ -53,9 +55,12 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
 def front_at_end(
     run: AnyRun, r: np.ndarray, velocity: np.ndarray, speed: float
 ) -> tuple[float, bool]:
-    """Distance of the right front at the end, NaN without a release, and whether it has stopped."""
+    """Distance of the right front at the end, and whether it has stopped.
+
+    The distance is NaN without a release, and where an exact solution does not know it.
+    """
     release, distance = path(run)
-    if not distance.size:
+    if not distance.size or np.isfinite(known_until(run)):
         return np.nan, False
     # The next block is at rest: the front is at most one block beyond the last release.
     ahead, dx = float(speed * (run.attrs["end_time"] - release[-1])), run.attrs["dx"]

@@ -14,7 +14,8 @@ REGIMES = (
     "pulse, one-way, steady",
     "pulse, one-way, decaying",
 )
-# In place of one of them, where theory does not say which a rupture ends in.
+# In place of one of them, where theory does not say which a rupture ends in, or an exact solution
+# does not know all of its end.
 UNDECIDED = "undecided"
 
 
@@ -43,7 +44,9 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     ways = "two-way" if running == 2 else "one-way"
     # Arrest is no release in the last tenth of the duration, or rest beside any earlier sample.
     at_rest = largest <= still * max(largest, float(np.max(velocity)))
-    if at_rest or latest < 0.9 * run.attrs["duration"]:
+    if np.isnan(now).any() or np.isnan(velocity[-1]).any():
+        regime = UNDECIDED
+    elif at_rest or latest < 0.9 * run.attrs["duration"]:
         regime = "arrested"
     elif not is_pulse(centre, largest, still):
         regime = f"crack-like, {ways}"

@@ -1,5 +1,6 @@
 """Every number of one run, with those of the shape of its pulse."""
 
+import hashlib
 import json
 from collections.abc import Mapping
 from contextlib import suppress
@@ -7,9 +8,9 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import prestress_from
+from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import law_of
-from .front_paths import fit_front, position_at
+from .front_paths import fit_front, limit_time, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
 from .transition import transition_displacement, transition_stress
@@ -22,6 +23,10 @@ PARAMETERS = (
     "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases", "end_time",
     "friction",
 )  # fmt: skip
+# Columns that name the profile of a run too, where a simulation has a table of pre-stress.
+LABELS = ("profile", "seed")
+# A longer table is in the data file alone, and in the measured row by its digest.
+MOST_POINTS_IN_A_ROW = 32
 WHOLE_PULSE = ("front", "width", "peak_velocity", "slip")
 # Fewer sliding blocks show no waves of the lattice.
 FEWEST = 12
@@ -36,8 +41,11 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     """
     attributes = run.attrs | {"friction": json.dumps(law_of(run.attrs))}
     row = {name: attributes[name] for name in PARAMETERS}
-    steps = prestress_from(run.attrs).steps
-    row["beyond"] = steps[-1][1] if steps else row["right"]
+    row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
+    profile = prestress_from(run.attrs)
+    row["beyond"] = profile.steps[-1][1] if profile.steps else row["right"]
+    if profile.points:
+        row |= columns_of_table(run, profile, settings["front_window"])
     for side in ("right", "left"):
         names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
         row |= zip(names, fit_front(run, settings["front_window"], side), strict=True)
@@ -66,11 +74,38 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     return row, pulse
 
 
+def columns_of_table(run: AnyRun, profile: Prestress, window: float) -> dict[str, float | str]:
+    """The digest of a long table, and the lowest pre-stress that each front has crossed.
+
+    And its level where it is constant on the last ``window`` of the front's path; NaN elsewhere.
+    """
+    row: dict[str, float | str] = {}
+    if len(profile.points) > MOST_POINTS_IN_A_ROW:
+        text = run.attrs["steps_and_bumps"]
+        parts = json.loads(text)
+        digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+        parts["points"] = f"{len(profile.points)} points, {digest}"
+        row["steps_and_bumps"] = json.dumps(parts)
+    x, released = np.asarray(run["x"]), np.isfinite(np.asarray(run["release_time"]))
+    for side, sign in (("left", -1.0), ("right", 1.0)):
+        crossed = released & (sign * x >= 0.0)
+        tau = np.asarray(run["prestress"])[crossed]
+        row[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
+        distance = np.abs(x[crossed])
+        last = tau[distance >= (1.0 - window) * np.max(distance, initial=0.0)]
+        constant = last.size > 0 and np.ptp(last) == 0.0
+        row[f"level_ahead_{side}"] = float(last[0]) if constant else np.nan
+    return row
+
+
 def transition(run: AnyRun, fraction: float) -> dict:
     """The transition where the paper has one: symmetric levels, or zero beside a negative one."""
     left, right = run.attrs["left"], run.attrs["right"]
     if run.attrs["boundary"] == "displacement":
-        return transition_displacement(run) if left == right > 0.0 else {}
+        table = bool(prestress_from(run.attrs).points)
+        return (
+            transition_displacement(run) if left > 0.0 < right and (left == right or table) else {}
+        )
     if left < 0.0 == right and not prestress_from(run.attrs).steps:
         # A barrier on the right can leave nothing that is balanced on the left.
         with suppress(ArithmeticError):
@@ -80,6 +115,8 @@ def transition(run: AnyRun, fraction: float) -> dict:
 
 def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """Breadth of slip velocity at half its peak, on the right; NaN without a half on both sides."""
+    if np.isnan(pulse.peak_velocity):
+        return np.nan
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     top = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
@@ -97,7 +134,8 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
 def lattice_noise(run: AnyRun) -> float:
     """Power of waves of a few blocks (fourth difference) over that of velocity, on the right."""
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    moving = velocity[(x >= 0.0) & (velocity > 0.0)]
+    moving = velocity[(x >= 0.0) & ~(velocity <= 0.0)]
+    # A velocity that is not known is NaN, and so is the noise.
     if moving.size < FEWEST:
         return np.nan
     # The gain is 1 for waves of two blocks, sin^4(pi/n) for waves of n. At the ends are corners.
@@ -107,6 +145,8 @@ def lattice_noise(run: AnyRun) -> float:
 
 def sliding_at_once(run: AnyRun) -> float:
     """Largest number of blocks on the right that slide at once, over the second half of a run."""
+    if limit_time(run) <= run.attrs["end_time"]:
+        return np.nan
     start = 0.5 * run.attrs["end_time"]
     chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
     release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]
@@ -124,8 +164,10 @@ def far_field(run: AnyRun) -> dict[str, float]:
     Its profile is compared with itself moved at the wave speed, its energy is kinetic and strain,
     and strain is left where it entered. NaN where nothing slides at two thirds of the duration.
     """
-    steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
-    start = max([FAR * run.attrs["width"], *steps])
+    profile = prestress_from(run.attrs)
+    width = profile.width or 1.0
+    parts = [abs(position) for position, _ in (*profile.steps, *profile.points)]
+    start = max([FAR * width, *parts])
     times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     moved = float(times[-1] - times[early])
@@ -138,7 +180,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     energies = [np.trapezoid(density, x[distant]) for density in densities]
     inside = distant & (x + moved <= x[-1])
     later = np.interp(x[inside] + moved, x, velocity[-1])
-    entered = x[distant] <= start + run.attrs["width"]
+    entered = x[distant] <= start + width
     changed = np.max(np.abs(later - velocity[early][inside]))
     return {
         "profile_change": float(changed / np.max(velocity[early][distant])),

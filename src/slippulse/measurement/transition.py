@@ -5,7 +5,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .front_paths import arrival, path, position_at
+from .front_paths import arrival, known_until, path, position_at
 
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the
 # lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).
@@ -18,7 +18,9 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
     length = between_fronts(run, time)
     out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
     # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
-    for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
+    same = run.attrs["left"] == run.attrs["right"]
+    background = run.attrs["left"] if same else np.nan
+    for name, tau in (("background", background), ("nucleation", run.attrs["peak"])):
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
     return out
@@ -54,7 +56,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
-    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (np.nan, np.nan)
+    known = times.size and np.isinf(known_until(run, "left"))
+    arrest, end = (float(np.max(times)), float(distances[-1])) if known else (np.nan, np.nan)
     waited = longest_wait / time
     state, right = "not reached", np.nan
     if not np.isnan(time):

@@ -7,8 +7,12 @@ blocks that slip again and again may take twice as much.
 """
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
+from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 
@@ -19,8 +23,12 @@ MOST_CHUNKS = 50
 HOW_TO_GO_ON = "--config allow_large=true"
 # Bytes of a block: seven recorded numbers; two arrays an order and sixteen others while it runs.
 RECORDED, ARRAYS = 56.0, 16.0
+# Bytes of a point of a table: two numbers, and the text that a data file has.
+POINT = 400.0
 # Block updates that take as long as a run that does nothing, and as a block of the exact solution.
 START, EXACT_BLOCK = 1e5, 3e4
+# A front that crosses a table where it reaches 1 is taken to be this fast.
+HIGHEST_LEVEL = 1.0 - 1e-9
 # A step ends early after this number of events.
 EVENTS_OF_A_STEP = 64
 # Seconds of a block update at the highest order on a slow machine, and the number of block updates
@@ -64,18 +72,53 @@ class Bound(NamedTuple):
         return START_MEGABYTES + math.ceil(2.0 * self.bytes / 1e6)
 
 
+def reach_of(
+    profile: Prestress, start: float, duration: float, speeds_at: Callable[[np.ndarray], np.ndarray]
+) -> float:
+    """Largest distance from x = 0 of fronts that begin at a distance ``start`` on both sides.
+
+    ``speeds_at`` returns speeds at levels of pre-stress; an interval has its higher level.
+    """
+    intervals = np.array(profile.intervals)
+    speeds = speeds_at(intervals[:, 2:].max(axis=1))
+    right = _distance(intervals[:, 1], speeds, start, duration)
+    left = _distance(-intervals[::-1, 0], speeds[::-1], start, duration)
+    return max(left, right)
+
+
+def _distance(ends: np.ndarray, speeds: np.ndarray, start: float, duration: float) -> float:
+    """Distance of a front that crosses intervals with these ends at these speeds."""
+    ahead = ends > start
+    ends, speeds = ends[ahead], speeds[ahead]
+    times = np.cumsum(np.diff(ends, prepend=start) / speeds)
+    last = int(np.searchsorted(times, duration))
+    begin, began = (ends[last - 1], times[last - 1]) if last else (start, 0.0)
+    return float(begin + (duration - began) * speeds[last])
+
+
+def _upper_bound_of_reach(scene: Scene) -> float:
+    """Upper bound on the distance from x = 0 that a front reaches on either side."""
+    profile = scene.prestress
+    bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
+    start = max(bumps, profile.nucleation_reach) + 5.0 * (profile.width or 0.0)
+
+    def fastest(levels: np.ndarray) -> np.ndarray:
+        # This is above the exact speed at any damping, under either release rule.
+        level = np.clip(levels if profile.points else np.max(levels), 0.0, HIGHEST_LEVEL)
+        speed = 1.3 / np.sqrt((1.0 - level) * (1.0 + level))
+        if scene.release == "total":
+            speed = speed + 1.3 * scene.damping_ratio * level / (1.0 - level)
+        return np.broadcast_to(speed, levels.shape)
+
+    return reach_of(profile, start, scene.duration, fastest)
+
+
 def bound_of(scene: Scene, samples: Samples | None = None) -> Bound:
     """Upper bound on what one run takes."""
-    profile, ratio = scene.prestress, scene.damping_ratio
-    level = max([0.0, *(level for *_, level in profile.intervals)])
-    # This is above the exact speed at any damping, under either release rule.
-    speed = 1.3 / math.sqrt((1.0 - level) * (1.0 + level))
-    if scene.release == "total":
-        speed += 1.3 * ratio * level / (1.0 - level)
-    start = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
-    reach = start + 5.0 * profile.width + speed * scene.duration
+    reach = _upper_bound_of_reach(scene)
     blocks = (1.0 if scene.symmetric else 2.0) * (reach / scene.dx + 16.0)
     steps = scene.duration / (scene.max_step * scene.dx) + 2.0 * blocks / EVENTS_OF_A_STEP
     updates = EXACT_BLOCK * blocks if scene.scheme == "continuum" else steps * blocks
     recorded = 0.0 if samples is None else 16.0 * samples.times.size * samples.positions.size
+    recorded += POINT * len(scene.prestress.points)
     return Bound(1, START + updates, (RECORDED + ARRAYS * (scene.order + 16)) * blocks + recorded)

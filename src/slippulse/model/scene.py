@@ -10,17 +10,18 @@ from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_that
 from .friction import COULOMB, Friction, friction_from
-from .prestress import Prestress, prestress_from
+from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import law_of
 from .release import RELEASES
 from .runaway import check_runaway
 from .stability import largest_step
+from .table_resolution import check_resolved
 
 BOUNDARIES = ("displacement", "stress")
 # The lattice in two ways, and the exact solution of its continuum limit.
 SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
-# A lattice holds every bump from the start, at 200 bytes a block.
+# A lattice holds every bump and each released part of a table from the start, at 200 bytes a block.
 FARTHEST_BUMP = 10**6
 # After this number of steps, one more no longer moves the time.
 MOST_STEPS = 2.0**52
@@ -33,7 +34,7 @@ CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "orde
 # Bounds of the numbers, for `check_number`. The square of the least spacing is still a number.
 NUMBERS: dict[str, dict[str, Any]] = {
     "duration": {"above": 0.0},
-    "dx": {"above": 0.0, "at_least": 1e-100},
+    "dx": {"above": 0.0, "at_least": 1e-100, "at_most": 1e40},
     "beta": {"at_least": 0.0},
     "friction_ratio": {"at_least": 0.0},
     "gamma": {},
@@ -67,7 +68,7 @@ class Scene:
     duration : float, units of H / wave speed
         Time to simulate, > 0.
     dx : float, units of H
-        Block spacing, >= 1e-100. At 1 the lattice is the Burridge-Knopoff model.
+        Block spacing, from 1e-100 to 1e40. At 1 the lattice is the Burridge-Knopoff model.
     gamma : float
         Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
     beta : float, units of H times the wave speed
@@ -131,7 +132,11 @@ class Scene:
             kind = int if "integer" in bounds else float
             object.__setattr__(self, name, kind(getattr(self, name)))
         width, allowed = self.prestress.width, f">= dx = {self.dx:g}, which must see the peak"
-        check_that(width >= self.dx, "prestress.width", width, allowed)
+        check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
+        if self.prestress.points and self.scheme != "continuum":
+            check_resolved(self.prestress, self.dx)
+            reach = self.prestress.nucleation_reach
+            check_number("prestress.points reach", reach, at_most=FARTHEST_BUMP * self.dx)
         for centre, _, width in self.prestress.bumps:
             reach = abs(centre) + 4.0 * width
             check_number("prestress.bumps reach", reach, at_most=FARTHEST_BUMP * self.dx)
@@ -196,10 +201,8 @@ class Scene:
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file; see `from_attributes`."""
-        profile = self.prestress
-        parts = {"steps": profile.steps, "bumps": profile.bumps}
-        values = vars(profile) | vars(self) | {"half_lattice": int(self.half_lattice)}
-        values |= {"damping_ratio": self.damping_ratio, "steps_and_bumps": json.dumps(parts)}
+        values = vars(self) | attributes_of(self.prestress)
+        values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
         values["friction"] = json.dumps(self.friction.mapping())
         return {name: values[name] for name in ATTRIBUTES.split()}
 

@@ -13,6 +13,8 @@ from .style import BLACK, GREY, Look, conditions
 
 # Samples kept along each axis of a map, and blocks along each front.
 MAP_SAMPLES, FRONT_POINTS = 121, 400
+# Points of a table that are drawn, and the part of the height within which a jump is drawn.
+TABLE_POINTS, JUMP = 1000, 1e-6
 # The panel is wider than the slipped part by this fraction of it on each side, for an arrow.
 MARGIN = 0.12
 STUCK = "#cfcfcf"
@@ -23,6 +25,9 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
     """Rows of all that `draw_profile` and `draw_map` show; series names a parameter or flags."""
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
+    points = prestress_from(run.attrs).points
+    if points:
+        rows.append({"role": "table", "series": f"pre-stress through {len(points)} points"})
     law = law_of(run.attrs)["law"]
     if law != "coulomb":
         rows.append({"role": "friction", "series": law.replace("_", " ")})
@@ -36,8 +41,13 @@ def description(roles: dict[str, pd.DataFrame]) -> str:
     value = roles["parameter"].set_index("series")["value"]
     value["tau_0"], held = value["left"], value["gamma"] > 0.0
     levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
+    if "table" in roles:
+        # Levels far away do not describe a table.
+        levels = []
     names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio", "dx"]
-    title = conditions(held, **value[names])
+    title = conditions(held, **value[[name for name in names if np.isfinite(value[name])]])
+    if "table" in roles:
+        title += f", {roles['table']['series'].iloc[0]}"
     if "friction" in roles:
         title += f", {roles['friction']['series'].iloc[0]}"
     if "flag" in roles:
@@ -81,8 +91,17 @@ def velocity_map(run: xr.Dataset) -> pd.DataFrame:
 def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
     """Pre-stress over the positions that are drawn (role prestress)."""
     # The lattice ends where the fronts do, and the pre-stress does not.
-    x = np.union1d(np.linspace(*limits(run), FRONT_POINTS), 0.0)
-    tau = prestress_from(run.attrs)(x)
+    lower, upper = limits(run)
+    x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
+    profile = prestress_from(run.attrs)
+    if profile.points:
+        # The lines end at the points. At a jump both values are drawn.
+        positions = np.unique([position for position, _ in profile.points])
+        positions = positions[(positions > lower) & (positions < upper)]
+        positions = positions[spaced_indices(positions.size, TABLE_POINTS)]
+        nearby = JUMP * (upper - lower)
+        x = np.unique(np.concatenate([x, positions - nearby, positions, positions + nearby]))
+    tau = profile(x)
     return pd.DataFrame({"role": "prestress", "position": x, "value": tau})
 
 

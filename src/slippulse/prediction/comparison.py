@@ -1,5 +1,6 @@
 """All numbers of every run of a sweep, with those that need theory: one row a run."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -39,10 +40,14 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
     row, pulse = measure_run(run, settings)
     if pulse is not None:
         row["pulse_state"] = pulse_state(run, pulse)
-        row["pulse_shape_deviation"] = shape_deviation(run, pulse)
+        row["pulse_shape_deviation"] = shape_deviation(run, pulse, row.get("level_ahead_right"))
     if "transition_time" in row:
         if run.attrs["boundary"] == "displacement":
-            paper = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
+            left, right = run.attrs["left"], run.attrs["right"]
+            paper = paper_transition_displacement(left, run.attrs["gamma"])
+            if left != right:
+                # The time does not depend on the level, the length does.
+                paper = paper[0], math.nan
         else:
             paper = paper_transition_stress(prestress_from(run.attrs))
         row["paper_transition_time"], row["paper_transition_length"] = paper
@@ -78,9 +83,12 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     return "unsteady" if changes else "steady"
 
 
-def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Largest deviation of slip velocity from the paper's cosine, (9) and (C10), over its peak."""
-    tau = run.attrs["right"]
+def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None = None) -> float:
+    """Largest deviation of slip velocity from the paper's cosine, (9) and (C10), over its peak.
+
+    level_ahead : the level in front of the pulse, if it is not that on the right of the profile
+    """
+    tau = level_ahead if level_ahead is not None else run.attrs["right"]
     held = run.attrs["boundary"] == "displacement"
     if not held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan

@@ -19,7 +19,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 def _regime(run: Run, still: float) -> str:
     profile = run.prestress
-    if profile.bumps:
+    if profile.bumps or profile.points:
         return UNDECIDED
     if profile.steps:
         # A pulse that formed where the pre-stress is 0 meets another level, and grows by half the

@@ -27,18 +27,19 @@ def _row(run: Run, fraction: float) -> dict[str, float]:
     row = {**UNKNOWN}
     profile = run.prestress
     # Except for the balance, theory needs one Gaussian.
-    gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
+    parts = profile.steps or profile.bumps or profile.points
+    width = profile.width if profile.peak == 1.0 and not parts else None
     if run.boundary == "displacement":
-        if gaussian and profile.left == profile.right > 0.0:
+        if width and profile.left == profile.right > 0.0:
             physics = run.gamma, ratio(run), run.release
             row |= known(lambda: _first_stick(profile, *physics), UNKNOWN)
         return row
     if level(run, "left") < 0.0 == level(run, "right"):
         row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
-    if gaussian and profile.left < 0.0 == profile.right:
+    if width and profile.left < 0.0 == profile.right:
         unit = known(lambda: _arrest(profile.left, ratio(run), run.release, fraction), UNKNOWN)
         # All lengths and times are proportional to the width.
-        row |= {name: value * profile.width for name, value in unit.items()}
+        row |= {name: value * width for name, value in unit.items()}
     return row
 
 

@@ -11,6 +11,8 @@ import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..model.checks import check_choice, check_kind, check_number, check_that
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
@@ -45,6 +47,10 @@ TRANSITION, TRANSITION_DAMPED = 2.2, 1.0
 VELOCITY, VELOCITY_DAMPED = 0.6, 0.6
 # Front speed without leaf springs, over the width of the Gaussian.
 FREE_SPEED = 0.25
+
+# A table is looked at in this number of levels. A front that crosses less pre-stress than this is
+# not covered by a promise (`slippulse.measurement.promise`).
+LEVELS, LOWEST_PRESTRESS = 9, 0.05
 
 # The runs of a sweep share their speeds, and one speed takes milliseconds.
 cached_front_speed = lru_cache(maxsize=4096)(front_speed)
@@ -121,7 +127,10 @@ def settings_for(
     # Numbers of other types would be computed with as such.
     gamma, damping_ratio = float(gamma), float(damping_ratio)
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
-    peak_width = min([prestress.width, *(width for *_, width in prestress.bumps)])
+    peak_width = prestress.narrowest
+    if prestress.points:
+        levels += _levels_of_table(prestress)
+        peak_width = min(peak_width, _nucleation_width(prestress))
     error = SPACING_FRACTION * float(accuracy)
     demand = Demand(error, levels, peak_width, gamma, damping_ratio, release, fields)
     if gamma:
@@ -135,6 +144,25 @@ def settings_for(
     # The scene refuses a wrong boundary, and a gamma that does not go with it.
     Scene(boundary, prestress, duration=1.0, gamma=gamma, release=release, **settings)
     return settings
+
+
+def _levels_of_table(prestress: Prestress) -> list[float]:
+    """Levels from the lowest to the highest of a table that the promise covers."""
+    tau = np.array([tau for _, tau in prestress.points])
+    # Less pre-stress is not promised, and at 1 there is no front.
+    covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
+    return np.quantile(covered, np.linspace(0.0, 1.0, LEVELS)).tolist() if covered.size else []
+
+
+def _nucleation_width(prestress: Prestress) -> float:
+    """Distance from the nucleation in a table to where as much of it is left as at W of a peak."""
+    x, tau = np.array(prestress.points).T
+    start, outside = int(np.argmax(tau)), max(prestress.left, prestress.right)
+    if tau[start] < 1.0:
+        return math.inf
+    fallen = x[tau <= outside + math.exp(-0.5) * (tau[start] - outside)]
+    ahead = np.abs(fallen - x[start])
+    return float(np.min(ahead[ahead > 0.0], initial=math.inf))
 
 
 def _spacings_with_springs(demand: Demand) -> list[float]:
@@ -161,10 +189,14 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
     """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
     error, ratio = demand.error, demand.damping_ratio
-    width, peak = prestress.width, prestress.peak
+    width, peak = prestress.width or math.inf, prestress.peak
     # Distances to where the Gaussian falls to 0, towards each negative level.
     negative = [level for level in demand.levels if level < 0.0 < peak]
     distances = [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative]
+    if prestress.points:
+        x, tau = np.array(prestress.points).T
+        start = 0.0 if prestress.width is not None else x[np.argmax(tau)]
+        distances = [float(np.min(np.abs(x[tau < 0.0] - start)))] if np.any(tau < 0.0) else []
     spacings = [length / BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED)

@@ -53,7 +53,8 @@ def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.
     change = velocity - rupture.slip_velocity(x, end - interval)
     return {
         "release_time": rupture.release_time(x),
-        "stick_time": rupture.stick_time(x),
+        # The first stick is the last one where all is known until the end.
+        "stick_time": np.where(rupture.horizon(x) > end, rupture.stick_time(x), np.nan),
         "slip": rupture.slip(x, end),
         "slip_velocity": velocity,
         "slip_acceleration": np.where(velocity > 0.0, change / interval, 0.0),
@@ -70,7 +71,8 @@ def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]
 
 def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float) -> dict:
     stick, limit = rupture and rupture.first_stick, rupture and rupture.limit
-    sliding = np.any(fields["slip_velocity"] > 0.0)
+    # Where nothing is known, NaN, something may slide.
+    sliding = not np.all(fields["slip_velocity"] <= 0.0)
     # The stress of a stuck point between the waves and the threshold is not computed.
     unknown = "min_stuck_stress", "friction_ratio_needed", "energy_residual"
     without_lattice = "steps", "block_updates", "event_updates", "re_releases", "half_lattice_used"

@@ -69,26 +69,41 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
     """True if another law of friction than the paper's let nothing stick for 2 pi/sqrt(gamma)."""
     if scene.friction == COULOMB or scene.gamma == 0.0:
         return False
-    if not np.any(solution.slip_velocity > 0.0):
+    # The velocity is NaN where the exact solution does not know it.
+    if not np.any(solution.slip_velocity > 0.0) or np.isnan(solution.slip_velocity).any():
         return False
     last = np.max(solution.stick_time, initial=0.0, where=np.isfinite(solution.stick_time))
     return scene.duration - last > 2.0 * math.pi / math.sqrt(scene.gamma)
 
 
 def narrowest_pulse(scene: Scene, solution: Solution) -> int:
-    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation."""
+    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation.
+
+    It is 0 without a pulse, and where the exact solution does not know all of the end.
+    """
     if scene.boundary == "stress":
-        profile = scene.prestress
-        widths = [profile.width]
-        for level in (profile.left, profile.right):
-            if level < 0.0 < profile.peak:
-                widths.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
-        return int(min(widths) / scene.dx)
+        return int(_nucleation_width(scene, solution) / scene.dx)
+    if np.isnan(solution.slip_velocity).any():
+        return 0
     sliding = np.isfinite(solution.release_time) & ~np.isfinite(solution.stick_time)
     edges = np.flatnonzero(np.diff(sliding, prepend=False, append=False))
     lengths = edges[1::2] - edges[0::2]
     # The pulses are the outermost segments. Those between them are remains of the nucleation.
     return int(min(lengths[0], lengths[-1])) if lengths.size else 0
+
+
+def _nucleation_width(scene: Scene, solution: Solution) -> float:
+    """Width of the Gaussian at x = 0, or the shorter distance to where the pre-stress turns < 0."""
+    profile = scene.prestress
+    width = solution.x.size * scene.dx if profile.width is None else profile.width
+    if profile.points:
+        start = np.argmax(solution.prestress)
+        negative = np.abs(np.flatnonzero(solution.prestress < 0.0) - start) * scene.dx
+        return float(np.min(negative, initial=width))
+    for level in (profile.left, profile.right):
+        if level < 0.0 < profile.peak and profile.width is not None:
+            width = min(width, profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
+    return width
 
 
 def died_out(solution: Solution) -> bool:

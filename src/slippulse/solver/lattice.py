@@ -52,9 +52,8 @@ class Lattice:
         self.sampled = np.abs(number) if self.mirror else number
         self.recorder = arrays.Recorder(given.times.copy(), number, *recorded)
         self._extend(1 if self.mirror else FIRST_BLOCKS + 1, FIRST_BLOCKS + 1)
-        # All blocks that are released at t = 0 are on it, those of distant bumps included.
-        bumps = scene.prestress.bumps
-        reach = max((abs(centre) + 4.0 * width for centre, _, width in bumps), default=0.0)
+        # All blocks that are released at t = 0 are on it, also at distant bumps and in a table.
+        reach = scene.prestress.nucleation_reach
         blocks = (int(np.ceil(reach / scene.dx)) + arrays.ROOM) * (1 if self.mirror else 2)
         while blocks > self.size - arrays.ROOM:
             self._double()

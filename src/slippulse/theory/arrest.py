@@ -46,7 +46,7 @@ class ArrestingCrack:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
         # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
-        self.end = 48.0 * prestress.width
+        self.end = max([48.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
         self.fronts = fast_fronts(prestress, damping_ratio, release, self.end)
         self.zero = float(self.fronts.edges[0])
 

@@ -11,7 +11,8 @@ from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .slow_front import SlowFront
+from .prestress_pieces import uniform
+from .slow_front import Progress, SlowFront
 
 # Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
 # cover, in units of the memory of the pulse.
@@ -65,11 +66,12 @@ def barrier_depth(
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)
-    level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
-    stop = None
+    background = uniform(tau_barrier)
+    level = Prestress(left=tau_barrier, right=tau_barrier, width=None)
+    stop, progress = None, Progress()
     while stop is None:
-        front = SlowFront(Curve(panels), level, tau_barrier, gamma=1.0)
-        panel, stop, _ = front.next_panel(math.inf)
+        front = SlowFront(Curve(panels), level, background, gamma=1.0)
+        panel, stop, progress = front.next_panel(math.inf, progress)
         if panel is not None:
             panels.append(panel)
     if stop != "stops":

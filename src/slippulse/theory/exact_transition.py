@@ -52,9 +52,14 @@ def exact_transition_displacement(
     fronts = fast_fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     stick = float(Part(fronts, gamma, 2.0 * period).search(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        reach = float(front_speed(level, damping_ratio, release)) * stick + 20.0 * prestress.width
+        reach = float(front_speed(level, damping_ratio, release)) * stick + _extent(prestress)
         fronts = fast_fronts(prestress, damping_ratio, release, reach, gamma)
     return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
+
+
+def _extent(prestress: Prestress) -> float:
+    """Distance beyond which the pre-stress is uniform."""
+    return max([20.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
 
 
 def uniform_transition_time(

@@ -17,6 +17,7 @@ limit dx -> 0 at fixed beta/dx
 
 import math
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -39,6 +40,9 @@ ABSENT = 1e-6
 # Half-periods of leaf springs in which slip under laws of slip rate must stop, or it creeps, and
 # steps in each of them, so that no stop is missed.
 HALF_PERIODS, STEPS = 12.0, 100
+# The most evaluations of the slopes: they take 5 s. A law that is stiff beside weak leaf springs
+# would need more.
+MOST_EVALUATIONS = 10**6
 
 
 @dataclass(frozen=True)
@@ -173,7 +177,8 @@ def rate_pulse(
     """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
 
     Source: derived in the supplement, section on friction that depends on slip rate.
-    Raises ValueError: outside the domain, or where slip velocity grows without bound.
+    Raises ValueError: outside the domain, where slip velocity grows without bound, or where the
+    pulse takes more than 1e6 evaluations of the law.
 
     Parameters
     ----------
@@ -202,7 +207,12 @@ def rate_pulse(
     inertia = (v - 1.0) * (v + 1.0)
     half_period = math.pi * math.sqrt(inertia / gamma)
 
+    evaluations = count()
+
     def slopes(distance: float, state: np.ndarray) -> list[float]:
+        if next(evaluations) == MOST_EVALUATIONS:
+            place = f"{gamma!r}, where the pulse is not found in {MOST_EVALUATIONS} evaluations"
+            raise ValueError(f"gamma: {place}; allowed: larger numbers, or weaker friction")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *constants)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]

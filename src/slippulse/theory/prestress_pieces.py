@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.prestress import Prestress
+from ..model.prestress import ROUNDING_OF_TABLE, Interval, Prestress
 from ..model.roots import root_between
 
 # A Gaussian is its level to rounding beyond this many widths.
@@ -20,30 +20,42 @@ class Piece(NamedTuple):
 
     left: float
     right: float
-    level: float  # of its side
+    background: Interval
     above: bool  # tau >= the value; for 0, a front outruns the waves
 
 
-def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
-    """Pre-stress with one side level everywhere: analytic, and exact where the level is that."""
-    tau = prestress.peak + (level - prestress.peak) * -np.expm1(-0.5 * (x / prestress.width) ** 2)
+def uniform(level: float) -> Interval:
+    """The background of one level everywhere."""
+    return Interval(-np.inf, np.inf, level, level)
+
+
+def analytic(prestress: Prestress, background: Interval, x: np.ndarray) -> np.ndarray:
+    """Pre-stress with one linear background everywhere: analytic, and exact in its interval."""
+    left, right, level, last = background
+    tau = np.broadcast_to(level, x.shape)
+    if level != last:
+        # Exact at both ends.
+        fraction = (x - left) / (right - left)
+        tau = level = (1.0 - fraction) * level + fraction * last
+    if prestress.width is not None:
+        rise = -np.expm1(-0.5 * (x / prestress.width) ** 2)
+        tau = prestress.peak + (level - prestress.peak) * rise
     for centre, amplitude, width in prestress.bumps:
         tau = tau + amplitude * np.exp(-0.5 * ((x - centre) / width) ** 2)
     return tau
 
 
-def gaussians(prestress: Prestress) -> list[tuple[float, float]]:
-    """Centre and width of the peak and of each bump."""
-    return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
-
-
 def pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     """The pieces from left to right; one where tau only touches the value has no length."""
+    # Positions that show each change of a Gaussian; between them the pre-stress is linear.
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    rows = [centre + width * fine for centre, width in prestress.gaussians]
+    samples = np.unique(np.concatenate([[], *rows]))
     out = []
-    for left, right, level in prestress.intervals:
-        above, changes = _changes(prestress, (left, right, level), value)
-        for start, end in pairwise([left, *changes, right]):
-            out.append(Piece(start, end, level, above))
+    for background in prestress.intervals:
+        above, changes = _changes(prestress, background, samples, value)
+        for start, end in pairwise([background.left, *changes, background.right]):
+            out.append(Piece(start, end, background, above))
             above = not above
     return out
 
@@ -60,23 +72,23 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
 
 
 def _changes(
-    prestress: Prestress, interval: tuple[float, float, float], value: float
+    prestress: Prestress, background: Interval, samples: np.ndarray, value: float
 ) -> tuple[bool, list[float]]:
     """Tell whether tau >= value at the left end, and where that changes: twice at a contact."""
-    left, right, level = interval
-    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
-    x = np.concatenate([centre + width * fine for centre, width in gaussians(prestress)])
-    # Beyond every Gaussian a side has its last level.
-    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
-    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
-    x = np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))
+    left, right, *_ = background
+    inner = samples[np.searchsorted(samples, left, "right") : np.searchsorted(samples, right)]
+    # Beyond every Gaussian the outermost intervals are uniform.
+    first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
+    last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
+    x = np.concatenate([[first], inner, [last]])
 
     def excess(position: float) -> float:
-        return float(analytic(prestress, level, np.asarray(position))) - value
+        return float(analytic(prestress, background, np.asarray(position))) - value
 
-    differences = analytic(prestress, level, x) - value
+    differences = analytic(prestress, background, x) - value
     # The far tail of a bump leaves a difference of rounding where there is none.
-    differences[np.abs(differences) <= ROUNDING] = 0.0
+    rounding = ROUNDING_OF_TABLE if prestress.points else ROUNDING
+    differences[np.abs(differences) <= rounding] = 0.0
     above = differences >= 0.0
     changes = []
     for k in np.flatnonzero(above[1:] != above[:-1]):

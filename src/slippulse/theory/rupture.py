@@ -100,10 +100,9 @@ class Rupture:
         self._parts = []
         for stretch in self.stretches:
             curve, law = stretch.curve(), self.law
-            kinks = [piece.right for piece in law.pieces if np.isfinite(piece.right)]
             restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
             ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-            marks = np.unique([0.0, *kinks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+            marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
             marks = marks[curve.covers(marks)]
             keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
             self._parts.append(SolvedPart(*keys))
@@ -159,7 +158,7 @@ class Rupture:
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """Time at which x sticks.
+        """Time at which x first sticks; it may be released again beyond the horizon.
 
         Parameters
         ----------
@@ -193,13 +192,15 @@ class Rupture:
 
         Returns
         -------
-        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``
+        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``, and where
+        the horizon comes until then
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
         slip = self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
-        return np.where(slides, np.nan, slip)
+        unknown = slides | self._is_beyond_horizon(x, self.duration)
+        return np.where(unknown, np.nan, slip)
 
     @cached_property
     def first_stick(self) -> FirstStick | None:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..model.prestress import Prestress
+from ..model.prestress import Interval, Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
 from .prestress_pieces import analytic
 from .riemann import decay, kernel_of, partial_weights
@@ -28,6 +28,12 @@ GROWTH = 4.0
 SHORTEST = 1e-11
 # A remainder of a panel that is left to the next one.
 REMAINDER = 1e-8
+# Entries that move the front by less than a fraction of the rupture are passed over: those that are
+# rounding at first, and then, as long as they would send the front back, those that the panels do
+# not resolve.
+NEGLIGIBLE = (1e-13, 1e-12, 1e-11, 1e-10)
+# Parameters of a panel at which such entries may end, as fractions of the way to its left end.
+FRACTIONS = np.linspace(0.0, 1.0, 65)
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
 # continued at their speed.
 NEAR_MARK = 1e-5
@@ -45,12 +51,34 @@ MOST_CHUNKS = 60
 MOST_NEWTON_STEPS = 60
 
 
+class Progress(NamedTuple):
+    """What a slow front keeps from one panel to the next.
+
+    The longest chunk that it tries next, and the position where the characteristic that has reached
+    it entered the curve; NaN before its first panel.
+    """
+
+    longest: float = WHOLE
+    entered: float = np.nan
+
+
+class Entry(NamedTuple):
+    """Panel (below 0: none on the curve) and parameter of the next entry.
+
+    The entries between it and the last one, which are negligible, move the front so far.
+    """
+
+    panel: int
+    s: float
+    passed: float = 0.0
+
+
 class Advance(NamedTuple):
-    """The next panel, the reason why it is the last one, and the length of a chunk to try next."""
+    """The next panel, the reason why it is the last one, and what the following panel needs."""
 
     panel: Panel | None
     stop: str | None
-    longest: float = WHOLE
+    progress: Progress = Progress()
 
 
 class Chunk(NamedTuple):
@@ -148,7 +176,7 @@ class SlowFront:
 
     curve: Curve
     prestress: Prestress
-    level: float  # of the side where the front is
+    background: Interval  # where the front is
     gamma: float
     alpha: float = 0.0
 
@@ -158,7 +186,7 @@ class SlowFront:
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
         self.size = max(float(edges[-1] - edges[0]), abs(self.x0))
 
-    def next_panel(self, mark: float, longest: float = WHOLE) -> Advance:
+    def next_panel(self, mark: float, progress: Progress) -> Advance:
         """Continue the front by one panel of entries at most, or a shorter length.
 
         mark is the end of the negative piece (may be infinite). The stop is "mark" where the new
@@ -166,10 +194,23 @@ class SlowFront:
         "unknown" where its characteristic comes from beyond the left end of the curve, and
         "unresolved" where no panel is short enough. A panel ends where the front stops.
         """
-        entry = self.entry()
-        if entry is None:
-            return Advance(None, "unknown")
-        chunk, corrections = Chunk(*entry, max(entry[1] - longest, -1.0)), 0
+        for negligible in NEGLIGIBLE:
+            entry = self.entry(progress.entered, negligible)
+            if entry is None:
+                return Advance(None, "unknown")
+            if entry.panel < 0:
+                return Advance(None, "stops")
+            if entry.passed > 0.0 and (rest := self.rest(entry)):
+                return Advance(rest, None, Progress(entered=self.position(entry)))
+            advance = self.advance_from(entry, mark, progress.longest)
+            if advance.stop != "stops":
+                break
+        return advance
+
+    def advance_from(self, entry: Entry, mark: float, longest: float) -> Advance:
+        """Continue the front by one panel with the entries from one on."""
+        panel, s, _ = entry
+        chunk, corrections = Chunk(panel, s, max(s - longest, -1.0)), 0
         for _ in range(MOST_CHUNKS):
             if chunk.start - chunk.stop < SHORTEST:
                 return self.straight(mark)
@@ -195,16 +236,78 @@ class SlowFront:
             else:
                 to_the_end = s < np.inf or chunk.stop == -1.0
                 length = WHOLE if to_the_end else GROWTH * (chunk.start - chunk.stop)
+                entered = self.position(Entry(chunk.panel, chunk.stop))
                 end = mark if stop == "mark" else None
-                return Advance(self.panel(chunk, x, end), stop, length)
+                return Advance(self.panel(chunk, x, end), stop, Progress(length, entered))
         return Advance(None, "unresolved")
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""
-        return analytic(self.prestress, self.level, x)
+        return analytic(self.prestress, self.background, x)
 
-    def entry(self) -> tuple[int, float] | None:
-        """Panel and parameter where the characteristic of the front entered the curve, or None."""
+    def entry(self, entered: float, negligible: float) -> Entry | None:
+        """The next entry after the position of the last one; None where it is not known.
+
+        T - x is the same to rounding on panels before the front where the pre-stress is nearly 0.
+        So an entry follows the last one along the curve, and is not looked for by its T - x. It
+        passes over entries that are negligible.
+        """
+        panel, s = len(self.curve.panels) - 1, 1.0
+        if np.isfinite(entered):
+            (panel,), (s,) = self.curve.locate(np.array([entered]))
+            # A remainder near rounding cannot be resolved: the next panel takes it over.
+            panel, s = (panel, s) if s + 1.0 >= REMAINDER else (panel - 1, 1.0)
+        gain, passed = 0.0, False
+        while panel >= 0 and not self.is_slow(panel):
+            parameters, source = s - (s + 1.0) * FRACTIONS, self.curve.source[panel]
+            weights = partial_weights(parameters)
+            moves = (weights[0] - weights) @ source / self.resistance
+            # Only pre-stress that is not negative moves no front back.
+            most = NEGLIGIBLE[0] if np.min(source) < 0.0 else negligible
+            last = int(np.argmin(np.append(np.abs(gain + moves) <= most * self.size, False))) - 1
+            gain, passed = gain + float(moves[last]), passed or last > 0
+            if last < FRACTIONS.size - 1:
+                if passed and moves[last + 1] < moves[last]:
+                    break
+                return Entry(int(panel), float(parameters[last]), passed * max(gain, self.least))
+            panel, s = panel - 1, 1.0
+        if passed:
+            # What comes next, if anything, does not move the front on.
+            return Entry(-1, 1.0)
+        return self.entry_behind_slow_front() if panel >= 0 else None
+
+    @property
+    def least(self) -> float:
+        """The least motion that counts."""
+        return 0.1 * NEGLIGIBLE[0] * self.size
+
+    @property
+    def resistance(self) -> float:
+        """Size of the negative pre-stress right ahead of the front."""
+        return abs(float(self.tau(np.array(self.x0 + NEGLIGIBLE[0] * self.size))))
+
+    def position(self, entry: Entry) -> float:
+        """Position of an entry on the curve."""
+        return float(self.curve.evaluate("x", np.array([entry.panel]), np.array([entry.s]))[0])
+
+    def rest(self, entry: Entry) -> Panel | None:
+        """A panel of a front that hardly moves until the characteristic of an entry comes."""
+        early = self.curve.evaluate("early", np.array([entry.panel]), np.array([entry.s]))[0]
+        x_ends = self.x0, self.x0 + entry.passed
+        time_ends = self.t0, float(early) + x_ends[1]
+        if time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
+            return None
+        x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
+        source = np.full(COUNT, -0.5 * self.resistance * entry.passed)
+        return Panel(x, time, source, x_ends, time_ends)
+
+    def is_slow(self, panel: int) -> bool:
+        """True if the front that made a panel goes right and is slower than the waves."""
+        start, end = self.curve.edge_times[panel : panel + 2]
+        return bool(end > start and np.sum(self.curve.source[panel]) < 0.0)
+
+    def entry_behind_slow_front(self) -> Entry | None:
+        """Panel and parameter where T - x next rises to its value at the front, or None."""
         xi = self.t0 - self.x0
         look = LOOK * max(self.size, abs(xi))
         # A little later the next panel goes on, or another part of the rupture.
@@ -216,10 +319,9 @@ class SlowFront:
         # The look would leave a gap: such an entry is taken at the very end of the panel.
         end = self.curve.ends[1, self.curve.row("early", entries.panel)][1]
         if abs(end - xi) < 10.0 * look:
-            return panel, 1.0
+            return Entry(panel, 1.0)
         s = float(entries.s[0] if entries.panel[0] == panel else entries.s[1])
-        # A remainder near rounding cannot be resolved: the next panel takes it over.
-        return (panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else (panel, s)
+        return Entry(panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Positions of the front by Newton's method; None where the chunk is too long."""

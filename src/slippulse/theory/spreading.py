@@ -9,7 +9,7 @@ from ..model.roots import root_between
 from .curve import SAME, Curve, Panel, Point, seen_from
 from .fast_front import FastFront
 from .prestress_pieces import nucleations
-from .slow_front import WHOLE, SlowFront
+from .slow_front import Progress, SlowFront
 
 # Reasons why a slow front cannot be followed further.
 UNKNOWN = {
@@ -38,8 +38,10 @@ class Stretch:
     # Positions where a slow front outran the waves again, and where two fronts met.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
-    # The longest chunk that a slow front tries next.
-    longest: dict[float, float] = field(default_factory=lambda: dict.fromkeys(SIDES, WHOLE))
+    # What a slow front goes on from, with its side turned to the right.
+    progress: dict[float, Progress] = field(
+        default_factory=lambda: dict.fromkeys(SIDES, Progress())
+    )
 
     def curve(self, side: float = RIGHT) -> Curve:
         """The panels as one curve, with a side turned to the right."""
@@ -130,8 +132,8 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
-    front = SlowFront(stretch.curve(side), law.prestress, piece.level, law.gamma, law.alpha)
-    panel, stop, stretch.longest[side] = front.next_panel(mark, stretch.longest[side])
+    front = SlowFront(stretch.curve(side), law.prestress, piece.background, law.gamma, law.alpha)
+    panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     if stop in ("stops", *UNKNOWN):
@@ -144,6 +146,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
         if mark >= stretch.next_start[side]:
             stretch.end_reason[side] = "met"
         elif law.piece_right_of(mark).above:
+            stretch.progress[side] = Progress()
             stretch.restarts[side].append(side * mark)
             _run(law, stretch, side, until)
 
@@ -183,4 +186,5 @@ def _merged(left: Stretch, right: Stretch) -> Stretch | None:
         end_reason={LEFT: left.end_reason[LEFT], RIGHT: right.end_reason[RIGHT]},
         restarts={side: left.restarts[side] + right.restarts[side] + restart for side in SIDES},
         joins=[*left.joins, x, *right.joins],
+        progress={LEFT: left.progress[LEFT], RIGHT: right.progress[RIGHT]},
     )

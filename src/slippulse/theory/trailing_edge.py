@@ -45,6 +45,9 @@ FAR_APART = 1e3
 STEP, NEXT_STEP = 1e-11, 1e-14
 # Stick times that differ by less are equal, and slip velocities below this are 0.
 ROUNDING = 1e-12
+# Error of du/dt, and the error of a stick time above which another knot counts as the first: next
+# to where a slow front has stopped du/dt hardly falls through 0.
+VELOCITY_ERROR, TIME_ERROR = 1e-11, 1e-9
 
 
 class FirstStick(NamedTuple):
@@ -258,15 +261,20 @@ class EdgedPart(Part):
         stuck = knots.kind != SLIDES
         if not stuck.any():
             return None
+        # The stick time of a front that has stopped is that of the front itself.
+        fall = np.where(knots.kind == BRIEF, np.inf, np.abs(knots.by_xi + knots.by_eta))
+        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING)
+        error[error < TIME_ERROR] = 0.0
         # The position nearest to x = 0 counts, of several that stick first.
-        earliest = np.min(knots.stick[stuck])
-        first = np.flatnonzero(stuck & (knots.stick <= earliest + 1e-10))
+        latest = np.where(stuck, knots.stick + error, np.inf)
+        first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         k = np.arange(knots.x.size - 1)
         # A minimum may lie in each interval at whose ends the edge, or du/dt, goes down into it.
         down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0)
         down &= knots.outruns(k) | knots.of_kinds(k, FAST, SLIDES)
+        down &= error[:-1] + error[1:] == 0.0
         lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         for low in np.flatnonzero(down & (lowest < out.time)).tolist():
             minimum = self._minimum(*knots.x[[low, low + 1]].tolist())

@@ -50,11 +50,12 @@ def simulation_problems(config: Configuration) -> list[str]:
 def _check_profiles(scenes: Sequence[Scene]) -> None:
     """Refuse a pre-stress with which nothing ever moves."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
-        if profile.bumps:
-            # The largest pre-stress is at the peak and the bumps, or around them.
-            centres, _, widths = np.array([(0.0, 1.0, profile.width), *profile.bumps]).T
+        if profile.bumps or profile.points or profile.width is None:
+            # The largest pre-stress is at a point, at the peak and the bumps, or around them.
+            centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
             near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
-            blocks = np.round(np.append(near, centres) / dx) * dx
+            around = np.array([x for x, _ in profile.points]) + np.array([[-dx], [0.0], [dx]])
+            blocks = np.round(np.concatenate([near.ravel(), around.ravel()]) / dx) * dx
             largest = float(np.max(profile(blocks)))
         else:
             largest = max([profile.peak, *(level for *_, level in profile.intervals)])
@@ -82,7 +83,7 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
 def _pulse_blocks(scene: Scene) -> float:
     """Blocks across the pulse (under a stress boundary, the Gaussian); infinite where unknown."""
     if scene.boundary == "stress" and scene.scheme != "continuum":
-        return scene.prestress.width / scene.dx
+        return scene.prestress.narrowest / scene.dx
     level = max(scene.prestress.left, scene.prestress.right)
     if scene.scheme == "continuum" or level <= 0.0:
         return math.inf

@@ -22,6 +22,7 @@ from slippulse.model.checks import short_repr
 from ..text.markdown import is_readable
 from .limits import simulation_problems
 from .problems import ConfigError, nearest
+from .profiles import with_points_of_files
 from .refusals import dotted, format_problems, problem_line
 from .schema import Configuration
 
@@ -39,7 +40,8 @@ def read_config(
     """Merge shipped values, overlays and those said by --config, and check them; or ConfigError."""
     merged = dict(shipped)
     for overlay in (*overlays, _typed(said or {})):
-        merged = _merge(merged, overlay)
+        # Those that were read from a file have the points of their own files already.
+        merged = _merge(merged, with_points_of_files(overlay, Path()))
     sweeps = merged.get("simulations")
     missing = {*shipped["simulations"]} - {*sweeps} if isinstance(sweeps, Mapping) else ()
     for name in sorted(missing):
@@ -121,7 +123,8 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
             given = "empty" if overlay is None else given
             raise ConfigError(f"{given}; allowed: a mapping of keys, as in config/config.yaml")
         # JSON turns names and dates into text.
-        return json.loads(json.dumps(overlay, default=str))
+        plain = json.loads(json.dumps(overlay, default=str))
+        return with_points_of_files(plain, path.parent)
     except (OSError, ValueError, RecursionError, YAMLError) as error:
         raise ConfigError(f"{path}: {_reason(error)}") from None
 

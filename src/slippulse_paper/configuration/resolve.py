@@ -4,10 +4,14 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from slippulse.model.cost import reach_of
 from slippulse.model.friction import COULOMB, LinearRate
 from slippulse.simulation.accuracy import ORDER, STEP
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 
+from .profiles import expanded, prestress_of
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
 # A scene samples these numbers of times and positions, for its map and its animation.
@@ -34,6 +38,8 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     del given["chunks"]
     if "rate_strengthening" in given:
         given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
+    if "profiles" in given:
+        given["profiles"] = expanded(given["profiles"])
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
     chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in kept and chosen:
@@ -56,26 +62,41 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """A scene as a simulation of one run that records everything, up to where its fronts may go."""
-    farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
-    level = min(max(scene.left, scene.right, *[level for _, level in scene.steps]), 1.0 - 1e-6)
-    if level <= 0.0:
-        speed = 1.0
-    elif scene.beta is not None:
-        # The rule "total" gives this speed at beta/dx = 1.
-        speed = 1.0 / (1.0 - level)
-    else:
-        ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
-        speed = float(front_speed(level, min(ratio, LARGEST_RATIO), "total"))
-    extent = farthest_bump + speed * scene.duration + 3.0 * scene.width
     given = scene.plain()
     del given["title"]
-    profile = {key: given.pop(key) for key in Profile.model_fields}
+    profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
+    extent = _extent(scene, model, profile)
     given |= {key: [given[key]] for key in LISTED if key in given}
     given["profiles"] = [profile]
     given["duration"] = {"time": scene.duration}
     given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
     given["record"] = ["fronts", "fields", "samples"]
     return Simulation.model_validate(given)
+
+
+def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> float:
+    """Distance from x = 0 up to which a scene is sampled: that which its fronts may reach."""
+    farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
+    ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
+
+    def speeds_at(levels: np.ndarray) -> np.ndarray:
+        levels = np.minimum(levels, 1.0 - 1e-6)
+        fast, speeds = levels > 0.0, np.ones(levels.shape)
+        if scene.beta is not None:
+            # The rule "total" gives this speed at beta/dx = 1.
+            speeds[fast] = 1.0 / (1.0 - levels[fast])
+        elif fast.any():
+            speeds[fast] = front_speed(levels[fast], min(ratio, LARGEST_RATIO), "total")
+        return speeds
+
+    if scene.left is not None and scene.right is not None:
+        highest = max(scene.left, scene.right, *[level for _, level in scene.steps])
+        reach = float(speeds_at(np.array([highest]))[0]) * scene.duration
+    else:
+        (expanded_profile,) = expanded([profile])
+        table = prestress_of(expanded_profile)
+        reach = reach_of(table, table.nucleation_reach, scene.duration, speeds_at)
+    return farthest_bump + reach + 3.0 * (scene.width or 0.0)
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:

@@ -5,10 +5,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any
 
+from slippulse.model.checks import check_that
 from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
 
 from .chunks import runs_of
+from .profiles import TABLES, label_of, prestress_of
 
 
 def runs(simulation: Mapping) -> Iterator[Run]:
@@ -29,17 +31,32 @@ def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
 
 def entries(simulation: Mapping) -> Iterator[tuple]:
     """One entry of each list: release rule, pre-stress, gamma, spacing or None, damping, law."""
+    for release, *shape, gamma, dx, damping, law in _combinations(simulation):
+        if "profiles" in simulation:
+            profile = prestress_of(shape[0])
+        else:
+            left, right, width, steps = shape
+            profile = Prestress(left, left if right is None else right, width, steps=steps)
+        yield release, profile, gamma, dx, damping, law
+
+
+def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
+    """Number and seed of the profile of each run; nothing if no profile has a table."""
+    profiles = simulation.get("profiles", [])
+    if not any(key in profile for profile in profiles for key in TABLES):
+        return []
+    numbered = enumerate(profiles, start=1)
+    labels = {id(profile): label_of(profile, number) for number, profile in numbered}
+    return [labels[id(profile)] for _, profile, *_ in _combinations(simulation)]
+
+
+def _combinations(simulation: Mapping) -> Iterator[tuple]:
+    """The entries of the lists, for each run of a simulation or of a chunk of it."""
     chunk = simulation.get("chunk")
     wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
-    numbered = enumerate(product(*_axes(simulation)))
-    for number, (release, *shape, gamma, dx, damping, law) in numbered:
+    for number, combination in enumerate(product(*_axes(simulation))):
         if wanted is None or number in wanted:
-            if "profiles" in simulation:
-                profile = Prestress(**shape[0])
-            else:
-                left, right, width, steps = shape
-                profile = Prestress(left, left if right is None else right, width, steps=steps)
-            yield release, profile, gamma, dx, damping, law
+            yield combination
 
 
 def run_count(simulation: Mapping) -> int:
@@ -74,7 +91,10 @@ def _spacing(
         return float(rule["fixed"])
     spacing = simulation["spacings"][index] if "spacings" in simulation else given
     if spacing is None:
-        powers = profile.width ** rule["width_power"] * gamma ** rule["gamma_power"]
+        known = profile.width is not None or rule["width_power"] == 0.0
+        allowed = "0 for a profile without a width"
+        check_that(known, "spacing.width_power", rule["width_power"], allowed)
+        powers = (profile.width or 1.0) ** rule["width_power"] * gamma ** rule["gamma_power"]
         spacing = simulation["accuracy"]["dx"] * rule["scale"] * powers
     # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.
     return float(f"{simulation['coarser'] * spacing:.12g}")

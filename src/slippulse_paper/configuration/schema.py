@@ -69,6 +69,7 @@ Distinct = Annotated[
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
+Seed = Annotated[int, Field(ge=0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Boundary = Literal["displacement", "stress"]
@@ -99,6 +100,9 @@ PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f
 
 TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
+POINTS = "a list of [x, tau] from left to right, at least two"
+ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop, spacing and seed"
+SEEDS = "a whole number >= 0, or a list of different ones"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
@@ -111,15 +115,61 @@ KEPT = "what is kept: release and stick times; slip, velocity, acceleration at t
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
 
+class Rough(Block):
+    """A rough background, as `sp.rough` makes it."""
+
+    level: Annotated[float, Field(lt=1.0)] = key("mean [S]")
+    deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
+    correlation_length: Positive = key("length above which nothing is correlated [H]")
+    hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
+    start: float = key("first position; the pre-stress is constant before it [H]")
+    stop: float = key("last position; the pre-stress is constant beyond it [H]")
+    spacing: Positive = key("distance of the positions [H]")
+    seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
+
+
 class Profile(Block):
     """One pre-stress."""
 
-    left: float = key("level of the pre-stress far to the left [S]")
-    right: float = key("level far to the right [S]")
-    width: Positive = key("standard deviation W of the Gaussian at x = 0, >= dx [H] (paper)", 1.0)
+    left: float | None = key("level of the pre-stress far to the left [S]", None)
+    right: float | None = key("level far to the right [S]", None)
+    width: Positive | None = key(
+        "standard deviation W of the Gaussian at x = 0, >= dx; without it, `points` and `file` have"
+        " no Gaussian [H] (paper)",
+        1.0,
+    )
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
     steps: list[Step] = key("levels beyond positions, away from x = 0 [H, S]", [], STEPS)
     bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
+    points: list[Step] | None = key(
+        "instead of levels: linear between these points, constant beyond; a position twice is a"
+        " jump [H, S]",
+        None,
+        POINTS,
+    )
+    file: str | None = key(
+        "instead of levels: a CSV or netCDF file with such points, relative to the overlay", None
+    )
+    rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
+
+    @model_validator(mode="after")
+    def _background(self) -> Self:
+        # A file that was read has its points beside it.
+        own = [name for name in ("file", "points", "rough") if getattr(self, name) is not None]
+        tables = own[:1] if own == ["file", "points"] else own
+        levels = [name for name in ("left", "right") if getattr(self, name) is not None]
+        if not tables:
+            missing = ", ".join({"left", "right"} - {*levels} if levels else ["left", "right"])
+            allowed = "levels on both sides, or points, file or rough"
+            require(len(levels) == 2, f"{missing}: missing", allowed)
+            return self
+        given = [*tables, *levels, *(["steps"] if self.steps else [])]
+        require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
+        if "points" in own and "width" not in self.model_fields_set:
+            self.__dict__["width"] = None
+        if "file" in own:
+            require("points" in own, f"file: {short_repr(self.file)}", "in an overlay")
+        return self
 
 
 class Beyond(Block):
@@ -233,6 +283,12 @@ class NamedScene(Profile, Physics):
     dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
     release: Release | None = key("by default the model's", None)
     duration: Positive = key("how long the run is [H/c]")
+
+    @model_validator(mode="after")
+    def _one_seed(self) -> Self:
+        seed = self.rough.seed if self.rough is not None else 0
+        require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
+        return self
 
 
 class Preset(Block):

@@ -19,7 +19,10 @@ from .shared.main_numbers import main_numbers, with_symbols
 
 # Columns that may vary in a sweep, and the names of those without a symbol.
 VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
+# With tables of pre-stress, their numbers say more than the levels at their ends.
+OF_TABLES = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
 WORDS = {"beyond": "level beyond the step", "release": "release rule"}
+WORDS |= {"profile": "profile", "seed": "seed"}
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
@@ -27,10 +30,12 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     (runs,) = tables.values()
     alike = (runs["left"] == runs["right"]).all()
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
-    axis, *others = varying_columns(runs) or ["left"]
+    axis, *others = varying_columns(runs) or ["profile" if "profile" in runs else "left"]
     held = runs["boundary"].iloc[0] == "displacement"
     levels = ["tau_0"] if alike else ["left", "right"]
     fixed = runs[[*(["gamma"] if held else []), *levels, "damping_ratio", "width", "dx"]]
+    if "profile" in runs:
+        fixed = fixed.drop(columns=levels)
     fixed = conditions(held, **fixed.loc[:, fixed.nunique() == 1].iloc[0])
     parts = []
     for _, run in runs.iterrows():
@@ -46,7 +51,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 def varying_columns(runs: pd.DataFrame) -> list[str]:
     """Columns of VARYING that do: numbers before texts, the one with most values first."""
     # A level that follows another one is no axis of its own.
-    different = runs[[*VARYING]].T.drop_duplicates().index
+    names = OF_TABLES if "profile" in runs else VARYING
+    different = runs[[*names]].T.drop_duplicates().index
     varying = [name for name in different if runs[name].nunique() > 1]
     return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
 

@@ -53,6 +53,8 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     kept = []
     shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
     for run in table[shown & (table["boundary"] == "displacement")].to_dict("records"):
+        if json.loads(run["steps_and_bumps"]).get("points"):
+            continue
         plain = Prestress(run["left"], run["left"], run["width"])
         if prestress_from(run) != plain or law_of(run)["law"] != "coulomb":
             continue

@@ -27,6 +27,12 @@ def scene_page(
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         profile, parts = prestress_from(attributes), []
+        if profile.points:
+            ends = f"x = {setting(profile.points[0][0])} to {setting(profile.points[-1][0])}"
+            parts.append(f"linear between {len(profile.points)} points from {ends}")
+        if profile.width is None:
+            shown["width"] = "no Gaussian at x = 0"
+            shown.pop("peak", None)
         for x, level in profile.steps:
             parts.append(f"step to {setting(level)} at x = {setting(x)}")
         for x, amplitude, width in profile.bumps:

@@ -7,7 +7,7 @@ from slippulse.data.tables import load_table, save_table
 from slippulse.plotting.style import house_style, save_figure
 
 from ..figures import scene_figure as scene
-from ..figures.shared.main_numbers import scene_numbers
+from ..figures.shared.main_numbers import at_constant_levels, scene_numbers
 from ..report.scene_page import scene_page
 
 
@@ -16,6 +16,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     title, note = settings["title"], settings["altered"]
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
+    row = at_constant_levels(row)
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     save_table(numbers, outputs["numbers"])
     table = scene.table(data, numbers, row, title)

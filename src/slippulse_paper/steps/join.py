@@ -1,7 +1,8 @@
 """Join one file of each chunk of a simulation: data, or a table of any kind."""
 
 from slippulse.data.saving import save_dataset
-from slippulse.measurement.table import PARAMETERS
+from slippulse.data.tables import load_table
+from slippulse.measurement.table import LABELS, PARAMETERS
 from slippulse.measurement.uncertainty import quantities
 
 from .joined_files import join_datasets, join_grid_studies, join_tables
@@ -14,6 +15,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     if kind == "data":
         save_dataset(join_datasets(chunks, settings["record"]), joined)
     elif kind == "uncertainties":
-        join_grid_studies(chunks, files["finest"][0], PARAMETERS, quantities, joined)
+        finest = files["finest"][0]
+        keys = [*PARAMETERS, *(name for name in LABELS if name in load_table(finest))]
+        join_grid_studies(chunks, finest, keys, quantities, joined)
     else:
         join_tables(chunks, joined)

@@ -5,10 +5,12 @@ from collections import Counter
 from pkgutil import resolve_name
 
 from slippulse.data.saving import save_dataset
+from slippulse.data.sweeps import labelled
 from slippulse.data.variables import described
 from slippulse.simulation.sweep import solve_sweep
 
 from ..configuration.expand import expand
+from ..configuration.runs import profile_labels
 
 # Module and function by scheme: an edit of the theory re-runs exact solutions alone.
 SOLVERS = {
@@ -24,6 +26,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     scenes, samples = expand(sweep)
     how = settings["threads"], settings.get("progress")
     data = solve_sweep(solve, scenes, samples, sweep["record"], *how)
+    data = labelled(data, profile_labels(sweep), sweep["record"])
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
         flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"

@@ -5,14 +5,16 @@ from pkgutil import resolve_name
 
 import pandas as pd
 
+from slippulse.data.sweeps import labelled
 from slippulse.data.tables import load_table, save_table
 from slippulse.measurement.promise import judged, summary
-from slippulse.measurement.table import PARAMETERS
+from slippulse.measurement.table import LABELS, PARAMETERS
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.sweep import solve_sweep
 
 from ..configuration.expand import expand
+from ..configuration.runs import profile_labels
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
@@ -22,15 +24,18 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     tables = {}
     for factor in sorted(sweeps):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
-        scenes, samples = expand(sweeps[factor])
-        data = solve_sweep(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
+        sweep = sweeps[factor]
+        scenes, samples = expand(sweep)
+        data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
+        data = labelled(data, profile_labels(sweep), sweep["record"])
         tables[factor] = measured_table(data, settings["measure"])
     measured = load_table(files["finest"])
     if any("chunk" in sweep for sweep in sweeps.values()):
         # A column of fractions may have integers alone, of which -0 has lost its sign.
-        fractions = measured.select_dtypes("integer").columns.difference(PARAMETERS)
+        fractions = measured.select_dtypes("integer").columns.difference([*PARAMETERS, *LABELS])
         measured = load_table(files["finest"], dict.fromkeys(fractions, float))
-    uncertainties = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
+    keys = [*PARAMETERS, *(name for name in LABELS if name in measured)]
+    uncertainties = grid_tables((measured, *tables.values()), tuple(tables), keys)
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
         uncertainties = judged(uncertainties, measured, promise, settings["measure"]["share"])

@@ -1,9 +1,9 @@
 """The main numbers of a run: their labels, the measured values and exact theory."""
 
+import json
+
 import numpy as np
 import pandas as pd
-
-from slippulse.model.prestress import prestress_from
 
 # Labels of the measured columns that both boundary conditions have, and of all by boundary.
 COMMON = {
@@ -24,6 +24,13 @@ LABELS = {
 }
 
 
+# Beginnings of the names of predictions for the front, and for the pulse, of each side.
+PREDICTED = {
+    "left": ("exact_front_speed_left", "exact_left_pulse"),
+    "right": ("exact_front_speed_right", "exact_pulse"),
+}
+
+
 def with_symbols(label: str) -> str:
     """Return a label of LABELS, as a formula where it is a symbol."""
     symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\text{trans}", "L_trans": r"L_\text{trans}"}
@@ -32,10 +39,24 @@ def with_symbols(label: str) -> str:
 
 def main_numbers(run: pd.Series) -> pd.DataFrame:
     """Main measured numbers of a run: quantity, label, value, theory (NaN where there is none)."""
+    run = at_constant_levels(run)
     numbers = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
     numbers["value"] = [run.get(name, np.nan) for name in numbers["quantity"]]
     numbers["theory"] = [run.get(f"exact_{name}", np.nan) for name in numbers["quantity"]]
     return numbers[np.isfinite(numbers["value"].astype(float))]
+
+
+def at_constant_levels(run: pd.Series) -> pd.Series:
+    """A measured and predicted row without the theory of steady fronts and pulses in a table.
+
+    Theory is that of the levels at the ends of a table, which a front may not have reached.
+    """
+    run = run.copy()
+    for side, prefixes in PREDICTED.items():
+        if f"level_ahead_{side}" in run and not np.isfinite(run[f"level_ahead_{side}"]):
+            names = [name for name in map(str, run.index) if name.startswith(prefixes)]
+            run[names] = np.nan
+    return run
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
@@ -48,7 +69,7 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     if run.get("pulse_state") == "stopped":
         numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
     # The balance of the pre-stress is computed for the Gaussian and its levels alone.
-    if prestress_from(run).bumps and run["boundary"] == "stress":
+    if json.loads(run["steps_and_bumps"])["bumps"] and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
     if (quantity == "transition_time").any():
         numbers = numbers[quantity != "first_stick_time"]

@@ -146,6 +146,8 @@ def title(table: pd.DataFrame) -> str:
 def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> None:
     """Draw the pre-stress of coloured runs in an inset, to some widths of the widest Gaussian."""
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
+    # Tables of pre-stress without a Gaussian have no width.
+    runs = runs[np.isfinite(runs["width"])]
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
     for run in runs.drop_duplicates(["left", "right", "width"]).itertuples():
         tau = Prestress(run.left, run.right, run.width)(x)
