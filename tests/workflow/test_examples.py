@@ -101,6 +101,33 @@ def user_defined_sweep(table, path):
     assert "accuracy" not in log.read_text(encoding="utf-8")
 
 
+def prestress_ramp(table, path):
+    """Both fronts end on a constant level; the one on the right has crossed the ramp."""
+    assert (table["level_ahead_left"][0], table["level_ahead_right"][0]) == (0.6, 0.5)
+    asymmetric_levels(table, path, (0.6, 0.5))
+    slip = pd.read_csv(path.with_suffix(".csv")).query("series == 'slip' and role == 'profile'")
+    on_ramp, before = (slip["value"][np.abs(slip["position"] - x) < 0.5] for x in (11.0, -11.0))
+    assert on_ramp.max() < 0.7 * before.min()
+    assert "linear between 3 points from x = 0 to 12" in path.read_text(encoding="utf-8")
+
+
+def stress_file(table, path):
+    """The rupture starts where the file has its 1, and no theory of levels stands beside it."""
+    assert np.isnan(table["width"][0]) and "121 points" in table["steps_and_bumps"][0]
+    numbers = pd.read_csv(path.with_name("stress_file_numbers.csv"))
+    assert np.isfinite(numbers["value"]).all() and numbers["theory"].isna().all()
+    rows = pd.read_csv(path.with_suffix(".csv")).query("role == 'prestress'")
+    assert rows["value"].max() == 1.0 and "no Gaussian" in path.read_text(encoding="utf-8")
+
+
+def rough_prestress(table, path):
+    """All pulses live, and each seed has its own."""
+    measured = pd.read_csv(path.parents[1] / "measurements/rough_prestress.csv")
+    assert measured["seed"].tolist() == measured["profile"].tolist() == [1, 2, 3, 4, 5, 6]
+    assert set(measured["pulse_state"]) == {"unsteady"}
+    assert measured["pulse_slip"].nunique() == 6 and (measured["pulse_slip"] > 0.5).all()
+
+
 def chunked_sweep(table, path):
     levels, widths = table["left"].unique(), table["width"].unique()
     assert [*zip(table["left"], table["width"], strict=True)] == [*product(levels, widths)]
@@ -135,6 +162,9 @@ TARGETS = {
     halved_spacing: "measurements/space_time_displacement.csv",
     user_defined_sweep: "uncertainties/user_defined_sweep.csv",
     chunked_sweep: "measurements/chunked_sweep.csv",
+    prestress_ramp: "scenes/prestress_ramp.html",
+    stress_file: "scenes/stress_file.html",
+    rough_prestress: "uncertainties/rough_prestress.csv",
     target_error: "uncertainties/target_error.csv",
 }
 

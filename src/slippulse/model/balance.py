@@ -104,7 +104,9 @@ def _balance_position(prestress: Prestress) -> float:
 def _balance_of_table(prestress: Prestress, distance: float) -> float:
     """The first balance to the left of the nucleation, found from one interval to the next."""
     x, tau = np.array(prestress.points).T
-    start = 0.0 if prestress.width is not None else float(x[np.argmax(tau)])
+    # A table without a Gaussian is released wherever it reaches 1.
+    released = x[tau >= min(1.0, float(tau.max()))]
+    start = 0.0 if prestress.width is not None else float(released[0])
     rest = integral(prestress, start, distance)
     if not rest >= 0.0:
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")

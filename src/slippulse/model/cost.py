@@ -79,7 +79,7 @@ def reach_of(
 
     ``speeds_at`` returns speeds at levels of pre-stress; an interval has its higher level.
     """
-    intervals = np.array(profile.intervals)
+    intervals = profile.interval_table
     speeds = speeds_at(intervals[:, 2:].max(axis=1))
     right = _distance(intervals[:, 1], speeds, start, duration)
     left = _distance(-intervals[::-1, 0], speeds[::-1], start, duration)

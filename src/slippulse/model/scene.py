@@ -222,8 +222,10 @@ class Scene:
         given = hasattr(attributes, "keys")
         check_that(given, "attributes", attributes, "a mapping of names to values")
         try:
-            values = dict(attributes) | {"friction": friction_from(law_of(attributes))}
-            values["prestress"] = prestress_from(attributes)
+            # A netCDF file returns numbers of numpy's types.
+            values = {name: getattr(v, "item", lambda v=v: v)() for name, v in attributes.items()}
+            values |= {"friction": friction_from(law_of(values))}
+            values["prestress"] = prestress_from(values)
             check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
             values["half_lattice"] = bool(values["half_lattice"])
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})

@@ -13,6 +13,8 @@ from pydantic_core import PydanticCustomError
 from slippulse.model.checks import short_repr
 from slippulse.model.friction import NAMES, friction_from
 from slippulse.model.measured_columns import RECORD_FOR
+from slippulse.model.prestress import Prestress
+from slippulse.model.rough_prestress import rough
 
 from ..text.markdown import harmless
 from .problems import nearest
@@ -127,15 +129,21 @@ class Rough(Block):
     spacing: Positive = key("distance of the positions [H]")
     seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
 
+    @model_validator(mode="after")
+    def _positions(self) -> Self:
+        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
+        rough(**(self.plain() | {"seed": seed}))
+        return self
+
 
 class Profile(Block):
     """One pre-stress."""
 
-    left: float | None = key("level of the pre-stress far to the left [S]", None)
-    right: float | None = key("level far to the right [S]", None)
+    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
+    right: float | None = key("level far to the right, without a table [S]", None)
     width: Positive | None = key(
-        "standard deviation W of the Gaussian at x = 0, >= dx; without it, `points` and `file` have"
-        " no Gaussian [H] (paper)",
+        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
+        " have no Gaussian [H] (paper)",
         1.0,
     )
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
@@ -165,8 +173,13 @@ class Profile(Block):
             return self
         given = [*tables, *levels, *(["steps"] if self.steps else [])]
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
-        if "points" in own and "width" not in self.model_fields_set:
-            self.__dict__["width"] = None
+        if self.points is not None:
+            if "width" not in self.model_fields_set:
+                self.__dict__["width"] = None
+            try:
+                Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
+            except ValueError as error:
+                raise ValueError(str(error).removeprefix("prestress.")) from None
         if "file" in own:
             require("points" in own, f"file: {short_repr(self.file)}", "in an overlay")
         return self
