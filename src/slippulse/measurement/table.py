@@ -8,7 +8,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import Prestress, prestress_from
+from ..model.prestress import prestress_from
 from ..model.recorded_law import law_of
 from .front_paths import fit_front, limit_time, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
@@ -41,11 +41,9 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     """
     attributes = run.attrs | {"friction": json.dumps(law_of(run.attrs))}
     row = {name: attributes[name] for name in PARAMETERS}
-    row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
-    profile = prestress_from(run.attrs)
-    row["beyond"] = profile.steps[-1][1] if profile.steps else row["right"]
-    if profile.points:
-        row |= columns_of_table(run, profile, settings["front_window"])
+    steps = prestress_from(run.attrs).steps
+    row["beyond"] = steps[-1][1] if steps else row["right"]
+    row |= columns_of_table(run, settings["front_window"])
     for side in ("right", "left"):
         names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
         row |= zip(names, fit_front(run, settings["front_window"], side), strict=True)
@@ -74,12 +72,16 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     return row, pulse
 
 
-def columns_of_table(run: AnyRun, profile: Prestress, window: float) -> dict[str, float | str]:
-    """The digest of a long table, and the lowest pre-stress that each front has crossed.
+def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
+    """Return the labels of the profile, and the numbers of a table if the pre-stress is one.
 
-    And its level where it is constant on the last ``window`` of the front's path; NaN elsewhere.
+    These are the digest of a long table, the lowest pre-stress that each front has crossed, and its
+    level if it is constant on the last ``window`` of the front's path; NaN if it is not.
     """
-    row: dict[str, float | str] = {}
+    profile = prestress_from(run.attrs)
+    row: dict[str, float | str] = {name: run.attrs[name] for name in LABELS if name in run.attrs}
+    if not profile.points:
+        return row
     if len(profile.points) > MOST_POINTS_IN_A_ROW:
         text = run.attrs["steps_and_bumps"]
         parts = json.loads(text)

@@ -100,7 +100,8 @@ def _upper_bound_of_reach(scene: Scene) -> float:
     """Upper bound on the distance from x = 0 that a front reaches on either side."""
     profile = scene.prestress
     bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
-    start = max(bumps, profile.nucleation_reach) + 5.0 * (profile.width or 0.0)
+    width = profile.width or 0.0
+    start = max(bumps, profile.nucleation_reach) + 5.0 * width
 
     def fastest(levels: np.ndarray) -> np.ndarray:
         # This is above the exact speed at any damping, under either release rule.

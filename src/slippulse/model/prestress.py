@@ -6,7 +6,7 @@ The background is two side levels with optional steps, or piecewise linear throu
 import json
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from itertools import groupby, pairwise
@@ -312,18 +312,18 @@ class Prestress:
         return np.where(x > 0.0, right, np.where(x < 0.0, left, np.maximum(left, right)))
 
     @cached_property
-    def intervals(self) -> list[Interval]:
+    def intervals(self) -> tuple[Interval, ...]:
         """Intervals of a linear background from left to right; the outermost are constant."""
         if self.points:
             knots = [(-math.inf, self.left), *self.points, (math.inf, self.right)]
             linear = (Interval(a, b, low, high) for (a, low), (b, high) in pairwise(knots))
-            return [interval for interval in linear if interval.left < interval.right]
+            return tuple(interval for interval in linear if interval.left < interval.right)
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
         levels = self.level(np.array([jumps[0] - 1.0, *middles, jumps[-1] + 1.0])).tolist()
         ends = [-math.inf, *jumps, math.inf]
         constant = zip(ends[:-1], ends[1:], levels, levels, strict=True)
-        return [Interval(*ends_and_values) for ends_and_values in constant]
+        return tuple(Interval(*ends_and_values) for ends_and_values in constant)
 
     @cached_property
     def interval_table(self) -> np.ndarray:
@@ -365,12 +365,14 @@ def attributes_of(prestress: Prestress) -> dict[str, float | str]:
 
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
-    numbers = [attributes[name] for name in NUMBERS]
+    left, right, width, peak = (attributes[name] for name in NUMBERS)
     text = attributes["steps_and_bumps"]
-    plain = isinstance(text, str) and all(isinstance(number, float) for number in numbers)
-    if not plain:
-        return _from_text(text, *numbers)
-    return _cached_from_text(text, *(None if math.isnan(number) else number for number in numbers))
+    if isinstance(width, float) and math.isnan(width):
+        width = None
+    # Lists and the like, which are refused, are no keys of a cache.
+    plain = all(isinstance(value, Hashable) for value in (text, left, right, width, peak))
+    read = _cached_from_text if plain else _from_text
+    return read(text, left, right, width, peak)
 
 
 def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
@@ -387,7 +389,7 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
 
 
 # The numbers of one run are measured one after the other, and each starts from the pre-stress.
-_cached_from_text = lru_cache(maxsize=8)(_from_text)
+_cached_from_text = lru_cache(maxsize=8, typed=True)(_from_text)
 
 
 def _points(rows: Any) -> tuple[tuple[float, float], ...]:

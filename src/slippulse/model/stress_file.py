@@ -1,11 +1,13 @@
 """Reading of a table of pre-stress from a CSV or netCDF file."""
 
-import csv
 import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 from .checks import short_repr
 from .prestress import MOST_POINTS
@@ -18,10 +20,17 @@ DIMENSIONLESS = {"x": ("", "1", "-", "H"), "prestress": ("", "1", "-", "S")}
 # A table of the most points, written with far more digits than a number has, is smaller.
 LARGEST_FILE = 20_000_000
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
-# The number of a row in its file, and its cells.
-Row = tuple[int, Sequence[str]]
+# Signs that may divide the cells of a row; spaces do if the first row has none of them.
+DELIMITERS = ",;\t"
 NETCDF_BEGINNINGS = (b"CDF", b"\x89HDF")
 NETCDF_SUFFIXES = (".nc", ".nc4", ".cdf", ".h5")
+
+
+class Row(NamedTuple):
+    """The number of a line in its file, and its cells."""
+
+    number: int
+    cells: list[str]
 
 
 class StressTable(NamedTuple):
@@ -83,76 +92,73 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
 
 
 def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTable:
+    (_, names), *body = _csv_rows(content)
+    x_column = _column(names, "x", x, POSITIONS)
+    tau_column = _column(names, "prestress", prestress, STRESSES)
+    units = "", ""
+    if body:
+        cells = _cell(body[0], x_column), _cell(body[0], tau_column)
+        # The row below the names has units if neither of its values is a number.
+        if not any(map(_is_number, cells)):
+            units, body = cells, body[1:]
+    positions = [_number(row, names, x_column) for row in body]
+    values = [_number(row, names, tau_column) for row in body]
+    _check_rows([row.number for row in body], positions, values)
+    return StressTable(positions, values, *units)
+
+
+def _csv_rows(content: bytes) -> list[Row]:
+    """The rows that are neither blank nor comments, with the numbers of their lines."""
     lines = content.decode("utf-8-sig").splitlines()
-    kept = [(number, line) for number, line in enumerate(lines, start=1) if line.strip()]
-    kept = [(number, line) for number, line in kept if not line.lstrip().startswith("#")]
-    if not kept:
+    numbered = [
+        (number, line)
+        for number, line in enumerate(lines, start=1)
+        if line.strip() and not line.lstrip().startswith("#")
+    ]
+    if not numbered:
         raise StressFileError("empty; allowed: a row of names, and rows of numbers below")
     # The names and the units take a row each.
-    for number, _ in kept[MOST_POINTS + 2 :][:1]:
+    if len(numbered) > MOST_POINTS + 2:
+        number = numbered[MOST_POINTS + 2][0]
         raise StressFileError(f"row {number}: one too many; allowed: at most {MOST_POINTS} rows")
-    delimiter = next((one for one in ",;\t" if one in kept[0][1]), None)
-    numbers = [number for number, _ in kept]
-    if delimiter is None:
-        rows = [line.split() for _, line in kept]
-    else:
-        rows = [*csv.reader((line for _, line in kept), delimiter=delimiter)]
-    cells = [[cell.strip() for cell in row] for row in rows]
-    x_column, tau_column = _columns(cells[0], x, prestress)
-    body = [*zip(numbers, cells, strict=True)][1:]
-    units = _units(body, (x_column, tau_column))
-    if units is not None:
-        body = body[1:]
-    positions = [_number(row, cells[0], x_column) for row in body]
-    values = [_number(row, cells[0], tau_column) for row in body]
-    _check_rows([number for number, _ in body], positions, values)
-    return StressTable(positions, values, *(units or ("", "")))
+    delimiter = next((sign for sign in DELIMITERS if sign in numbered[0][1]), None)
+    return [Row(number, _cells(line, delimiter)) for number, line in numbered]
 
 
-def _units(body: Sequence[Row], columns: tuple[int, int]) -> tuple[str, str] | None:
-    """Units of both columns in the row below the names; None if that row has a number."""
-    if not body:
-        return None
-    x_unit, tau_unit = (_cell(body[0], column) for column in columns)
+def _cells(line: str, delimiter: str | None) -> list[str]:
+    """The cells of a line; spaces divide them if no other sign does."""
+    return [cell.strip().strip('"') for cell in line.split(delimiter)]
+
+
+def _column(header: Sequence[str], key: str, given: str | None, known: Sequence[str]) -> int:
+    """Number of the column that has the given name, or the first of the known ones."""
+    names = known if given is None else (given,)
+    lower = [cell.lower() for cell in header]
+    for name in names:
+        if name in header:
+            return header.index(name)
+        if name.lower() in lower:
+            return lower.index(name.lower())
+    present = ", ".join(short_repr(cell) for cell in header[:8])
+    allowed = f"a column of that name, or {key} = the name of a column"
+    raise StressFileError(
+        f"no column {' or '.join(names)} for {key} among {present}; allowed: {allowed}"
+    )
+
+
+def _is_number(text: str) -> bool:
     try:
-        float(x_unit)
+        float(text)
     except ValueError:
-        try:
-            float(tau_unit)
-        except ValueError:
-            return x_unit, tau_unit
-    return None
-
-
-def _columns(header: Sequence[str], x: str | None, prestress: str | None) -> list[int]:
-    """Numbers of the two columns."""
-    found = []
-    for name, wanted, known in (("x", x, POSITIONS), ("prestress", prestress, STRESSES)):
-        names = known if wanted is None else (wanted,)
-        lower = [cell.lower() for cell in header]
-        matches = [names_index for one in names for names_index in _places(header, lower, one)]
-        if not matches:
-            there = ", ".join(short_repr(cell) for cell in header[:8])
-            raise StressFileError(
-                f"no column {' or '.join(names)} for {name} among {there}; allowed: a column of"
-                f" that name, or {name} = the name of a column"
-            )
-        found.append(matches[0])
-    return found
-
-
-def _places(header: Sequence[str], lower: Sequence[str], name: str) -> list[int]:
-    """Columns of a name, those that are written exactly so first."""
-    exact = [index for index, cell in enumerate(header) if cell == name]
-    return exact + [index for index, cell in enumerate(lower) if cell == name.lower()]
+        return False
+    return True
 
 
 def _cell(row: Row, column: int) -> str:
-    number, cells = row
-    if column >= len(cells):
+    if column >= len(row.cells):
         allowed = "a value in each column"
-        raise StressFileError(f"row {number}: {len(cells)} values; allowed: {allowed}")
-    return cells[column]
+        raise StressFileError(f"row {row.number}: {len(row.cells)} values; allowed: {allowed}")
+    return row.cells[column]
 
 
 def _number(row: Row, names: Sequence[str], column: int) -> float:
@@ -162,7 +168,7 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
     if not math.isfinite(value):
         given = short_repr(text) if text else "nothing"
         allowed = "a finite number"
-        raise StressFileError(f"row {row[0]}: {names[column]} = {given}; allowed: {allowed}")
+        raise StressFileError(f"row {row.number}: {names[column]} = {given}; allowed: {allowed}")
     return value
 
 
@@ -184,7 +190,6 @@ def _check_rows(rows: Sequence[int], x: Sequence[float], prestress: Sequence[flo
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:
     from io import BytesIO
 
-    import numpy as np
     import xarray as xr
 
     engine = "h5netcdf" if content.startswith(NETCDF_BEGINNINGS[1]) else "scipy"
@@ -195,17 +200,26 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
         reason = " ".join(str(error).split())[:80]
         raise StressFileError(f"not netCDF ({reason}); allowed: netCDF-3 or netCDF-4") from None
     header = [str(name) for name in data.variables if data[name].ndim == 1]
-    names = [header[column] for column in _columns(header, x, prestress)]
-    arrays = [data[name].values for name in names]
-    sizes = [array.size for array in arrays]
-    if sizes[0] != sizes[1] or sizes[0] > MOST_POINTS:
-        allowed = f"equally many, at most {MOST_POINTS}"
-        raise StressFileError(f"{sizes[0]} and {sizes[1]} values; allowed: {allowed}")
-    for name, array in zip(names, arrays, strict=True):
-        if array.dtype.kind not in "iuf":
-            raise StressFileError(f"{name}: not numbers; allowed: numbers")
-        for row in (np.flatnonzero(~np.isfinite(array)) + 1)[:1]:
-            raise StressFileError(f"row {row}: {name} = {array[row - 1]}; allowed: a finite number")
-    columns = [array.astype(float).tolist() for array in arrays]
-    _check_rows(range(1, sizes[0] + 1), *columns)
-    return StressTable(*columns, *(str(data[name].attrs.get("units", "")) for name in names))
+    x_name = header[_column(header, "x", x, POSITIONS)]
+    tau_name = header[_column(header, "prestress", prestress, STRESSES)]
+    positions, values = _netcdf_numbers(data, x_name), _netcdf_numbers(data, tau_name)
+    if len(positions) != len(values):
+        allowed = "equally many"
+        raise StressFileError(f"{len(positions)} and {len(values)} values; allowed: {allowed}")
+    _check_rows(range(1, len(values) + 1), positions, values)
+    units = [str(data[name].attrs.get("units", "")) for name in (x_name, tau_name)]
+    return StressTable(positions, values, units[0], units[1])
+
+
+def _netcdf_numbers(data: "xr.Dataset", name: str) -> list[float]:
+    """The values of a variable, or StressFileError."""
+    values = data[name].values
+    if values.dtype.kind not in "iuf":
+        raise StressFileError(f"{name}: not numbers; allowed: numbers")
+    if values.size > MOST_POINTS:
+        raise StressFileError(f"{values.size} values of {name}; allowed: at most {MOST_POINTS}")
+    numbers = values.astype(float).tolist()
+    for row, number in enumerate(numbers, start=1):
+        if not math.isfinite(number):
+            raise StressFileError(f"row {row}: {name} = {number}; allowed: a finite number")
+    return numbers

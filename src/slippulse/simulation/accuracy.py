@@ -186,17 +186,23 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     return spacings
 
 
-def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
-    """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
-    error, ratio = demand.error, demand.damping_ratio
-    width, peak = prestress.width or math.inf, prestress.peak
-    # Distances to where the Gaussian falls to 0, towards each negative level.
-    negative = [level for level in demand.levels if level < 0.0 < peak]
-    distances = [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative]
+def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
+    """Distances from the nucleation to where the pre-stress falls to 0, if it does."""
     if prestress.points:
         x, tau = np.array(prestress.points).T
         start = 0.0 if prestress.width is not None else x[np.argmax(tau)]
-        distances = [float(np.min(np.abs(x[tau < 0.0] - start)))] if np.any(tau < 0.0) else []
+        negative = np.abs(x[tau < 0.0] - start)
+        return [float(np.min(negative))] if negative.size else []
+    width, peak = prestress.width or math.inf, prestress.peak
+    # The Gaussian falls to 0 towards each negative level.
+    below_zero = [level for level in levels if level < 0.0 < peak]
+    return [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in below_zero]
+
+
+def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
+    """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
+    error, ratio = demand.error, demand.damping_ratio
+    distances = _distances_to_zero(demand.levels, prestress)
     spacings = [length / BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED)

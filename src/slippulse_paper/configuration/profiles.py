@@ -1,8 +1,10 @@
 """Pre-stress profiles of a configuration: their files, their seeds, and the `Prestress` of each."""
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -44,12 +46,13 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
 
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
     """An overlay with a change of each scene and of each profile of a simulation."""
-    out = dict(overlay)
-    if isinstance(scenes := overlay.get("scenes"), Mapping):
-        out["scenes"] = {name: change(one, f"scenes.{name}") for name, one in scenes.items()}
-    if isinstance(sweeps := overlay.get("simulations"), Mapping):
-        out["simulations"] = {name: _sweep(one, name, change) for name, one in sweeps.items()}
-    return out
+    changed = dict(overlay)
+    scenes, sweeps = overlay.get("scenes"), overlay.get("simulations")
+    if isinstance(scenes, Mapping):
+        changed["scenes"] = {name: change(one, f"scenes.{name}") for name, one in scenes.items()}
+    if isinstance(sweeps, Mapping):
+        changed["simulations"] = {name: _sweep(one, name, change) for name, one in sweeps.items()}
+    return changed
 
 
 def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
@@ -62,7 +65,7 @@ def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
 
 def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The profiles as runs have them: one for each seed, and points without their file."""
-    return [one for profile in profiles for one in _of_each_seed(profile)]
+    return [*chain.from_iterable(map(_of_each_seed, profiles))]
 
 
 def _of_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
@@ -86,11 +89,24 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 @lru_cache(maxsize=256)
 def _table(text: str) -> Prestress:
     profile = json.loads(text)
-    columns = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
+    x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
     rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
-    return Prestress.through(*columns, **rest)
+    return Prestress.through(x, tau, **rest)
 
 
-def label_of(profile: Mapping[str, Any], number: int) -> dict[str, float]:
-    """Number of an expanded profile, from 1, and its seed, NaN if it has none."""
-    return {"profile": number, "seed": float(profile.get("rough", {}).get("seed", "nan"))}
+def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
+    """Number of each expanded profile, from 1, and its seed, NaN if it has none.
+
+    Rough profiles that differ in the seed alone have one number.
+    """
+    labels: list[dict[str, float]] = []
+    number, before = 0, None
+    for profile in profiles:
+        background = dict(profile.get("rough", {}))
+        seed = background.pop("seed", math.nan)
+        shape = {**profile, "rough": background}
+        if "rough" not in profile or shape != before:
+            number += 1
+        before = shape
+        labels.append({"profile": number, "seed": float(seed)})
+    return labels

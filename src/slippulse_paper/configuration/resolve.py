@@ -16,6 +16,8 @@ from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
 # A scene samples these numbers of times and positions, for its map and its animation.
 TIMES, POSITIONS = 241, 801
+# Levels at which the exact front speed is computed for a table.
+LEVELS = 65
 # Keys of which a scene has one value and a simulation a list.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening")
 # Lists of a simulation whose smallest and largest values are the most demanding ones.
@@ -95,8 +97,15 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
     else:
         (expanded_profile,) = expanded([profile])
         table = prestress_of(expanded_profile)
-        reach = reach_of(table, table.nucleation_reach, scene.duration, speeds_at)
-    return farthest_bump + reach + 3.0 * (scene.width or 0.0)
+        # Thousands of exact speeds take seconds. Lines between few of them are above the others.
+        highest = max([0.0, *(tau for _, tau in table.points)])
+        known = np.linspace(0.0, highest, LEVELS)
+        speeds = speeds_at(known)
+        reach = reach_of(
+            table, table.nucleation_reach, scene.duration, lambda tau: np.interp(tau, known, speeds)
+        )
+    width = scene.width or 0.0
+    return farthest_bump + reach + 3.0 * width
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:

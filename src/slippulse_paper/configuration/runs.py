@@ -10,7 +10,7 @@ from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
 
 from .chunks import runs_of
-from .profiles import TABLES, label_of, prestress_of
+from .profiles import TABLES, labels_of, prestress_of
 
 
 def runs(simulation: Mapping) -> Iterator[Run]:
@@ -45,8 +45,7 @@ def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
     profiles = simulation.get("profiles", [])
     if not any(key in profile for profile in profiles for key in TABLES):
         return []
-    numbered = enumerate(profiles, start=1)
-    labels = {id(profile): label_of(profile, number) for number, profile in numbered}
+    labels = dict(zip(map(id, profiles), labels_of(profiles), strict=True))
     return [labels[id(profile)] for _, profile, *_ in _combinations(simulation)]
 
 

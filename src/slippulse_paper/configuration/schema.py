@@ -163,16 +163,29 @@ class Profile(Block):
     @model_validator(mode="after")
     def _background(self) -> Self:
         # A file that was read has its points beside it.
-        own = [name for name in ("file", "points", "rough") if getattr(self, name) is not None]
-        tables = own[:1] if own == ["file", "points"] else own
-        levels = [name for name in ("left", "right") if getattr(self, name) is not None]
+        tables = self._given_ones("file", "points", "rough")
+        if tables == ["file", "points"]:
+            tables = ["file"]
+        levels = self._given_ones("left", "right")
         if not tables:
-            missing = ", ".join({"left", "right"} - {*levels} if levels else ["left", "right"])
+            missing = [name for name in ("left", "right") if name not in levels]
             allowed = "levels on both sides, or points, file or rough"
-            require(len(levels) == 2, f"{missing}: missing", allowed)
+            require(not missing, f"{', '.join(missing)}: missing", allowed)
             return self
-        given = [*tables, *levels, *(["steps"] if self.steps else [])]
+        given = [*tables, *levels]
+        if self.steps:
+            given.append("steps")
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
+        if self.file is not None:
+            require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
+        self._check_points()
+        return self
+
+    def _given_ones(self, *names: str) -> list[str]:
+        return [name for name in names if getattr(self, name) is not None]
+
+    def _check_points(self) -> None:
+        """Refuse points out of order. They have no Gaussian unless they have a width."""
         if self.points is not None:
             if "width" not in self.model_fields_set:
                 self.__dict__["width"] = None
@@ -180,9 +193,6 @@ class Profile(Block):
                 Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
             except ValueError as error:
                 raise ValueError(str(error).removeprefix("prestress.")) from None
-        if "file" in own:
-            require("points" in own, f"file: {short_repr(self.file)}", "in an overlay")
-        return self
 
 
 class Beyond(Block):

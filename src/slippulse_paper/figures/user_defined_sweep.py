@@ -85,7 +85,8 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set_visible(False)
     figure.suptitle(table["fixed"].iloc[0])
     handles = [entry("simulation", marker="o", color=GREY)]
-    handles.append(entry("exact theory", color=GREY, linewidth=0.8))
+    if table["theory"].notna().any():
+        handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, **OPEN))
     legend_below(figure, [*panels[0].get_legend_handles_labels()[0], *handles], 5)
