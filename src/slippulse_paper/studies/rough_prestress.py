@@ -42,9 +42,9 @@ FINE = 0.05
 MIDDLES = FINE * (np.arange(-600, 3200) + 0.5)
 # Further seeds whose deaths are found without a simulation, up to a distance, from fields of a
 # coarser spacing. The exponent of survival is that beyond ASYMPTOTE, many death scales.
-FIRST_SEED, LONG_SEEDS, LONG, LONG_SPACING, ASYMPTOTE = 1001, 500, 4000.0, 0.5, 200.0
+FIRST_SEED, LONG_SEEDS, LONG, LONG_SPACING, ASYMPTOTE = 1001, 500, 2500.0, 0.5, 200.0
 # Every so many steps of the long curve of survival are kept.
-LONG_STEP = 10
+LONG_STEP = 5
 
 
 class Ensemble(NamedTuple):
