@@ -9,10 +9,11 @@ OVERLAY ?=
 TARGET ?=
 ALLOW_LARGE ?=
 AGAINST ?=
+PACKAGES ?=
 KILLS ?= 24
 # No option is read as a command: make would expand $(shell ...) in a value that it uses or exports,
 # so each value is taken as it was written, and goes through the environment.
-OPTIONS := PYTHON CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
+OPTIONS := PYTHON CORES PRESET OVERLAY TARGET AGAINST PACKAGES ALLOW_LARGE KILLS
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 $(foreach name,$(OPTIONS) $(GIVEN),$(eval override $(name) := $$(value $(name))))
 export $(OPTIONS)
@@ -48,13 +49,14 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
         echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
 .PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test \
-    test-pages test-slow test-all faults slurm-test benchmark check clean distclean
+    test-library test-pages test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make test-library  the library alone, with the oldest and newest packages: PACKAGES=oldest for one"
 	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility"
 	@echo "make test-all    these and the slow ones: edits, every example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
@@ -78,7 +80,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) -s --no-print-directory LOCKED=yes $(READY)
 else
 $(READY): requirements-build.lock requirements.lock pyproject.toml
-	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) results/.run.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
+	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/slippulse.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
@@ -132,6 +134,11 @@ faults: $(READY)
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
+
+# The library alone in temporary environments, with the oldest and the newest packages it allows.
+test-library: $(READY)
+	@case "$$PACKAGES" in *[!a-z\ ]*) echo "PACKAGES: $$PACKAGES; allowed: oldest, newest or both" >&2; exit 1;; esac; \
+	"$(BIN)/python" tests/library_environments.py $$PACKAGES
 
 test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser

@@ -38,7 +38,9 @@ rule scenes:
 
 onstart:
     check_packages_and_lock()
-    WORKERS.start(workflow.cores)
+    # Without the profile of this folder, Snakemake starts a process of its own for each job.
+    if workflow.execution_settings.use_threads:
+        WORKERS.start(workflow.cores)
 
 
 onerror:

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 import yaml
 from selection import SMALL_STUDIES, small_sweep
-from slippulse_paper.steps.reach import declared
-from slippulse_paper.steps.targets import selected
 
 from slippulse.data.tables import load_table, save_table
+from slippulse_paper.configuration.selected import selected
 from slippulse_paper.records.lock import take
 from slippulse_paper.steps.inputs import given
+from slippulse_paper.steps.needs import declared
 
 # Two workers share two cores.
 os.environ.setdefault("OMP_NUM_THREADS", "1")

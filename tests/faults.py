@@ -67,11 +67,11 @@ def said(folder: Path) -> str:
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
-    """Digest every result but logs and records; a hidden file was left unfinished by a kill."""
+    """Digest every result except logs and records; hidden files may be left by a kill."""
     digest = {}
     for path in sorted((folder / results).rglob("*")):
         name = path.relative_to(folder / results)
-        beside = name.parts[0] in ("logs", "benchmarks", "records") or path.name.startswith(".")
+        beside = name.parts[0] == "logs" or any(part.startswith(".") for part in name.parts)
         if path.is_file() and not beside:
             digest[str(name)] = hashlib.sha256(path.read_bytes()).hexdigest()
     return digest

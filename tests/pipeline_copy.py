@@ -11,8 +11,8 @@ FOLDERS = ("workflow", "profiles", "config", "src", "manuscript")
 PARTS = ("CITATION.cff", "Snakefile", "requirements.lock", *FOLDERS)
 # The profile of the folder logs for people; without it the log is plain lines.
 BY_PROFILE = (sys.executable, "-m", "snakemake")
-WITHOUT = "--workflow-profile none --rerun-incomplete --force-use-threads"
-SNAKEMAKE = (*BY_PROFILE, *WITHOUT.split(), "--rerun-triggers", "software-env")
+WITHOUT_PROFILE = (*BY_PROFILE, "--workflow-profile", "none")
+SNAKEMAKE = (*WITHOUT_PROFILE, "--rerun-incomplete", "--force-use-threads")
 # A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
 SWEEP = {"boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65]}
 SWEEP |= {"duration": {"time": 6.0}, "spacing": {"scale": 4.0}}
@@ -45,26 +45,22 @@ class import_module:
         self.name = name
 
     def run(self, files, outputs, settings):
-        from ..data.files import configuration, write_text
-        from ..data.records import file_digest
+        from slippulse.data.files import configuration, write_text
+        from slippulse_paper.records.job_records import file_digest
 
-        def paths(named):
-            lists = ([value] if isinstance(value, str) else value for value in named.values())
-            return [path for paths in lists for path in paths]
-
-        read = [path for path in paths(files) if path.startswith("results/")]
-        digests = [file_digest(path) for path in read]
-        for path in paths(outputs):
+        digests = [file_digest(path) for path in _paths(files) if "results/" in path]
+        for path in _paths(outputs):
             write_text(f"{self.name} {configuration()} {digests} {path}\\n", path)
 """
 
 
 def imitate_steps(folder: Path) -> None:
     """Let the jobs of a copy write short texts instead of running their steps."""
-    path = folder / "src/slippulse_paper/steps/job.py"
-    text = path.read_text(encoding="utf-8")
+    steps = folder / "src/slippulse_paper/steps"
+    text = (steps / "job.py").read_text(encoding="utf-8")
     assert text.count('import_module(f"slippulse_paper.steps.') == 1
-    path.write_text(text + IMITATION, encoding="utf-8")
+    (steps / "job.py").write_text(text + IMITATION, encoding="utf-8")
+    (steps / "worker_libraries.py").write_text("", encoding="utf-8")
 
 
 # What make gives to tests that it starts, which a run that a test starts must not take as its own.
@@ -74,14 +70,13 @@ OF_MAKE = ("MAKELEVEL", "MAKEFLAGS", "CORES", "PRESET", "OVERLAY", "TARGET", "AL
 def snakemake(
     folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
 ):
-    """Run Snakemake in a folder, with its library; returns the completed process."""
+    """Run Snakemake in a folder; returns the completed process."""
     options = ["--cores", str(cores)]
     if overlay:
         options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
-    library = {"PYTHONPATH": str((folder / "src").resolve())}
     how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
     around = {name: value for name, value in os.environ.items() if name not in OF_MAKE}
-    how["env"] = around | library | (environment or {})
+    how["env"] = around | (environment or {})
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 
@@ -109,6 +104,16 @@ def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
         assert "Nothing to be done" in text
         return {}
     return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
+
+
+def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
+    """Jobs of a dry run, with the name of the figure or study in place of these two rules."""
+    jobs = planned(result)
+    text = result.stdout + result.stderr
+    names = re.findall(r"^Job \d+: Drawing (?!scene )(\S+)$", text, re.M)
+    names += [f"study_of_{name}" for name in re.findall(r"^Job \d+: Studying (\S+)$", text, re.M)]
+    assert jobs.pop("figure", 0) + jobs.pop("study", 0) == len(names)
+    return jobs | dict.fromkeys(names, 1)
 
 
 def edges(graph: str) -> set[tuple[str, str]]:

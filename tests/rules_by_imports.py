@@ -6,12 +6,14 @@ the rules whose step reaches it.
 
 import re
 from functools import cache
+from itertools import combinations as subsets
 from pathlib import Path
 
 import grimp
-from slippulse_paper.steps.reach import needs_of
 
+from slippulse_paper.steps.needs import needs_of
 from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
+from slippulse_paper.steps.simulate import SOLVERS
 
 PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE, TEXTS = PROJECT / "src/slippulse_paper", PROJECT / "manuscript"
@@ -22,13 +24,13 @@ def modules_in(folder: str, *patterns: str) -> set[str]:
     return {path.stem for pattern in patterns for path in (PACKAGE / folder).glob(pattern)}
 
 
-# Rules whose step takes a module by name: one a figure, one a study of the solver.
+# Jobs whose step takes a module by name: one for each figure, and one for each study.
 DRAWN = modules_in("figures", "fig*.py", "study_*.py")
 STUDIED = {f"study_of_{name}": name for name in needs_of("studies")}
-# Modules that steps share, and steps whose rules are those of figures and studies.
-SHARED = {"__init__", "inputs", "job", "libraries", "origins", "processes", "reach", "reading"}
-SHARED |= {"targets", "draw_figure", "run_study", "joined_files"}
-# Modules that a rule runs.
+# Modules that steps share, and steps whose jobs are those of figures and studies.
+SHARED = {"__init__", "inputs", "job", "needs", "worker_libraries", "worker_pool", "joined_files"}
+SHARED |= {"draw_figure", "run_study"}
+# Modules that a job runs: by rule, and by name for figures and studies.
 MODULES = {step: [f"steps.{step}"] for step in modules_in("steps", "*.py") - SHARED}
 MODULES |= {name: ["steps.draw_figure", f"figures.{name}"] for name in DRAWN}
 MODULES |= {rule: ["steps.run_study", f"studies.{study}"] for rule, study in STUDIED.items()}
@@ -37,6 +39,10 @@ MODULES["predict"] += [f"slippulse.prediction.{name}" for name in TOPIC_MODULES.
 # Most simulations are solved by this scheme.
 for solving in ("simulate", "study_grid"):
     MODULES[solving].append("slippulse.solver.solution")
+# Modules of which a job runs only some, by its settings.
+SOME_OF = {"predict": [f"slippulse.prediction.{name}" for name in TOPIC_MODULES.values()]}
+SOME_OF["simulate"] = [solver.partition(":")[0] for solver in SOLVERS.values()]
+SOME_OF["study_grid"] = SOME_OF["simulate"]
 RULES = {*MODULES}
 # The templates that pages begin with, by the rules that write them.
 PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer", "index")}
@@ -84,10 +90,23 @@ def templates_of(page: str) -> set[str]:
     return {path}.union(*map(templates_of, others))
 
 
+def combinations(rule: str) -> list[list[str]]:
+    """List the combinations of modules that the jobs of a rule may run."""
+    fixed = [name for name in MODULES[rule] if name not in SOME_OF.get(rule, ())]
+    choices = SOME_OF.get(rule, [])
+    counts = range(len(choices) + 1)
+    return [[*fixed, *chosen] for count in counts for chosen in subsets(choices, count)]
+
+
 @cache
 def expected(rule: str) -> set[str]:
     """Files of the package and texts that a rule depends on."""
-    modules = {full_name(name) for name in MODULES[rule]}
+    return files_of(rule, MODULES[rule])
+
+
+def files_of(rule: str, names: list[str]) -> set[str]:
+    """Files of the package and texts that a job depends on, by the modules that it runs."""
+    modules = {full_name(name) for name in names}
     modules = modules.union(*map(imports().find_upstream_modules, modules))
     files = set(map(module_file, modules)).union(*map(templates_of, PAGES_OF.get(rule, ())))
     names = [path.name for path in TEXTS.iterdir()]

@@ -12,7 +12,8 @@ SMALL_STUDIES = {
     "barriers": {"LENGTHS": (0.95, 1.05)},
     "friction_laws": {"LEVELS": (0.2, 0.5, 0.8), "DURATION": 28.0},
     "front_law": {"SPACINGS": 5},
-    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "LEVELS": (0.5, 0.95), "WEAKENINGS": (0.05, 0.8)},
+    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
+    | {"FRACTURE_ENERGIES": (0.05, 0.42, 0.9)},
     "published_figure": {
         "DAMPING_RATIOS": {
             "total": (0.055, 0.075, 0.1, 0.135),

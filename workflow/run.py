@@ -77,23 +77,19 @@ def take_over() -> None:
     held.close()
 
 
-def remove_changed_results() -> None:
-    """Remove results that are not what their jobs wrote, so that Snakemake makes them again."""
+def changed_results() -> list[str]:
+    """List results that are not what their jobs wrote, which Snakemake does not notice."""
     from slippulse_paper.records.job_records import RecordedFiles
 
-    recorded = RecordedFiles(RESULTS)
-    problems = dict(recorded.problems())
-    if recorded.records and not (STATE / "metadata").exists():
-        reason = "Snakemake's own records (.snakemake) are gone"
-        problems = dict.fromkeys(recorded.states(), reason)
+    problems = dict(RecordedFiles(RESULTS).problems())
     for name in problems:
         if Path(name).is_dir():
             sys.exit(f"{name} is a folder; remove or rename it: a file of that name is needed")
-        Path(name).unlink(missing_ok=True)
     if problems:
         name, reason = next(iter(problems.items()))
         count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
-        print(f"{count} renewed: {name}: {reason}", file=sys.stderr)
+        print(f"{count} renewed where needed: {name}: {reason}", file=sys.stderr)
+    return [*problems]
 
 
 def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
@@ -132,6 +128,12 @@ class Run:
         surroundings = {
             key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"
         }
+        cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        try:
+            cache.mkdir(parents=True, exist_ok=True)
+        except OSError:
+            # Snakemake needs a folder for its caches, and there may be no home on a cluster.
+            surroundings["XDG_CACHE_HOME"] = str((STATE / "caches").resolve())
         command = [sys.executable, "-m", "snakemake", "--profile", "none", *arguments]
         self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
         # The shell waits for the other end of this pipe, which the system closes with this process.
@@ -157,7 +159,8 @@ def replicate(given: Mapping[str, str]) -> int:
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
     take_over()
-    remove_changed_results()
+    if changed := changed_results():
+        options += ["--forcerun", *changed]
     run = Run(["--cores", given.get("CORES") or "2", *options, "--", *targets])
 
     def stop(number: int, _frame: object) -> None:
@@ -180,17 +183,23 @@ def replicate(given: Mapping[str, str]) -> int:
     return code
 
 
-def verify(given: Mapping[str, str]) -> int:
-    """Print each result that is not as a run would make it now. Returns the exit code."""
+def wanted(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
+    """Return the options and targets to verify: without options, those of the last run."""
+    options = {name: given[name] for name in OPTIONS if given.get(name)}
     targets = [*map(full_target, given.get("TARGET", "").split())]
-    if not any(given.get(name) for name in OPTIONS):
-        # Without options, the results are compared with what the last run was to make.
+    if not options:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             last = json.loads(LAST_RUN.read_text(encoding="utf-8"))
-            given = {name: str(value) for name, value in last["options"].items()}
-            targets = targets or [*{"everything"} & {*last["targets"]}]
+            last_options = {name: str(value) for name, value in last["options"].items()}
+            options, targets = last_options, targets or [*{"everything"} & {*last["targets"]}]
+    return options, targets
+
+
+def verify(given: Mapping[str, str]) -> int:
+    """Print each result that is not as a run would make it now. Returns the exit code."""
+    options, targets = wanted(given)
     look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
-    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), "--", *targets]
+    command = [sys.executable, "-m", "snakemake", *look, *options_of(options), "--", *targets]
     summary = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
     if summary.returncode:
         return summary.returncode

@@ -80,7 +80,7 @@ UNLOADED = {
         "ruamel.yaml",
         "jsonschema",
     },
-    "configuration.altered, slippulse_paper.steps.targets": {
+    "configuration.altered, slippulse_paper.records.sources": {
         "pandas",
         "xarray",
         "numba",

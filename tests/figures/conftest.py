@@ -7,8 +7,6 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 from selection import small_sweep
-from slippulse_paper.steps.reach import declared
-from slippulse_paper.steps.targets import selected
 
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
@@ -18,6 +16,8 @@ from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.runs import runs
+from slippulse_paper.configuration.selected import selected
+from slippulse_paper.steps.needs import declared
 from slippulse_paper.steps.predict import predictions
 
 CHOICES = [

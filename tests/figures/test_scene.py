@@ -39,30 +39,78 @@ PLAIN = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 8.0, 0.05, 0.65, scheme
 SAMPLES = sp.Samples(np.linspace(0.0, 8.0, 41), np.linspace(-12.0, 12.0, 81))
 
 
+def draw_one(shipped, folder, name, scene):
+    """Run, measure and draw a scene as the rules do: its run, tables and files."""
+    model, accuracy = Model.model_validate(shipped["model"]), shipped["presets"]["draft"]
+    common = {"measure": shipped["measure"], "threads": 1}
+    kinds = ("measured", "predicted", "uncertainties", "coarser")
+    files = {kind: folder / f"{kind}.csv" for kind in kinds} | {"data": folder / "one.nc"}
+    endings = ("numbers", "csv", "png", "pdf", "html")
+    outputs = {ending: folder / f"one.{ending}" for ending in endings}
+    named = NamedScene.model_validate(scene | {"title": TITLE})
+    sweep = resolve(scene_simulation(named, model), model, accuracy)
+    sweeps = {factor: sweep | {"coarser": factor} for factor in accuracy["coarser"]}
+    settings = {"simulation": name, "sweep": sweep, "sweeps": sweeps} | common
+    settings["solver"] = simulate.SOLVERS[settings["sweep"]["scheme"]]
+    simulate.run({}, files, settings)
+    measure.run(files, files, settings)
+    predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})
+    study_grid.run({"finest": files["measured"]}, files, settings)
+    texts = {"scene": name, "title": TITLE, "altered": "", "layer": named.layer_parameters()}
+    draw_scene.run(files, outputs, texts)
+    numbers, table = load_table(outputs["numbers"]), load_table(outputs["csv"])
+    run = sp.point(load_dataset(files["data"]), 0)
+    return SimpleNamespace(run=run, numbers=numbers, table=table, outputs=outputs)
+
+
 @pytest.fixture(scope="module")
 def drawn(shipped, tmp_path_factory):
-    model, accuracy = Model.model_validate(shipped["model"]), shipped["presets"]["draft"]
-    common, made = {"measure": shipped["measure"], "threads": 1}, {}
-    for name, scene in SCENES.items():
-        folder = tmp_path_factory.mktemp("scene")
-        kinds = ("measured", "predicted", "uncertainties", "coarser")
-        files = {kind: folder / f"{kind}.csv" for kind in kinds} | {"data": folder / "one.nc"}
-        endings = ("numbers", "csv", "png", "pdf", "html")
-        outputs = {ending: folder / f"one.{ending}" for ending in endings}
-        simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
-        sweep = resolve(simulation, model, accuracy)
-        sweeps = {factor: sweep | {"coarser": factor} for factor in accuracy["coarser"]}
-        settings = {"simulation": name, "sweep": sweep, "sweeps": sweeps} | common
-        settings["solver"] = simulate.SOLVERS[settings["sweep"]["scheme"]]
-        simulate.run({}, files, settings)
-        measure.run(files, files, settings)
-        predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})
-        study_grid.run({"finest": files["measured"]}, files, settings)
-        draw_scene.run(files, outputs, {"scene": name, "title": TITLE, "altered": ""})
-        numbers, table = load_table(outputs["numbers"]), load_table(outputs["csv"])
-        run = sp.point(load_dataset(files["data"]), 0)
-        made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, outputs=outputs)
-    return made
+    folders = {name: tmp_path_factory.mktemp("scene") for name in SCENES}
+    return {name: draw_one(shipped, folders[name], name, SCENES[name]) for name in SCENES}
+
+
+LAYER = {"thickness": 100.0, "shear_modulus": 5.2e9, "poisson_ratio": 0.25, "density": 2300.0}
+LAYER |= {"static_friction": 0.6, "kinetic_friction": 0.5, "normal_stress": 40e6, "top": "held"}
+IN_SI = {"layer": LAYER, "left": 21.6e6, "right": 21.6e6, "duration": 0.6, "dx": 5.0}
+IN_SI |= {"bumps": [[900.0, -0.2e6, 100.0]]}
+
+
+def test_a_scene_with_a_layer_is_drawn_in_si_units(drawn, shipped, tmp_path):
+    scene, layer = draw_one(shipped, tmp_path, "zone", IN_SI), sp.Layer(**LAYER)
+    roles = dict([*scene.table.groupby("role")])
+    units = roles["unit"].set_index("series")["unit"]
+    assert units.to_dict() == {
+        "position": "km",
+        "time": "ms",
+        "stress": "MPa",
+        "slip_velocity": "m/s",
+        "slip": "mm",
+    }
+    run = layer.to_si(scene.run)
+    released = run["release_time"].dropna("x")
+    front = roles["front"].sort_values("position")
+    times = np.interp(front["position"] * 1e3, released["x"], released)
+    assert front["time"].to_numpy() * 1e-3 == pytest.approx(times, rel=1e-6, abs=1e-9)
+    assert roles["largest"]["value"].iloc[0] == pytest.approx(
+        float(run["sample_velocity"].max()), rel=1e-6
+    )
+    assert roles["prestress"]["value"].max() == pytest.approx(24.0)
+    assert roles["strength"]["value"].tolist() == pytest.approx([20.0, 24.0])
+    number = scene.numbers.set_index("quantity").loc["transition_time"]
+    stick = sp.measure(scene.run)["transition_time"] * layer.scales.time
+    assert (number["value"] * 1e-3, number["unit"]) == (pytest.approx(stick), "ms")
+    peak = scene.numbers.set_index("quantity").loc["pulse_peak_velocity"]
+    printed = layer.strength_drop / np.sqrt(2.0 * layer.shear_modulus * layer.density)
+    assert peak["paper"] == pytest.approx(printed * (1.0 if peak["unit"] == "m/s" else 1e3))
+    drawing = figure.draw(scene.table)
+    labels = {axes.get_xlabel() for axes in drawing.axes}
+    assert {"time $t$ (ms)", "position $x$ (km)", "stress (MPa)"} <= labels
+    page = scene.outputs["html"].read_text(encoding="utf-8")
+    for text in ("<td>600 ms</td>", "<td>21.6 MPa</td>", "bump of \N{MINUS SIGN}200 kPa and width"):
+        assert text in page
+    assert "The layer" not in drawn["barrier"].outputs["html"].read_text(encoding="utf-8")
+    save_animation(scene.run, TITLE, tmp_path / "one.gif", layer)
+    assert (tmp_path / "one.gif").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("name", SCENES)

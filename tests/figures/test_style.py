@@ -13,7 +13,10 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib import font_manager
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 from PIL import Image
 from pypdf import PdfReader
 
@@ -92,6 +95,19 @@ def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp
     pdf = PdfReader(tmp_path / "figure.pdf")
     assert dict(pdf.metadata or {}) == ({"/Keywords": said} if said else {})
     assert "pre-stress AVATAR" in pdf.pages[0].extract_text()
+
+
+def test_a_png_of_few_colours_shows_them_exactly(tmp_path):
+    figure = Figure(figsize=(1.0, 1.0))
+    for left, colour in ((0.1, style.BLUE), (0.6, style.ORANGE)):
+        figure.add_artist(Rectangle((left, 0.2), 0.3, 0.5, color=colour, antialiased=False))
+    style.save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf")
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    with Image.open(tmp_path / "figure.png") as image:
+        shown = np.asarray(image.convert("RGB"))
+    np.testing.assert_array_equal(shown, np.asarray(canvas.buffer_rgba())[..., :3])
+    assert len(np.unique(shown.reshape(-1, 3), axis=0)) == 3
 
 
 def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):

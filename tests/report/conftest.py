@@ -70,6 +70,10 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     tables = {"space_time_displacement": [row("scene")], "space_time_stress": [crack]}
     tables |= {"scaling_displacement": [transition], "derivations": quoted, "extremes": [edge]}
     tables["arrest_path"] = [{"to_go": 1e-6, "time": 2.88} | crack]
+    limit = {"scheme": "localised", "order": 5, "damping_ratio": 0.1, "derived": 1.64}
+    for name in ("measured", "measured_rupture"):
+        limit |= {f"{name}_ratio": 1.01, f"{name}_limit": "within"}
+    tables["stability"] = [limit]
     study = {"quantity": "front_speed_right", "value": 1.25}
     known = study | {"uncertainty": 0.0013, "observed_order": 1.04}
     for name in write_report.NEEDS["uncertainties"]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.theory import rate_pulse, steady_pulse, weakening_pulse
+from slippulse.theory import law_pulses, rate_pulse, steady_pulse, weakening_pulse
 from slippulse.theory.law_pulses import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
@@ -105,3 +105,12 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
 def test_laws_without_a_pulse_are_refused(law, refusal):
     with pytest.raises(ValueError, match=refusal):
         rate_pulse(0.5, GAMMA, 0.1, law)
+
+
+def test_a_stiff_law_beside_weak_leaf_springs_ends_in_one_line(monkeypatch):
+    """The work is 2.4 s at gamma = 1e-6, and a thousand times that at 1e-12."""
+    law = sp.friction("bounded_rate", limit=0.3, v_0=0.2)
+    monkeypatch.setattr(law_pulses, "MOST_EVALUATIONS", 20_000)
+    with pytest.raises(ValueError, match=r"^gamma: 1e-12, where .*; allowed: [^\n]*$"):
+        rate_pulse(0.5, 1e-12, 0.5, law)
+    assert rate_pulse(0.5, 0.1, 0.5, law).sticks

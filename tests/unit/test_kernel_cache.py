@@ -5,10 +5,11 @@ import shutil
 import subprocess
 import sys
 
+import numba
 import pytest
 
 from slippulse.model.scene import SCHEMES
-from slippulse.solver import jit
+from slippulse.solver import compile_notice, jit
 
 COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all()"
 
@@ -97,3 +98,24 @@ def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(tmp_pa
     textbook.unlink()
     run_with(tmp_path, COMPILE_ALL)
     assert {name for name, time in times().items() if time != kernels[name]} == {textbook.name}
+
+
+def test_the_first_compilation_of_a_kernel_says_so_once(capsys, monkeypatch):
+    monkeypatch.setattr(compile_notice.LISTENER, "printed", False)
+
+    def compiled(module: str):
+        kernel = lambda x: x + 1
+        kernel.__module__ = module
+        return numba.njit(kernel)
+
+    with compile_notice.announced_compilation():
+        compiled("somebody.else")(1)
+        assert capsys.readouterr().err == ""
+        kernel = compiled("slippulse.solver.taylor")
+        kernel(1)
+        assert capsys.readouterr().err == f"{compile_notice.NOTICE}\n"
+        # Machine code that is there already is not announced, and nothing is twice.
+        kernel(2)
+        compiled("slippulse.solver.events")(1)
+    compiled("slippulse.solver.layer")(1)
+    assert capsys.readouterr().err == ""

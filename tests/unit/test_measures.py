@@ -20,7 +20,7 @@ from slippulse.theory import ArrestingCrack, Rupture, front_speed
 
 STILL, TOLERANCE = 0.05, 0.02
 DURATION = 30.0
-ARRESTED, CRACKS, CRACK, PULSES, GROWING, STEADY, DECAYING = REGIMES
+ARRESTED, CRACKS, SLOW_FRONT, CRACK, PULSES, GROWING, STEADY, DECAYING = REGIMES
 PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 
 
@@ -79,7 +79,10 @@ CASES = [
     (ARRESTED, dict(right=0.0, before=0.0, last_release=9.0), {SHARE: np.nan}),
     # Where no front keeps up with the waves, the sides that slide run.
     (CRACKS, dict(left=0.06, centre=0.5, speeds=SLOW), {}),
-    (CRACK, dict(left=0.04, centre=0.5, speeds=SLOW), {}),
+    (SLOW_FRONT, dict(left=0.04, centre=0.5, speeds=SLOW), {}),
+    # A crack with one front slower than the waves, and one with a front that has stopped.
+    (SLOW_FRONT, dict(centre=0.5, left=0.04, speeds=(0.69, 1.0)), {LATE: 0.69}),
+    (CRACK, dict(centre=0.5, left=0.04, speeds=(0.0, 1.0)), {LATE: 0.0}),
     (PULSES, dict(left=0.06, speeds=SLOW), {}),
     (STEADY, dict(left=0.04, speeds=SLOW), {}),
 ]
@@ -105,8 +108,8 @@ def test_thresholds_are_arguments():
         (CRACKS, 0.005, (0.5, 0.5), None),
         (ARRESTED, 0.2, (-0.1, -0.1), None),
         (CRACKS, 0.0, (0.3, 0.3), None),
-        (CRACK, 0.0, (-0.3, 0.3), None),
-        (CRACK, 0.0, (0.3, -0.3), None),
+        (SLOW_FRONT, 0.0, (-0.3, 0.3), None),
+        (SLOW_FRONT, 0.0, (0.3, -0.3), None),
         (GROWING, 0.0, (-0.6, 0.0), 0.01),
         (STEADY, 0.0, (-0.6, 0.0), 0.0),
         (DECAYING, 0.0, (-0.6, 0.0), -0.01),

@@ -83,6 +83,8 @@ def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps
 def test_no_scheme_blows_up_below_its_bound_and_the_chain_at_it(study):
     """The growth is fast enough to be seen with damping, at every order and by both schemes."""
     rows = study("stability")
+    # No limit lies beyond the ends of the bisection.
+    assert (rows[["measured_limit", "measured_rupture_limit"]] == "within").all(axis=None)
     measured = rows[["measured_ratio", "measured_rupture_ratio"]]
     assert measured.min(axis=None) >= 1.0 - tol.BOUNDARY_BELOW
     damped = rows[rows["damping_ratio"] >= 0.1]

@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 
 import slippulse as sp
-from slippulse.simulation.simulate import bar
+from slippulse.simulation.progress_bar import bar
 from slippulse_paper.records import lock
 
 LONG = (

@@ -110,3 +110,20 @@ def test_strict_raises_where_a_flag_would_be_set():
     # The exact solution has no stress of stuck blocks and no energy balance.
     with pytest.raises(sp.UnresolvedRun, match=r"^the run is flagged: reverse_sliding$"):
         sp.simulate(FLAGS["reverse sliding of the exact solution"][0], strict=True)
+
+
+def test_a_first_stick_by_waves_of_the_lattice_is_flagged():
+    """Behind slow fronts waves of a few blocks stop blocks unless the damping is strong enough."""
+    profile = sp.Prestress(-0.59, -0.59)
+    exact = sp.theory.Rupture(profile, 0.0, 0.05, "elastic", 7.1).first_stick
+    assert exact == pytest.approx((6.7502, 0.0), abs=1e-4)
+    for ratio, flags in ((0.05, "first_stick_at_front"), (0.2, "")):
+        errors = []
+        for dx in (0.04, 0.02):
+            scene = stress(-0.59, -0.59, 7.1, dx, beta=ratio * dx, release="elastic")
+            run = sp.simulate(scene)
+            assert run.attrs["run_flags"] == flags
+            errors.append(run.attrs["first_stick_time"] - exact.time)
+        # The error without a flag is of first order in dx.
+        assert flags or 1.7 < errors[0] / errors[1] < 2.6
+        assert not flags or errors[1] < errors[0] < -0.2

@@ -5,20 +5,33 @@ import os
 import re
 from collections import Counter
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import grimp
 import pytest
-from pipeline_copy import edges, made, planned, snakemake
-from rules_by_imports import DRAWN, EVERY_SOURCE, FILES, MODULES, PACKAGE, RULES, rules_of
-from slippulse_paper.steps.reach import sources
+from pipeline_copy import made, planned_by_name, snakemake
+from rules_by_imports import (
+    DRAWN,
+    EVERY_SOURCE,
+    FILES,
+    PACKAGE,
+    RULES,
+    combinations,
+    files_of,
+    rules_of,
+)
 from workflow.conftest import NAMES, TARGETS
 
-from slippulse_paper.steps.predict import TOPICS
+from slippulse_paper.records.job_records import Record, RecordedFiles, digest_of, file_digest
+from slippulse_paper.records.provenance import source_files
+from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
 
 LOCK = "requirements.lock"
 # One file of each folder: a test above covers them all.
-EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TOPICS}.values()
+EDITED = {
+    Path(file).parent: file for file in FILES if Path(file).stem not in TOPIC_MODULES.values()
+}.values()
 
 
 @pytest.fixture(scope="module")
@@ -30,30 +43,32 @@ def inputs(linked) -> dict[str, set[str]]:
     entry = r'point-size="18">(\w+)</font>(.*?)(?=point-size="18"|\Z)'
     for name, text in re.findall(entry, result.stdout, re.S):
         taken = text.partition("&#8618; input")[2].partition("output &rarr;")[0]
-        files[name] = set(map(html.unescape, re.findall(r'"monospace">([^<]+)<', taken)))
+        found = set(map(html.unescape, re.findall(r'"monospace">([^<]+)<', taken)))
+        files[name] = files.get(name, set()) | found
     return files
 
 
-def test_every_file_marks_the_rules_whose_step_reaches_it_and_nothing_else_does(inputs):
-    # Sources that each rule depends on: what its modules reach, and the texts that it takes.
-    seen = {}
-    for name in inputs.keys() - NAMES:
-        # The folder of the sources only has a time.
-        files = inputs[name] - {"src"}
-        texts = {file for file in files if not file.startswith(("results/", "<"))}
-        seen[name] = texts.union(sources(*MODULES[name]))
-    # There is one rule a step, a figure and a study.
-    assert set(seen) == RULES and len(FILES) > 150
-    for file in FILES:
-        assert {rule for rule, depends in seen.items() if file in depends} == rules_of(file), file
+def test_the_code_of_each_job_is_what_its_step_reaches_and_nothing_else(imitated):
+    """The digest in each record is that of the files which the imports of the step lead to."""
+    digest = cache(lambda path: file_digest(imitated / path))
+
+    def codes(rule: str) -> set[str]:
+        texts = {LOCK} | {"write_report": {"CITATION.cff", "config/config.yaml"}}.get(rule, set())
+        if rule in EVERY_SOURCE:
+            paths = map(Path, source_files(imitated))
+            texts |= {path.relative_to(imitated).as_posix() for path in paths}
+        choices = [files_of(rule, names) | texts for names in combinations(rule)]
+        return {digest_of({path: digest(path) for path in files}) for files in choices}
+
+    codes, seen = cache(codes), set()
+    for path, record in RecordedFiles(imitated / "results").records.items():
+        rule = name_of(path, record)
+        assert record.code in codes(rule), path
+        seen.add(rule)
+    assert seen == RULES and len(FILES) > 150
     # Predictions that two figures share do not stand in the module of one of them.
     for name in DRAWN:
         assert rules_of(f"src/slippulse_paper/figures/{name}.py") == {name} | EVERY_SOURCE
-    others = {rule: depends.difference(FILES) for rule, depends in seen.items()}
-    assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_index")
-    # The report says what differs from the shipped configuration, and its version.
-    assert others.pop("write_report") == {"CITATION.cff", "config/config.yaml"}
-    assert not any(others.values())
 
 
 def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
@@ -80,17 +95,32 @@ def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(input
 
 @pytest.fixture(scope="module")
 def downstream(imitated):
-    """A function of some rules: these and all that take what they make, directly or not."""
-    graph = ("--rulegraph", "mermaid-js", "--", *TARGETS)
-    drawn = grimp.ImportGraph()
-    for maker, taker in edges(snakemake(imitated, *graph, overlay="overlay.yaml").stdout):
-        drawn.add_import(importer=taker, imported=maker)
+    """A function of some jobs: these, and all that take what they make, by their records."""
+    taken = grimp.ImportGraph()
+    records = RecordedFiles(imitated / "results").records
+    jobs = {path: name_of(path, record) for path, record in records.items()}
+    makers = {
+        os.path.normpath(path.parent.parent / output): jobs[path]
+        for path, record in records.items()
+        for output in record.outputs
+    }
+    for path, record in records.items():
+        for name in record.inputs:
+            source = os.path.normpath(path.parent.parent / name)
+            if makers.get(source, jobs[path]) != jobs[path]:
+                taken.add_import(importer=jobs[path], imported=makers[source])
 
-    def find(rules: Iterable[str]) -> set[str]:
-        known = drawn.modules.intersection(rules)
-        return {*rules}.union(*map(drawn.find_downstream_modules, known)) - NAMES
+    def find(names: Iterable[str]) -> set[str]:
+        known = taken.modules.intersection(names)
+        return {*names}.union(*map(taken.find_downstream_modules, known))
 
     return find
+
+
+def name_of(path: Path, record: Record) -> str:
+    """Return the name of the job of a record: its step, or the figure or study that it makes."""
+    name = next(iter(record.outputs)).partition(".")[0]
+    return {"run_study": f"study_of_{name}", "draw_figure": name}.get(record.step, record.step)
 
 
 def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
@@ -102,7 +132,7 @@ def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
     try:
         path.write_bytes(before + b"\n# edited\n")
         overlays = ("overlay.yaml", "values.yaml")
-        jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay=overlays))
+        jobs = planned_by_name(snakemake(folder, "--dry-run", "--", *TARGETS, overlay=overlays))
     finally:
         path.write_bytes(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))

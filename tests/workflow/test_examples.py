@@ -9,8 +9,10 @@ import pytest
 import tolerances as tol
 from pipeline_copy import copy_project, made
 
-from slippulse import Prestress, theory
+from slippulse import Layer, Prestress, theory
 from slippulse_paper.configuration.read import read_config, read_overlay
+
+FRICTION = {"static_friction": 0.6, "kinetic_friction": 0.5}
 
 
 @pytest.fixture(scope="module")
@@ -149,6 +151,52 @@ def target_error(table, path):
     assert "target_error: accuracy 0.01 kept by 12 of 12 runs" in log.read_text(encoding="utf-8")
 
 
+def layer_map(table, path):
+    """The chunks are joined in the order of the lists."""
+    assert len(table) == 48 and table["fracture_energy"].iloc[:2].tolist() == [0.3, 0.4]
+    assert table["gamma"].is_monotonic_decreasing
+    assert len([*path.with_suffix("").glob("*-of-8.csv")]) == 8
+    brittle = table[table["fracture_energy"] < 0.85]
+    assert (brittle["outcome"] == "steady").all()
+    assert (table.loc[table["fracture_energy"] > 1.02, "outcome"] == "dying").all()
+    assert "growing" not in set(table["outcome"])
+
+
+def laboratory_block(table, path):
+    """A whole rupture that stops before the ends of the block, drawn in SI units."""
+    drawn = pd.read_csv(path.with_suffix(".csv"))
+    roles = dict([*drawn.groupby("role")])
+    units = roles["unit"].set_index("series")["unit"]
+    assert units["position"] == "mm" and units["stress"] == "MPa"
+    assert units["time"] == "\N{MICRO SIGN}s" and units["slip"] == "\N{MICRO SIGN}m"
+    assert 95.0 < roles["front"]["position"].max() < 100.0
+    assert 16.0 < roles["trailing"]["time"].min() < 17.0
+    assert 33.0 < roles["trailing"]["time"].max() < 35.0
+    assert 0.33e3 < roles["largest"]["value"].iloc[0] < 0.35e3
+    slip = roles["profile"].query("series == 'slip' and abs(position) < 70")["value"]
+    assert slip.median() == pytest.approx(1.7, abs=0.05)
+    # The numbers of the measured table are those of the model.
+    numbers = pd.read_csv(path.with_name("laboratory_block_numbers.csv")).set_index("quantity")
+    layer = Layer(0.01, 2.1e9, poisson_ratio=0.33, density=1170.0, **FRICTION, normal_stress=5e6)
+    stick = layer.convert_to_si(table["first_stick_time"][0], "time")
+    assert numbers["value"]["first_stick_time"] * 1e-6 == pytest.approx(stick)
+
+
+def damage_zone(table, path):
+    """The numbers of the comment, which are those of the exact pulse of this layer."""
+    numbers = pd.read_csv(path.with_name("damage_zone_numbers.csv")).set_index("quantity")
+    layer = Layer(100.0, 5.2e9, poisson_ratio=0.25, density=2300.0, **FRICTION, normal_stress=4e7)
+    results = theory.layer_results(layer, 21.6e6, damping_ratio=0.1).exact
+    for name, unit in (("pulse_width", 1.0), ("pulse_slip", 1e-3), ("pulse_peak_velocity", 1.0)):
+        measured = numbers["value"][name] * unit
+        assert measured == pytest.approx(results[name], rel=tol.DRAFT_SLIP)
+    assert numbers["unit"].tolist()[2:5] == ["ms", "km", "m"]
+    assert 138.0 < numbers["value"]["transition_time"] < 142.0
+    assert 0.97 < numbers["value"]["transition_length"] < 1.05
+    text = path.read_text(encoding="utf-8")
+    assert "<td>2.604 km/s</td>" in text and "printed without a factor of two" in text
+
+
 # A cheap target of each example that shows what its comment promises.
 TARGETS = {
     another_gamma: "measurements/steady_displacement.csv",
@@ -156,12 +204,15 @@ TARGETS = {
     stress_barrier: "scenes/stress_barrier.html",
     two_nucleation_sites: "measurements/two_sites.csv",
     other_friction: "scenes/other_friction.html",
+    laboratory_block: "scenes/laboratory_block.html",
+    damage_zone: "scenes/damage_zone.html",
     exact_scene: "scenes/exact_scene.html",
     elastic_release: "measurements/space_time_displacement.csv",
     fixed_beta: "measurements/continuum_fixed_ratio.csv",
     halved_spacing: "measurements/space_time_displacement.csv",
     user_defined_sweep: "uncertainties/user_defined_sweep.csv",
     chunked_sweep: "measurements/chunked_sweep.csv",
+    layer_map: "studies/layer_map.csv",
     prestress_ramp: "scenes/prestress_ramp.html",
     stress_file: "scenes/stress_file.html",
     rough_prestress: "uncertainties/rough_prestress.csv",

@@ -15,14 +15,13 @@ import pandas as pd
 import pytest
 from faults import SIGNALS, digests, fault_run, prepare, start
 from pipeline_copy import BY_PROFILE, copy_project, made, planned, refused, snakemake
-from slippulse_paper.steps.processes import JobFailed, Jobs
 
 from slippulse.data.files import UnreadableFile
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse_paper.records.job_records import Origin
-from slippulse_paper.steps.job import logged
+from slippulse_paper.steps.job import Job, JobFailed, logged
+from slippulse_paper.steps.worker_pool import WorkerPool
 
 SCENE = "results/measurements/one.csv"
 FIGURE = "results/figures/fig07_damage_zone.png"
@@ -58,24 +57,16 @@ def test_a_result_that_cannot_be_read_is_named(tmp_path, name, load):
 def test_a_log_that_cannot_be_written_is_named(tmp_path):
     (tmp_path / "logs").write_text("a file")
     reason = r"allowed: a results folder that can be written\Z"
-    with pytest.raises(SystemExit, match=reason), logged(tmp_path / "logs/one.log"):
+    with pytest.raises(JobFailed, match=reason), logged(tmp_path / "logs/one.log"):
         pass
 
 
-# Places of folders, where a file is put, and of files, where a folder is put.
-PLACES = [("results", "file"), ("results/logs", "file"), (".snakemake", "file")]
-PLACES += [("results/data/arrest.nc", "folder"), ("results/records/data/arrest.nc.json", "folder")]
-PLACES[1:] = [pytest.param(*place, marks=pytest.mark.slow) for place in PLACES[1:]]
-
-
-@pytest.mark.parametrize(("place", "kind"), PLACES)
-def test_a_place_that_is_taken_fails_in_one_line(project, tmp_path, place, kind):
+def test_a_file_in_place_of_the_results_fails_in_one_line(project, tmp_path):
     folder = copy_project(project, tmp_path / "copy", link=True)
-    path = folder / place
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.mkdir() if kind == "folder" else path.write_text("mine")
+    (folder / "results").write_text("mine")
     said = refused(folder, "--", FIGURE)
-    assert f"{place} is a {kind}; remove or rename it" in said and path.exists()
+    assert "results is a file; remove or rename it: a folder of that name is needed" in said
+    assert (folder / "results").read_text() == "mine"
 
 
 @pytest.mark.parametrize("kind", ["table", "dataset"])
@@ -85,7 +76,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     # A limit on the size of files stands for a disk without room: writing fails in the same place.
     least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     reason = r"make room and run again[^\n]+\Z"
-    with pytest.raises(SystemExit, match=reason), logged(tmp_path / "log"), ExitStack() as after:
+    with pytest.raises(JobFailed, match=reason), logged(tmp_path / "log"), ExitStack() as after:
         resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, most))
         after.callback(resource.setrlimit, resource.RLIMIT_FSIZE, (least, most))
         save_table(numbers, path) if kind == "table" else save_dataset(numbers.to_xarray(), path)
@@ -93,31 +84,49 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     assert {entry.name for entry in tmp_path.iterdir()} == {"log", "log.traceback", kind}
 
 
-def test_a_job_that_fails_says_why(tmp_path, capfd):
-    jobs, origin = Jobs(), Origin(("one",), "no_such_step", "", "", {})
-    # Its process ends; the next job has another.
+def job_of(step: str) -> Job:
+    """A job that writes a page without inputs."""
+    return Job(
+        step=step,
+        name="a job",
+        inputs={},
+        outputs={"html": "results/scenes.html"},
+        settings={"scenes": {}},
+        variables={},
+        log="results/logs/one.log",
+        code="",
+        sources={},
+    )
+
+
+@pytest.fixture
+def pool(tmp_path, monkeypatch) -> WorkerPool:
+    monkeypatch.chdir(tmp_path)
+    return WorkerPool()
+
+
+def test_a_job_that_fails_says_why(pool, capfd):
+    # The worker is there for the next job.
     for _ in range(2):
         with pytest.raises(JobFailed, match=r"\A[^\n]+No module named[^\n]+one.traceback\)\Z"):
-            jobs.run(origin, "a job", {}, {}, {}, tmp_path / "logs/one.log")
+            pool.run(job_of("no_such_step"), workers=1)
     assert capfd.readouterr().err == ""
-    assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
-    assert (tmp_path / "logs/one.log").read_text() == ""
+    assert "Traceback" in Path("results/logs/one.traceback").read_text()
+    assert Path("results/logs/one.log").read_text() == ""
 
 
-def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", {})
-    outputs, settings = {"html": "results/scenes.html"}, {"scenes": {}}
-    job = (origin, "a job", {}, outputs, settings, "results/logs/one.log")
+def test_jobs_run_one_after_another_in_a_process_until_it_ends(pool):
+    job = job_of("write_scenes_page")
     before = set(multiprocessing.active_children())
     for _ in range(3):
-        jobs.run(*job)
+        pool.run(job, workers=1)
     (kept,) = set(multiprocessing.active_children()) - before
     kept.kill()
-    with pytest.raises(JobFailed, match="a job: its process ended with code -9"):
-        jobs.run(*job)
-    jobs.run(*job)
-    assert Path("results/records/scenes.html.json").exists()
+    kept.join()
+    with pytest.raises(JobFailed, match="its process was killed"):
+        pool.run(job, workers=1)
+    pool.run(job, workers=1)
+    assert Path("results/.records/scenes.html.json").exists()
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from pipeline_copy import BY_PROFILE, edges, made, planned, snakemake
+from pipeline_copy import BY_PROFILE, edges, made, planned_by_name, snakemake
 from rules_by_imports import DRAWN, STUDIED
 
 FIGURE = "fig07_damage_zone"
@@ -11,10 +11,11 @@ FIGURE = "fig07_damage_zone"
 
 @pytest.mark.slow
 def test_the_default_is_the_whole_paper_and_a_figure_needs_only_its_simulations(linked):
-    jobs = planned(snakemake(linked, "--dry-run"))
+    jobs = planned_by_name(snakemake(linked, "--dry-run"))
     pages = {"write_claims", "write_report", "write_index", "draw_scene"}
     assert pages | DRAWN | {*STUDIED} <= set(jobs)
-    jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
+    target = "results/figures/fig04_space_time.png"
+    jobs = planned_by_name(snakemake(linked, "--dry-run", "--", target))
     once = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
     assert jobs == once | {"simulate": 2, "measure": 2}
 
@@ -22,7 +23,7 @@ def test_the_default_is_the_whole_paper_and_a_figure_needs_only_its_simulations(
 def test_a_draft_is_the_figures_and_what_an_overlay_adds(linked):
     """Only `everything` makes all studies, the shipped scenes, the claims and the report."""
     result = snakemake(linked, "--dry-run", overlay="overlay.yaml")
-    jobs = planned(result)
+    jobs = planned_by_name(result)
     assert len([name for name in jobs if name.startswith("fig")]) == 11
     assert jobs["draw_scene"] == jobs["study_grid"] == 1
     drawn = {"damage_zone", "exact_space_time", "pulse_profiles", "regime_plane"}
@@ -44,7 +45,9 @@ def test_the_graph_in_the_readme_is_the_pipelines(linked, project):
 def test_without_a_terminal_a_run_shows_one_short_line_a_job(linked):
     result = snakemake(linked, "--force", "--", FIGURE, command=BY_PROFILE)
     said = result.stdout + result.stderr
-    assert result.returncode == 0 and len(re.findall(rf"{FIGURE}: [0-9.]+ s", said)) == 1
+    assert (
+        result.returncode == 0 and len(re.findall(rf"draw_figure {FIGURE}: [0-9.]+ s", said)) == 1
+    )
     assert "input:" not in said and len(said.splitlines()) < 40
     # Its report is one file that loads nothing.
     made(linked, "--report", "report.html", "--", f"results/figures/{FIGURE}.png")

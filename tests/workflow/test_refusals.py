@@ -72,6 +72,53 @@ FILES = {
     "deep nesting": (b"[" * 1000, "nested too deeply"),
     "large file": (b"# " + b"x" * LARGEST_FILE, f"more than {LARGEST_FILE} bytes"),
 }
+# A scene in SI units, and changes of it with their refusals.
+BLOCK = {
+    "title": "A block",
+    "layer": {
+        "thickness": 0.01,
+        "shear_modulus": 2.1e9,
+        "poisson_ratio": 0.33,
+        "density": 1170.0,
+        "static_friction": 0.6,
+        "kinetic_friction": 0.5,
+        "normal_stress": 5e6,
+        "top": "held",
+    },
+    "points": [[-0.1, 1e6], [-0.08, 2.7e6], [0.08, 2.7e6], [0.1, 1e6]],
+    "width": 0.005,
+    "duration": 40e-6,
+    "dx": 2e-4,
+}
+EVERYWHERE, BACKWARDS = [[-0.1, 3.1e6], [0.1, 3.2e6]], [[-0.1, 2e6], [0.1, -3.1e6]]
+LAYERS = {
+    "layer.shear_modulus: 0; allowed: a number > 0": {"layer": {"shear_modulus": 0}},
+    "layer.poisson_ratio: 0.5; allowed: a finite number and > -1 and < 0.5": {
+        "layer": {"poisson_ratio": 0.5}
+    },
+    "layer.static_friction: 0.5; allowed: a number above kinetic_friction = 0.5": {
+        "layer": {"static_friction": 0.5}
+    },
+    "layer.lame_parameter, poisson_ratio: missing": {"layer": {"poisson_ratio": None}},
+    "layer.top: 'free'; allowed: held, stress": {"layer": {"top": "free"}},
+    "layer.density: missing": {"layer": {"density": None}},
+    "points: at least 3.1e+06 Pa everywhere; allowed: below static friction": {
+        "points": EVERYWHERE
+    },
+    "points: -3.1e+06 Pa; allowed: > -3e+06 Pa": {"points": BACKWARDS},
+    "gamma: 0.6; allowed: none, since the layer has it": {"gamma": 0.6},
+    "boundary: 'stress'; allowed: what layer.top = 'held' means": {"boundary": "stress"},
+    "dx: 0.02; allowed: a number > 0 and <= the thickness, 0.01 m": {"dx": 0.02},
+    "peak: 1, and the pre-stress of a block is at most 0.4": {
+        "points": [[-0.1, 2.7e6], [0.1, 2.7e6]],
+        "width": None,
+    },
+    "left: 3e+06 Pa; allowed: below static friction, 3e+06 Pa": {
+        "points": None,
+        "left": 3e6,
+        "right": 2.7e6,
+    },
+}
 # Values that are put in place of any other.
 ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
 ODD += ["x" * 2000, "a\nb", "stress", [], [[]], [1, 0.2], [[1, 0.2]], [[1, 0.2, 0.3]], [None], {}]
@@ -92,6 +139,15 @@ def assert_clear(message: str, parts: Sequence[str] = ()) -> None:
     for line in message.splitlines():
         assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
         assert len(line) < 400 and "http" not in line, line
+
+
+@pytest.mark.parametrize(("line", "change"), LAYERS.items())
+def test_a_mistake_in_a_layer_is_refused_in_si_units(shipped, line, change):
+    layer, changes = change.get("layer", {}), {**change}
+    scene = BLOCK | changes | {"layer": BLOCK["layer"] | layer}
+    with pytest.raises(ConfigError) as refusal:
+        read_config(shipped, [{"scenes": {"block": scene}}])
+    assert_clear(str(refusal.value), [f"scenes.block.{line}"])
 
 
 @pytest.mark.parametrize("case", MISTAKES)
@@ -123,7 +179,7 @@ def mutated(value, chance: random.Random) -> object:
 def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
     chance, counts = random.Random(41), Counter()
     scene = shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}
-    small = shipped | {"published": {}, "scenes": {"one": scene}}
+    small = shipped | {"published": {}, "scenes": {"one": scene, "block": BLOCK}}
     for _ in range(2000):
         overlay = mutated(small, chance)
         if not isinstance(overlay, dict):

@@ -8,8 +8,11 @@ from functools import cache
 from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
-# The code is the one beside this file, whatever is installed or on PYTHONPATH.
+# The code is the one beside this file, whatever is installed or on PYTHONPATH; so in the workers.
 sys.path.insert(0, str(PROJECT / "src"))
+os.environ["PYTHONPATH"] = os.pathsep.join(
+    filter(None, [str(PROJECT / "src"), os.environ.get("PYTHONPATH")])
+)
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
@@ -25,9 +28,9 @@ from slippulse_paper.records.job_records import RecordedFiles
 from slippulse_paper.records.lock import take
 from slippulse_paper.records.packages import package_problem
 from slippulse_paper.records.sources import modules_reached, sources_of
-from slippulse_paper.steps.job import Job, JobFailed, run_job
+from slippulse_paper.steps.job import Job, JobFailed
 from slippulse_paper.steps.needs import declared, needs_of
-from slippulse_paper.steps.worker_pool import WorkerPool
+from slippulse_paper.steps.worker_pool import WorkerPool, run_here
 
 # In a module of another workflow, `config` is what the module is given, and paths may get a prefix.
 IS_MODULE = not workflow.modifier.is_main_snakefile()
@@ -69,9 +72,14 @@ try:
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
+if Path("results").is_file():
+    sys.exit("results is a file; remove or rename it: a folder of that name is needed")
+
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
+# Parameters of the layers of scenes in SI units.
+LAYERS = {name: scene.layer_parameters() for name, scene in CONFIG.scenes.items()}
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 # Inputs of each figure and study, as its module says: names by kind of file, and keys.
@@ -144,12 +152,8 @@ def code_of(step, *modules, texts=()):
 def templates(*names):
     """Templates of pages, with those that every page is made with."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
-    paths = [
-        path
-        for name in ("base.html", "style.css", "parts.html", *names)
-        for path in folder.glob(name)
-    ]
-    return [path.relative_to(PROJECT).as_posix() for path in sorted({*paths})]
+    paths = [path for name in ("base.html", "style.css", *names) for path in folder.glob(name)]
+    return [path.relative_to(PROJECT).as_posix() for path in paths]
 
 
 def run_step(step, wildcards, input, output, params, threads, log):
@@ -174,7 +178,7 @@ def run_step(step, wildcards, input, output, params, threads, log):
         sources=SOURCES_BY_DIGEST[params.code],
     )
     try:
-        WORKERS.run(job) if workflow.is_main_process else run_job(job)
+        WORKERS.run(job, workflow.cores) if workflow.is_main_process else run_here(job)
     except JobFailed as reason:
         # Snakemake reads the log of a failed job, which a process that never began has not written.
         with suppress(OSError):
@@ -242,21 +246,13 @@ def check_packages_and_lock():
 
 def report_changed_results():
     """Print one line if results are not what their jobs wrote, which Snakemake does not notice."""
-    recorded = RecordedFiles("results")
-    problems = dict(recorded.problems())
-    if recorded.records and not Path(".snakemake/metadata").exists():
-        print(
-            f"{len(recorded.records)} jobs have results here, but Snakemake's own records"
-            " (.snakemake) are gone: `make replicate` renews the results,"
-            " and so does `snakemake --forceall`",
-            file=sys.stderr,
-        )
-    if problems:
+    if problems := dict(RecordedFiles("results").problems()):
         name, reason = next(iter(problems.items()))
-        count = f"1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
+        more = " ..." if len(problems) > 5 else ""
         print(
-            f"{count} not as made: {', '.join([*problems][:5])} ({name}: {reason}). Renew:"
-            f" make replicate, or delete and run again",
+            f"{count} not as made: {', '.join([*problems][:5])}{more} ({name}: {reason})."
+            " Renew: make replicate, or snakemake --forcerun and their names",
             file=sys.stderr,
         )
 
@@ -271,6 +267,10 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
+# Chunks of the studies that are divided.
+STUDY_CHUNKS = {}
+if (count := config["figures"]["study_layer"].get("chunks", 1)) > 1:
+    STUDY_CHUNKS["layer_map"] = [f"layer_map/{number}-of-{count}" for number in range(1, count + 1)]
 # The simulation of one job is one without chunks, or a chunk of another.
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 
@@ -282,6 +282,7 @@ JOINED = {
     for name in CHUNKS
     for kind in KINDS
 }
+JOINED |= {f"studies/{name}.csv": ("studies", name) for name in STUDY_CHUNKS}
 ALL_FIGURES = NEEDS | SWEEPS
 
 
@@ -301,28 +302,42 @@ def joined_inputs(wildcards):
     """Files of the chunks; uncertainties are joined in the order of the joined measurements."""
     kind, name = JOINED[wildcards.joined]
     finest = made("measured", [name] if kind == "uncertainties" else [])
-    return {"chunks": made(kind, CHUNKS[name]), "finest": finest}
+    return {"chunks": made(kind, (CHUNKS | STUDY_CHUNKS)[name]), "finest": finest}
 
 
 def joined_settings(wildcards):
     """Kind of a joined file, and what the runs of its simulation record."""
     kind, name = JOINED[wildcards.joined]
-    return {"kind": kind, "record": SIMULATIONS[name].record}
+    return {"kind": kind, "record": SIMULATIONS[name].record if name in SIMULATIONS else []}
+
+
+def joined_runs(wildcards):
+    """Number of runs in a joined file; a study has few."""
+    _, name = JOINED[wildcards.joined]
+    return settings_of(name)["runs"] if name in SIMULATIONS else 0
+
+
+def study_of(wildcards):
+    """Name of a study, or of the study that a chunk belongs to."""
+    return wildcards.study.partition("/")[0]
 
 
 def study_inputs(wildcards):
     """Inputs of a study, and the kernels that it runs."""
-    reached = modules_reached(f"slippulse_paper.studies.{wildcards.study}")
+    reached = modules_reached(f"slippulse_paper.studies.{study_of(wildcards)}")
     schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
-    return {**inputs_of(STUDY_NEEDS[wildcards.study]), "kernels": made("kernels", schemes)}
+    return {**inputs_of(STUDY_NEEDS[study_of(wildcards)]), "kernels": made("kernels", schemes)}
 
 
 def study_settings(wildcards):
     """The study, and the values of the configuration that it depends on."""
-    needs = STUDY_NEEDS[wildcards.study]
+    study, _, chunk = wildcards.study.partition("/")
+    needs = STUDY_NEEDS[study]
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
     values = selected(config, needs.get("settings", ()), {"sweeps": swept})
-    return {"study": wildcards.study, "values": values}
+    if chunk:
+        values["chunk"] = [int(number) for number in chunk.split("-of-")]
+    return {"study": study, "values": values}
 
 
 def texts_of(needs):
@@ -370,6 +385,6 @@ wildcard_constraints:
     simulation=one_of(ONE_JOB),
     scene=one_of(SCENES),
     scheme=one_of(KERNELS),
-    study=one_of(STUDY_NEEDS),
+    study=one_of([job for name in STUDY_NEEDS for job in STUDY_CHUNKS.get(name, [name])]),
     figure=one_of([*NEEDS, *SWEEPS]),
     joined=one_of(JOINED),

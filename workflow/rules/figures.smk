@@ -13,8 +13,8 @@ rule study:
         settings=study_settings,
         code=lambda wildcards: code_of(
             "run_study",
-            f"slippulse_paper.studies.{wildcards.study}",
-            texts=texts_of(STUDY_NEEDS[wildcards.study]),
+            f"slippulse_paper.studies.{study_of(wildcards)}",
+            texts=texts_of(STUDY_NEEDS[study_of(wildcards)]),
         ),
     message:
         "Studying {wildcards.study}"
@@ -73,8 +73,9 @@ rule draw_scene:
         settings=lambda wildcards: {
             "title": TITLES[wildcards.scene],
             "altered": note_of({"data": [wildcards.scene]}),
+            "layer": LAYERS[wildcards.scene],
         },
-        code=code_of("draw_scene", texts=templates("scene.html")),
+        code=code_of("draw_scene", texts=templates("scene.html", "parts.html")),
     message:
         "Drawing scene {wildcards.scene}"
     run:
@@ -89,7 +90,10 @@ rule animate_scene:
     log:
         "results/logs/animate_scene/{scene}.log",
     params:
-        settings=lambda wildcards: {"title": TITLES[wildcards.scene]},
+        settings=lambda wildcards: {
+            "title": TITLES[wildcards.scene],
+            "layer": LAYERS[wildcards.scene],
+        },
         code=code_of("animate_scene"),
     message:
         "Animating scene {wildcards.scene}"

@@ -3,7 +3,8 @@
 from slippulse_paper.records.provenance import changes, source_files
 
 CLAIM_STUDIES = (
-    "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"
+    "derivations friction_laws layer layer_map open_choices published_figure published_scheme"
+    " rate_dependence"
 ).split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
@@ -56,7 +57,7 @@ rule write_claims:
             "damping_ratio": config["model"]["damping_ratio"],
             "altered": changes(SHIPPED, config),
         },
-        code=code_of("write_claims", texts=[*CLAIM_TEXTS, *templates("claims.html")]),
+        code=code_of("write_claims", texts=[*CLAIM_TEXTS, *templates("claims.html", "parts.html")]),
     message:
         "Judging the claims"
     run:
@@ -82,8 +83,8 @@ rule write_explorer:
 
 rule write_report:
     input:
-        [project(path) for path in REPORT_TEXTS],
-        expand("results/figures/{name}.png", name=NEEDS),
+        texts=[project(path) for path in REPORT_TEXTS],
+        pictures=expand("results/figures/{name}.png", name=NEEDS),
         **inputs_of(REPORT_NEEDS),
         sources=[project(f"manuscript/{document}.md") for document in DOCUMENTS],
         claims="results/claims.json",
@@ -109,7 +110,7 @@ rule write_report:
 
 rule write_scenes_page:
     input:
-        expand("results/scenes/{scene}.png", scene=SCENES),
+        pictures=expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
     log:

@@ -5,18 +5,19 @@ from itertools import islice
 import xarray as xr
 
 from ..model.checks import check_number, check_that
-from .points import runs_in
+from .points import over_points, runs_in
 
 
-def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
+def point(sweep: xr.Dataset, index: int = 0) -> xr.Dataset:
     """Take one run out of a sweep, as `simulate` returned it.
 
     Parameters
     ----------
     sweep : xarray.Dataset
-        data of a sweep, from `run_sweep` or from a file of ``results/data``
+        data of a sweep, from `run_sweep` or from a file of ``results/data``, or a selection of
+        its runs such as ``sweep.sel(gamma=0.3)``
     index : int
-        number of the run, from 0
+        number of the run in it, from 0
 
     Returns
     -------
@@ -32,7 +33,9 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     --------
     >>> run = sp.point(xarray.open_dataset("results/data/arrest.nc"), 0)
     """
-    known = isinstance(sweep, xr.Dataset) and "point" in sweep.sizes
-    check_that(known, "sweep", sweep, "a Dataset that run_sweep returned, or of results/data")
+    listed = isinstance(sweep, xr.Dataset)
+    listed = listed and ("point" in sweep.sizes or "run_flags" in sweep.variables)
+    check_that(listed, "sweep", sweep, "a Dataset that run_sweep returned, or of results/data")
+    sweep = over_points(sweep)
     check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     return next(islice(runs_in(sweep), index, None)).dataset()

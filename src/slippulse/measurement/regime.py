@@ -8,6 +8,7 @@ from .front_paths import position_at
 REGIMES = (
     "arrested",
     "crack-like, two-way",
+    "crack-like, one front slow",
     "crack-like, one-way",
     "pulses, two-way",
     "pulse, one-way, growing",
@@ -24,6 +25,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
 
     A side *runs* if its front keeps up with the waves over the last third, to within the tolerance,
     or, where neither does, if blocks on it slide at ``still`` or more of the largest velocity now.
+    A crack that runs on one side alone has one front slow if the other front moves on, too.
     A one-way pulse grows, decays or is steady by the change of its largest velocity over that time.
     """
     times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
@@ -42,6 +44,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     running = keeping_up or int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
     latest = float(np.nan_to_num(np.asarray(run["release_time"])).max())
     ways = "two-way" if running == 2 else "one-way"
+    slow = running == 1 and min(speeds) > steady_tolerance
     # Arrest is no release in the last tenth of the duration, or rest beside any earlier sample.
     at_rest = largest <= still * max(largest, float(np.max(velocity)))
     if np.isnan(now).any() or np.isnan(velocity[-1]).any():
@@ -49,7 +52,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     elif at_rest or latest < 0.9 * run.attrs["duration"]:
         regime = "arrested"
     elif not is_pulse(centre, largest, still):
-        regime = f"crack-like, {ways}"
+        regime = f"crack-like, {'one front slow' if slow else ways}"
     else:
         regime = pulse_regime(ways, change, steady_tolerance)
     return {

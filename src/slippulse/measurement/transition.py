@@ -14,9 +14,7 @@ STALL = 0.03
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
     """First stick, and the distance between both fronts then."""
-    time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
-    length = between_fronts(run, time)
-    out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
+    out = first_stick(run)
     # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
     same = run.attrs["left"] == run.attrs["right"]
     background = run.attrs["left"] if same else np.nan
@@ -24,6 +22,13 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
     return out
+
+
+def first_stick(run: AnyRun) -> dict[str, float]:
+    """Time and position of the first stick, and the distance between both fronts then."""
+    time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
+    length = between_fronts(run, time)
+    return {"transition_time": time, "transition_length": length, "first_stick_position": position}
 
 
 def between_fronts(run: AnyRun, time: float) -> float:

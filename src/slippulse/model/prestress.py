@@ -17,6 +17,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from .checks import as_positions, check_number, check_that, short_repr
+from .removed import AnswersRemoved
 
 # Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
 # without end.
@@ -43,7 +44,7 @@ class Interval(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Prestress:
+class Prestress(AnswersRemoved):
     """Non-dimensional pre-stress tau(x), with nucleation at x = 0 or wherever a table reaches 1.
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background

@@ -28,6 +28,7 @@ class Samples:
 
     Examples
     --------
+    >>> import numpy as np
     >>> samples = sp.Samples(times=np.linspace(0.0, 10.0, 101), positions=[0.0, 5.0])
     """
 

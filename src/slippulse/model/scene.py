@@ -1,18 +1,21 @@
 """One scene, its parameters, and the values that are refused."""
 
+import inspect
 import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import wraps
 from html import escape
 from numbers import Real
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from .checks import check_choice, check_kind, check_number, check_that
+from .checks import check_choice, check_kind, check_number, check_that, short_repr
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import law_of
 from .release import RELEASES
+from .removed import answer_removed
 from .runaway import check_runaway
 from .stability import largest_step
 from .table_resolution import check_resolved
@@ -44,6 +47,35 @@ NUMBERS: dict[str, dict[str, Any]] = {
 }
 
 
+def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
+    """Let the class of scenes be called with ``damping_ratio`` in place of ``beta``."""
+    by_fields = scene.__init__
+    signature = inspect.signature(by_fields)
+
+    @wraps(by_fields)
+    def initialise(
+        self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
+    ) -> None:
+        for name in values.keys() - signature.parameters:
+            answer_removed("Scene", name)
+        arguments = signature.bind_partial(self, *given, **values).arguments
+        if damping_ratio is not None:
+            allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
+            check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
+            check_number("damping_ratio", damping_ratio, at_least=0.0)
+            spacing = arguments.get("dx")
+            check_number("dx", spacing, **NUMBERS["dx"])
+            arguments["beta"] = damping_ratio * float(spacing)  # type: ignore[arg-type]
+        by_fields(**arguments)
+
+    added = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)
+    shown = signature.replace(parameters=[*signature.parameters.values(), added])
+    initialise.__signature__ = shown  # type: ignore[attr-defined]
+    scene.__init__ = initialise  # type: ignore[method-assign]
+    return scene
+
+
+@takes_damping_ratio
 @dataclass(frozen=True)
 class Scene:
     """One rupture: the equation's parameters, the pre-stress, the lattice and the scheme.
@@ -73,6 +105,9 @@ class Scene:
         Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
     beta : float, units of H times the wave speed
         Damping, >= 0. The ratio beta/dx selects the front speed.
+    damping_ratio : float, optional
+        beta/dx, given by its name in place of beta. A scene keeps beta: `dataclasses.replace` with
+        another dx leaves beta as it is.
     release : {"total", "elastic"}
         The stress compared with 1 includes the damping force ("total") or not.
     scheme : {"localised", "fixed_step", "continuum"}
@@ -102,6 +137,8 @@ class Scene:
     --------
     >>> profile = sp.Prestress(0.6, 0.6)
     >>> scene = sp.Scene("displacement", profile, duration=15.0, dx=0.01, gamma=0.65)
+    >>> sp.Scene("stress", profile, duration=15.0, dx=0.01, damping_ratio=0.1).beta
+    0.001
     """
 
     boundary: str
@@ -118,6 +155,19 @@ class Scene:
     friction_ratio: float = 5.0
     resolved_blocks: int = 8
     friction: Friction = COULOMB
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            boundary: str,
+            prestress: Prestress,
+            duration: float,
+            dx: float,
+            *given: Any,
+            damping_ratio: float | None = None,
+            **values: Any,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():

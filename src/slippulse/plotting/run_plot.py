@@ -3,11 +3,15 @@
 import io
 
 import numpy as np
+import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..model.layer_units import Layer, layer_of
 from ..model.scene import check_run_attributes
 from . import space_time
+from .si_tables import table_in_si, with_unit
 from .style import BLUE, PAGE, by_role, house_style
 
 DRAWN = ("prestress", "release_time", "stick_time", "slip")
@@ -25,14 +29,16 @@ class Picture(Figure):
 def plot(run: xr.Dataset) -> Picture:
     """Draw a run: pre-stress, slip velocity over time and position with both edges, final slip.
 
-    The edges are the front (time of first release) and the trailing edge (time of stick). All
-    quantities are dimensionless; the panels follow the space-time figure of the paper (figure 4).
+    The edges are the front (time of first release) and the trailing edge (time of stick). The
+    panels follow the space-time figure of the paper (figure 4). Quantities are dimensionless, or
+    have the units on the axes if the run is in SI units.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A run over x that `slippulse.simulate` returned. The slip velocity is drawn if the run has
-        samples in which anything slides; otherwise the edges are drawn alone.
+        A run over x that `slippulse.simulate` returned or `Layer.to_si` converted. The slip
+        velocity is drawn if the run has samples in which anything slides; otherwise the edges are
+        drawn alone.
 
     Returns
     -------
@@ -57,32 +63,55 @@ def plot(run: xr.Dataset) -> Picture:
     known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
     if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
+    layer = layer_of(run.attrs)
+    if layer is not None:
+        run = layer.from_si(run)
     check_run_attributes(run.attrs)
     with house_style():
-        return _draw(run)
+        return _draw(run, layer)
 
 
-def _draw(run: xr.Dataset) -> Picture:
+def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
+    slipped = {"series": "slip", "position": run["x"].values, "value": run["slip"].values}
+    rows = [space_time.prestress_profile(run), *space_time.edges(run)]
+    rows.append(pd.DataFrame({"role": "profile", **slipped}))
+    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    moves = sampled and bool((run["sample_velocity"] > 0.0).any())
+    if moves:
+        rows.append(space_time.velocity_map(run))
+    # A run in which nothing moves ends at 0.
+    end = run.attrs["end_time"] or run.attrs["duration"]
+    rows.append(pd.DataFrame({"role": ["end"], "time": [end]}))
+    table = pd.concat(rows, ignore_index=True)
+    roles = {"front": table.iloc[:0], "trailing": table.iloc[:0]}
+    roles |= by_role(table if layer is None else table_in_si(table, layer))
     figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
-    roles = {"prestress": space_time.prestress_profile(run)}
-    roles["front"], roles["trailing"] = space_time.edges(run)
-    space_time.draw_profile(profile, roles["prestress"])
-    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-    if sampled and (run["sample_velocity"] > 0.0).any():
-        roles |= by_role(space_time.velocity_map(run))
+    space_time.draw_profile(profile, roles)
+    if moves:
         space_time.draw_map(times, roles)
         if run.attrs.get("limit_reason"):
-            # The exact run does not reach this part of the map.
-            unknown = run["sample_velocity"].isnull().T
-            hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
-            times.contourf(run["sample_time"], run["sample_position"], unknown, **hatched)
+            _hatch_unknown(times, run, roles)
             figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
     else:
-        # A run in which nothing moves ends at 0.
-        space_time.draw_edges(times, roles, run.attrs["end_time"] or run.attrs["duration"])
+        space_time.draw_edges(times, roles, roles["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():
         times.legend(loc="upper left")
-    slip.plot(run["slip"], run["x"], color=BLUE)
-    slip.set_xlabel(r"slip $u$")
+    slip.plot(roles["profile"]["value"], roles["profile"]["position"], color=BLUE)
+    slip.set_xlabel(with_unit(r"slip $u$", roles, "slip"))
     return figure
+
+
+def _hatch_unknown(axes: Axes, run: xr.Dataset, roles: dict[str, pd.DataFrame]) -> None:
+    """Hatch the part of the map that the exact solution does not reach."""
+    unknown = run["sample_velocity"].isnull().T
+    # Coordinates of the axes for one unit of the model.
+    scale_of_time = roles["end"]["time"].iloc[0] / run.attrs["end_time"]
+    drawn = roles["profile"]["position"]
+    scale_of_position = np.ptp(drawn) / np.ptp(run["x"].values)
+    hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
+    times, positions = (
+        run["sample_time"] * scale_of_time,
+        run["sample_position"] * scale_of_position,
+    )
+    axes.contourf(times, positions, unknown, **hatched)

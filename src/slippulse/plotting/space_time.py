@@ -9,7 +9,8 @@ from matplotlib.ticker import MaxNLocator
 from ..model.prestress import prestress_from
 from ..model.recorded_law import law_of
 from .selection import spaced_indices
-from .style import BLACK, GREY, Look, conditions
+from .si_tables import with_unit
+from .style import BLACK, GREY, HALO, SMALL, Look, conditions
 
 # Samples kept along each axis of a map, and blocks along each front.
 MAP_SAMPLES, FRONT_POINTS = 121, 400
@@ -38,6 +39,8 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
 
 def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress, damping, another friction and flags of a run, as a title."""
+    if "unit" in roles:
+        return _with_remarks(_description_in_si(roles["parameter"]), roles)
     value = roles["parameter"].set_index("series")["value"]
     value["tau_0"], held = value["left"], value["gamma"] > 0.0
     levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
@@ -46,6 +49,23 @@ def description(roles: dict[str, pd.DataFrame]) -> str:
         levels = []
     names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio", "dx"]
     title = conditions(held, **value[[name for name in names if np.isfinite(value[name])]])
+    return _with_remarks(title, roles)
+
+
+def _description_in_si(parameters: pd.DataFrame) -> str:
+    """Condition on top, thickness, elasticity, damping and spacing, as a title."""
+    rows = parameters.fillna({"unit": ""}).set_index("series")
+    height, gamma, ratio, dx = (
+        f"{rows['value'][name]:.4g} {rows['unit'][name]}".strip()
+        for name in ("thickness", "gamma", "damping_ratio", "dx")
+    )
+    held = rows["value"]["gamma"] > 0.0
+    top = rf"displacement held on top, $\gamma = {gamma}$" if held else "stress held on top"
+    return rf"$H =$ {height}, {top}, $b = {ratio}$, $\Delta x =$ {dx}"
+
+
+def _with_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
+    """Add another friction and flags to a title."""
     if "table" in roles:
         title += f", {roles['table']['series'].iloc[0]}"
     if "friction" in roles:
@@ -116,14 +136,33 @@ def edges(run: xr.Dataset) -> list[pd.DataFrame]:
     ]
 
 
-def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
+def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     """Draw the pre-stress to the right and the position upwards."""
-    axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
+    rows, in_si = roles["prestress"], "unit" in roles
+    if in_si:
+        _mark_strengths(axes, roles["strength"])
+    else:
+        axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     axes.margins(x=0.12)
-    axes.xaxis.set_major_locator(MaxNLocator(2, integer=True))
-    axes.set(xlabel=r"$\tau$", ylabel=r"position $x$")
+    axes.xaxis.set_major_locator(MaxNLocator(2, integer=not in_si))
+    label = with_unit("stress" if in_si else r"$\tau$", roles, "stress")
+    axes.set(xlabel=label, ylabel=with_unit(r"position $x$", roles, "position"))
     axes.set_ylim(rows["position"].min(), rows["position"].max())
+
+
+def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
+    """Mark static and kinetic friction on the axis of stresses."""
+    look: Look = {"rotation": 90, "color": GREY, "fontsize": SMALL, "path_effects": HALO}
+    look["transform"] = axes.get_xaxis_transform()
+    # Both names stand between the two lines, at different heights.
+    places: list[Look] = [
+        {"y": 0.98, "ha": "left", "va": "top"},
+        {"y": 0.02, "ha": "right", "va": "bottom"},
+    ]
+    for strength, place in zip(rows.sort_values("value").itertuples(), places, strict=True):
+        axes.axvline(strength.value, color=GREY, linewidth=0.6, linestyle=":")
+        axes.text(x=strength.value, s=strength.series, **place, **look)
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
@@ -132,7 +171,9 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     look = MAP | {"shading": "gouraud", "vmax": roles["largest"]["value"].iloc[0]}
     image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
     draw_edges(axes, roles, grid.columns[-1])
-    label = rf"slip velocity $\dot u$ (largest {look['vmax']:#.3g})"
+    label = with_unit(r"slip velocity $\dot u$", roles, "slip_velocity")
+    largest = f"{look['vmax']:#.3g}".rstrip(".")
+    label = f"{label} (largest {largest})"
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
@@ -152,7 +193,7 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """Draw both edges, and hide what the map has before the release and after the stick."""
     front = roles["front"].sort_values("position")
     trailing = roles["trailing"].sort_values("position")
-    axes.set(xlim=(0.0, end), xlabel=r"time $t$")
+    axes.set(xlim=(0.0, end), xlabel=with_unit(r"time $t$", roles, "time"))
     axes.tick_params(labelleft=False)
     if front.empty:
         return

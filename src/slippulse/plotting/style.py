@@ -63,6 +63,8 @@ REGIMES = {
     "crack": (ORANGE, "s"),
     "no rupture": (GREY, "x"),
 }
+# Red, green, blue and opacity of a white pixel, one byte each.
+WHITE_PIXEL = 0xFFFFFFFF
 # The outline of letters that stand on a drawing.
 HALO = [withStroke(linewidth=2.2, foreground="white")]
 
@@ -267,6 +269,13 @@ def _save_png(canvas: FigureCanvasAgg, path: Path, made_by: str | None) -> None:
     text, dpi = PngInfo(), canvas.figure.dpi
     if made_by:
         text.add_text("Comment", made_by)
-    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    few = picture.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    few.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
+    pixels = np.asarray(canvas.buffer_rgba())
+    # Most pixels are white. Without them, the 255 other colours are found in half of the time.
+    inked = pixels.view(np.uint32)[..., 0] != WHITE_PIXEL
+    ink = Image.fromarray(pixels[np.newaxis, inked]).convert("RGB")
+    reduced = ink.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    numbers = np.full(inked.shape, 255, dtype=np.uint8)
+    numbers[inked] = np.asarray(reduced)[0]
+    picture, palette = Image.fromarray(numbers).convert("P"), reduced.getpalette() or []
+    picture.putpalette(palette + [255] * (3 * 256 - len(palette)))
+    picture.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)

@@ -45,8 +45,9 @@ def final_regime(
     its characteristics enter the rupture. With both levels >= 0 it never falls: a crack. With both
     < 0 the integral over all blocks that slipped vanishes at a finite size: arrest. Between -n and
     p >= 0 the front into -n moves so that the integral of tau over the rupture vanishes
-    (`theory.arrest`): the point x = (p/n) e behind the other front, at e. For long times du/dt at
-    the nucleation point, over its largest value, tends to r/(1 + 1/v + 2 r), where r = p/n and v is
+    (`theory.arrest`): the point x = (p/n) e behind the other front, at e. It runs for ever, at a
+    speed that tends to 1/(1 + (n/p)(1 + 1/v)), slower than the waves. For long times du/dt at the
+    nucleation point, over its largest value, tends to r/(1 + 1/v + 2 r), where r = p/n and v is
     the front speed into p.
     """
     low, high = sorted((left, right))
@@ -63,7 +64,7 @@ def final_regime(
     if high == 0.0:
         return "pulse, one-way, steady"
     pulse = high / -low < float(largest_pulse_ratio(high, damping_ratio, release, still))
-    return "pulse, one-way, growing" if pulse else "crack-like, one-way"
+    return "pulse, one-way, growing" if pulse else "crack-like, one front slow"
 
 
 def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:

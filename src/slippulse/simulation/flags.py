@@ -19,6 +19,11 @@ ENERGY_RESIDUAL = 1e-2
 # 7 per cent of it, and of chains with rough pre-stress none moved by 2 per cent below ten times it.
 LONG_STEP = 2e-2
 
+# Below this damping ratio, waves of a few blocks do not die out behind a front that the pre-stress
+# holds back, however fine the lattice is. Where slip velocity tends to 0 they stop a block within
+# this number of blocks of the front.
+WEAK_DAMPING, AT_FRONT = 0.1, 5
+
 # Positions within the reach of waves at which pre-stress is looked at.
 REACHED = 10_001
 
@@ -42,6 +47,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         flags |= {
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
+            "first_stick_at_front": first_stick_at_front(scene, solution),
             "negative_velocity": numbers["min_velocity"] < lowest_velocity,
             # A residual of NaN is flagged, too.
             "energy": not numbers["energy_residual"] <= ENERGY_RESIDUAL,
@@ -63,6 +69,25 @@ def first_stick_undone(scene: Scene, solution: Solution) -> bool:
     # Under a stress boundary the first stick is no transition.
     undone = scene.boundary == "displacement" and solution.numbers["re_releases"] > 0
     return undone and solution.numbers["first_stick_time"] not in solution.stick_time
+
+
+def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
+    """True if waves of a few blocks may have stopped the first block, right behind a slow front.
+
+    In the continuum something else sticks first, and later. Under a stress boundary only a rupture
+    between two negative levels sticks at all.
+    """
+    numbers, profile = solution.numbers, scene.prestress
+    time, position = numbers["first_stick_time"], numbers["first_stick_position"]
+    sticks = scene.boundary == "displacement" or max(profile.left, profile.right) < 0.0
+    if scene.damping_ratio >= WEAK_DAMPING or not sticks or math.isnan(time):
+        return False
+    if first_stick_undone(scene, solution):
+        return False
+    side = math.copysign(1.0, position)
+    front = np.max(side * solution.x, where=solution.release_time <= time, initial=0.0)
+    held_back = bool(profile(side * front) < 0.0)
+    return held_back and front - abs(position) <= AT_FRONT * scene.dx
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:

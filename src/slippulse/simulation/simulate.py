@@ -1,18 +1,22 @@
 """Simulation of one scene, or of a sweep of many, each by the scheme that it names."""
 
+import os
 from collections.abc import Callable, Sequence
 
 import xarray as xr
 
+from ..data.sweep_views import with_parameters
 from ..data.variables import described
 from ..model.checks import check_kind, check_number, check_that
 from ..model.cost import bound_of
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
+from ..solver.compile_notice import announced_compilation
 from ..solver.fixed_step import solve_by_scheme
 from ..solver.solution import Solution
 from .continuum import solve_exactly
 from .flags import ENERGY_RESIDUAL
+from .progress_bar import bar
 from .sweep import recorded, solve_sweep
 
 
@@ -69,7 +73,8 @@ def simulate(
         raise ValueError(exceeded)
     if isinstance(progress, bool):
         progress = bar() if progress else None
-    data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
+    with announced_compilation():
+        data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
         facts = (
@@ -90,8 +95,8 @@ def run_sweep(
     scenes: Sequence[Scene],
     samples: Sequence[Samples | None] | None = None,
     record: Sequence[str] = ("fronts",),
-    threads: int = 1,
-    progress: Callable[[float, int], None] | None = None,
+    threads: int | None = None,
+    progress: Callable[[float, int], None] | bool | None = None,
 ) -> xr.Dataset:
     """Simulate scenes in a pool of threads.
 
@@ -104,16 +109,20 @@ def run_sweep(
     record : sequence of {"fronts", "fields", "samples"}
         What is kept: release and stick times; slip, slip velocity and acceleration at the end;
         the recorded samples.
-    threads : int
-        Number of scenes at a time, 1 to 1024; the result does not depend on it.
-    progress : callable, optional
-        Called with (done, all) after each scene; for a single scene, with the fraction done.
+    threads : int, optional
+        Number of scenes at a time, 1 to 1024, by default the number of cores that this process may
+        use; the result does not depend on it.
+    progress : callable or bool, optional
+        Called with (done, all) after each scene; for a single scene, with the fraction done. True
+        draws a bar with the time that is left.
 
     Returns
     -------
     xarray.Dataset
-        Every parameter and number over ``point``; contiguous ragged arrays over ``block``, with
-        ``row_size`` blocks a point; samples over (point, time, position).
+        Every number over ``point``, with the parameters as coordinates: ``sel`` selects runs by
+        any of them, and `as_grid` makes those of a full product axes. Contiguous ragged arrays over
+        ``block``: the ``row_size`` blocks of a run begin at ``row_start``. Samples over
+        (point, time, position).
 
     Raises
     ------
@@ -124,13 +133,10 @@ def run_sweep(
     --------
     >>> profile = sp.Prestress(0.6, 0.6)
     >>> sweep = sp.run_sweep([sp.Scene("stress", profile, 5.0, dx) for dx in (0.1, 0.05)])
+    >>> sweep.sel(dx=0.05)["releases"].sizes["point"]
+    1
     """
-    listed = isinstance(scenes, Sequence) and len(scenes) > 0
-    known = listed and all(isinstance(scene, Scene) for scene in scenes)
-    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
-    schemes = sorted({scene.scheme for scene in scenes})
-    alike = "continuum" not in schemes or len(schemes) == 1
-    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
+    _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
     listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
     allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
@@ -138,10 +144,31 @@ def run_sweep(
     for scene, samples_of_scene in zip(scenes, samples, strict=True):
         _check_within(samples_of_scene, scene.duration)
     _check_record(record, samples)
+    threads = _usable_cores() if threads is None else threads
     check_number("threads", threads, integer=True, at_least=1, at_most=1024)
-    known = progress is None or callable(progress)
-    check_that(known, "progress", progress, "a function of (done, all), or None")
-    return described(solve_sweep(_solve, scenes, samples, record, int(threads), progress))
+    known = isinstance(progress, bool | None) or callable(progress)
+    check_that(known, "progress", progress, "a function of (done, all), True, or None")
+    if isinstance(progress, bool):
+        progress = bar(len(scenes)) if progress else None
+    with announced_compilation():
+        data = solve_sweep(_solve, scenes, samples, record, int(threads), progress)
+    return with_parameters(described(data))
+
+
+def _check_scenes(scenes: Sequence[Scene]) -> None:
+    listed = isinstance(scenes, Sequence) and len(scenes) > 0
+    known = listed and all(isinstance(scene, Scene) for scene in scenes)
+    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
+    schemes = sorted({scene.scheme for scene in scenes})
+    alike = "continuum" not in schemes or len(schemes) == 1
+    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
+
+
+def _usable_cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _check_within(samples: Samples | None, duration: float) -> None:
@@ -164,21 +191,6 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
     shapes = {(item.times.shape, item.positions.shape) for item in given}
     check_that(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
-
-
-def bar() -> Callable[[float], None]:
-    """A function of the fraction done that draws a bar with the time left, on standard error."""
-    from tqdm import tqdm
-
-    look = "[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left"
-    drawn = tqdm(total=1.0, delay=0.2, mininterval=0.2, bar_format=look)
-
-    def draw(done: float) -> None:
-        drawn.update(done - drawn.n)
-        if done >= 1.0:
-            drawn.close()
-
-    return draw
 
 
 def _solve(

@@ -14,12 +14,13 @@ of v_x and s_xy; velocities stand at half steps of time. The two outer rows have
 a cell. The scheme conserves a discrete energy, so that friction loses what it should, to rounding.
 """
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import check_choice, check_number, check_that
 from ..model.prestress import Prestress
 from .jit import entry, inner
 
@@ -42,6 +43,9 @@ class LayerScene:
     nucleation: float = 2.0  # friction is 0 for |x| <= this from t = 0 on
     top: str = "held"  # normal displacement, or "free": no change of normal stress
     coupling: float = 0.0  # friction coefficient mu of a strength - mu s_yy that follows pressure
+    # Columns farther than this behind the compressional wave from x = 0 are no longer advanced.
+    # That alters no event at x until the time x + trail, since no wave is faster.
+    trail: float = math.inf
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, ("displacement", "stress"))
@@ -51,6 +55,9 @@ class LayerScene:
         for name in ("nucleation", "coupling"):
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
+        check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
+        allowed = "a symmetric scene, if the trail is finite"
+        check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
 
     @property
@@ -73,7 +80,8 @@ class LayerRun:
     velocity: np.ndarray  # (cells + 1, N) v_x at the end, from the bottom to the top
     release_time: np.ndarray  # (N,) first release, NaN where never
     stick_time: np.ndarray  # (N,) first stick, NaN where never
-    energy_residual: float  # unbalanced energy over the work of the pre-stress
+    # Unbalanced energy divided by the work of the pre-stress; NaN if columns were left behind.
+    energy_residual: float
 
 
 class Elastic(NamedTuple):
@@ -112,6 +120,7 @@ class Fault(NamedTuple):
     slip_at_release: np.ndarray
     release_time: np.ndarray
     stick_time: np.ndarray
+    excess: np.ndarray  # load less strength at the last step, of nodes at rest
     work: np.ndarray  # (2,): by the pre-stress, and by the pre-stress less friction; over h
 
 
@@ -182,19 +191,25 @@ def slide(elastic, fields, fault, i, dt, time):
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
     resistance = strength(elastic, fields, fault, i)
     if not fault.sliding[i]:
-        if load < resistance:
+        excess, before = load - resistance, fault.excess[i]
+        fault.excess[i] = excess
+        if excess < 0.0:
             return
         fault.sliding[i] = True
         fault.slip_at_release[i] = fault.slip[i]
         if np.isnan(fault.release_time[i]):
-            fault.release_time[i] = time
+            # The load is taken as linear in time between two steps.
+            late = excess / (excess - before) if before < 0.0 else 0.0
+            fault.release_time[i] = time - late * dt
     earlier = fields.vx[0, i]
     later = earlier + 2.0 * elastic.ratio * (load - resistance)
     if later <= 0.0:
+        if np.isnan(fault.stick_time[i]):
+            # Velocities stand half a step before and after, and are taken as linear between.
+            turn = earlier / (earlier - later) if earlier > 0.0 else 0.5
+            fault.stick_time[i] = time + (turn - 0.5) * dt
         later = 0.0
         fault.sliding[i] = False
-        if np.isnan(fault.stick_time[i]):
-            fault.stick_time[i] = time
     fields.vx[0, i] = later
     fault.slip[i] += dt * later
     moved = 0.5 * dt * (earlier + later)
@@ -207,11 +222,18 @@ def slide(elastic, fields, fault, i, dt, time):
 
 
 @entry
-def advance_layer(elastic, fields, fault, dt, steps, centre):
-    """Advance between two steps; ``centre``: a node, and columns without friction on each side."""
+def advance_layer(elastic, fields, fault, dt, steps, columns):
+    """Advance between two steps.
+
+    ``columns``: the node at x = 0, the number of columns without friction on each side of it, and
+    the number that are advanced behind the compressional wave from it.
+    """
+    centre, frictionless, trail = columns
     for number in range(steps[0], steps[1]):
-        reach = centre[1] + int(number * elastic.ratio) + MARGIN
-        first, last = max(1, centre[0] - reach), min(fault.tau.shape[0] - 1, centre[0] + reach)
+        wave = int(number * elastic.ratio)
+        reach = frictionless + wave + MARGIN
+        first, last = max(1, centre - reach), min(fault.tau.shape[0] - 1, centre + reach)
+        first = max(first, centre + wave - trail)
         update_stresses(elastic, fields, first, last)
         update_velocities(elastic, fields, first, last)
         for i in range(first, last):
@@ -228,11 +250,13 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     centre = 1 if scene.symmetric else half
     x = (np.arange(centre + half) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
-    advance_layer(elastic, fields, fault, dt, (0, steps - 1), (centre, reach))
+    # Without a trail, all columns behind are advanced, also those left of x = 0.
+    columns = centre, reach, int(min(scene.trail / h + MARGIN, x.size))
+    advance_layer(elastic, fields, fault, dt, (0, steps - 1), columns)
     # The energy is balanced at velocities between two instants of the stresses.
     earlier = Fields._make(array.copy() for array in fields)
     given, kept = fault.work.tolist()
-    advance_layer(elastic, fields, fault, dt, (steps - 1, steps), (centre, reach))
+    advance_layer(elastic, fields, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     return LayerRun(
         x=x[1:-1],
@@ -240,7 +264,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
         velocity=fields.vx[:, 1:-1] / scene.slip_scale,
         release_time=fault.release_time[1:-1],
         stick_time=fault.stick_time[1:-1],
-        energy_residual=float(abs(energy - kept) / given),
+        energy_residual=float(abs(energy - kept) / given) if math.isinf(scene.trail) else math.nan,
     )
 
 
@@ -267,14 +291,16 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elast
     )
     rows = {name: scene.cells + (name not in ("vy", "sxy")) for name in Fields._fields}
     fields = Fields(**{name: np.zeros((count, x.size)) for name, count in rows.items()})
+    tau, nucleus = scene.prestress(x), np.abs(x) <= scene.nucleation + 0.25 / scene.cells
     fault = Fault(
-        tau=scene.prestress(x),
-        nucleus=np.abs(x) <= scene.nucleation + 0.25 / scene.cells,
+        tau=tau,
+        nucleus=nucleus,
         sliding=np.zeros(x.size, dtype=bool),
         slip=np.zeros(x.size),
         slip_at_release=np.zeros(x.size),
         release_time=np.full(x.size, np.nan),
         stick_time=np.full(x.size, np.nan),
+        excess=tau - np.where(nucleus, 0.0, 1.0),
         work=np.zeros(2),
     )
     return elastic, fields, fault

@@ -5,4 +5,13 @@ They know nothing of the lattice code, so that an agreement of the two means som
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+from ..model.removed import new_way
+
+_load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> object:
+    """Load a public name when it is first used; a removed one answers with the new way."""
+    if answer := new_way("theory", name):
+        raise AttributeError(answer)
+    return _load(name)

@@ -9,6 +9,7 @@ from .closed_pulse import paper_pulse as paper_pulse
 from .closed_pulse import paper_transition_displacement as paper_transition_displacement
 from .closed_pulse import paper_transition_stress as paper_transition_stress
 from .dimensional import damage_zone_stress_drop as damage_zone_stress_drop
+from .dimensional import layer_results as layer_results
 from .exact_transition import exact_transition_displacement as exact_transition_displacement
 from .exact_transition import uniform_transition_time as uniform_transition_time
 from .front_speeds import front_speed as front_speed

@@ -6,6 +6,7 @@ T - x rises to xi, going left from y, and where T + x rises to eta, going right.
 """
 
 from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 from typing import NamedTuple
 
@@ -24,6 +25,9 @@ INTEGRATE = legendre.legint(TO_SERIES, lbnd=-1.0)
 CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ legendre.legder(TO_SERIES)
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
+# A curve of more panels computes polynomials of these only, for at most this number of rows at a
+# time, until they are asked for all together: a slow front asks for a few at each of its panels.
+MANY_PANELS, FEW_ROWS = 500, 32
 # Fields on a panel: x, T, T + x, T - x and tau dx/ds; all but the last are monotonic.
 FIELDS = ("x", "time", "late", "early", "source")
 
@@ -112,8 +116,39 @@ class Curve:
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
-        # Values of FIELDS but the last, one after another, at both ends of each panel: [end, row].
-        self.ends = np.concatenate([x_ends, time_ends, time_ends + x_ends, time_ends - x_ends]).T
+        self.x_ends, self.time_ends = x_ends, time_ends
+
+    def joined(self, other: "Curve") -> "Curve":
+        """This curve with another one that begins at its right end, without restarts."""
+        out = Curve.__new__(Curve)
+        out.panels, out.restarts = self.panels + other.panels, ((), ())
+        for name in ("x", "time", "source", "late", "early", "x_ends", "time_ends"):
+            setattr(out, name, np.concatenate([getattr(self, name), getattr(other, name)]))
+        out.edges = np.append(self.edges[:-1], other.edges)
+        out.edge_times = np.append(self.edge_times[:-1], other.edge_times)
+        return out
+
+    def restarted(self, restarts: tuple[Sequence[float], Sequence[float]]) -> "Curve":
+        """This curve with some restarts."""
+        out = copy(self)
+        out.__dict__.pop("_exits", None)
+        out.restarts = restarts
+        return out
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Values of FIELDS but the last, one after another, at both ends of panels: [end, row]."""
+        x, time = self.x_ends, self.time_ends
+        return np.concatenate([x, time, time + x, time - x]).T
+
+    def coefficients(self, row: np.ndarray) -> np.ndarray:
+        """Columns of `powers`."""
+        count = len(self.panels)
+        if count <= MANY_PANELS or row.size > FEW_ROWS or "powers" in self.__dict__:
+            return self.powers.take(row, axis=-1)
+        fields = (self.x, self.time, self.late, self.early, self.source)
+        values = [fields[k // count][k % count] for k in row]
+        return TO_POWERS @ np.reshape(values, (-1, COUNT)).T
 
     @cached_property
     def powers(self) -> np.ndarray:
@@ -126,7 +161,7 @@ class Curve:
 
     def evaluate(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
         """One of FIELDS at a parameter on panels, or its derivative by the parameter (order 1)."""
-        return value_and_slope(self.powers.take(self.row(name, panel), axis=-1), s)[order]
+        return value_and_slope(self.coefficients(self.row(name, panel)), s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Mask of the positions that lie on the curve."""
@@ -186,7 +221,7 @@ class Curve:
         todo = np.flatnonzero(distance > 1e-15 * np.abs(level))
         least = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
         s, level, rising, least = np.array([out, level, np.sign(span), least])[:, todo]
-        coefficients = self.powers.take(row[todo], axis=-1)
+        coefficients = self.coefficients(row[todo])
         for _ in range(40):
             if not todo.size:
                 break

@@ -1,6 +1,97 @@
-"""The stress drop of a fault with a compliant damage zone, in SI units."""
+"""Results in SI units: the pulse of a layer, and the stress drop of a fault with a damage zone."""
 
-from ..model.checks import as_numbers
+import math
+
+import pandas as pd
+
+from ..model.checks import as_numbers, check_kind, check_number, check_that
+from ..model.layer_units import Layer
+from ..model.si_quantities import QUANTITIES, UNITS
+from .closed_pulse import paper_pulse, paper_transition_displacement
+from .exact_transition import uniform_transition_time
+from .front_speeds import front_speed, front_speed_undamped
+from .pulse import steady_pulse
+
+FACTOR_OF_TWO = (
+    "The paper prints the strength drop over sqrt(2 G rho), half of what follows from its own unit"
+    " of slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G); the printed value"
+    " has the unit of slip under held stress, and is the peak of the mean over the height."
+)
+STRENGTH_DROP = (
+    "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop; stress falls by twice"
+    " the initial stress above kinetic friction, by its equation (C13)."
+)
+NO_NUCLEATION = (
+    "The paper neglects the elastic coupling; exact for a rupture that starts at a point."
+)
+
+
+def layer_results(
+    layer: Layer, initial_stress: float, damping_ratio: float = 0.0, release: str = "total"
+) -> pd.DataFrame:
+    """Transition and steady pulse of a layer whose top is held, by the paper and exactly.
+
+    The initial stress is uniform. Source: section IV A of the paper for transition length, pulse
+    width and peak slip velocity, as printed; section III for the others.
+
+    Parameters
+    ----------
+    layer : Layer
+        With top "held": the paper has no such formulas under held stress.
+    initial_stress : float, Pa
+        Shear stress along the interface, between kinetic and static friction.
+    damping_ratio, release : as in `front_speed`
+        They select the exact front speed; the pulse behind it is that of the continuum limit.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row per quantity with columns unit, paper, exact, and note, which explains a difference.
+
+    Raises
+    ------
+    ValueError
+        In one line that names the argument, its value and what is allowed.
+
+    Examples
+    --------
+    >>> block = sp.Layer(0.02, 2e9, poisson_ratio=0.3, density=1200.0, static_friction=0.6,
+    ...                  kinetic_friction=0.5, normal_stress=5e6)
+    >>> results = layer_results(block, 2.7e6)
+    >>> ratio = results.exact / results.paper
+    >>> round(float(ratio["pulse_peak_velocity"]), 12)
+    2.0
+    """
+    check_kind("layer", layer, Layer)
+    check_that(layer.top == "held", "layer.top", layer.top, "'held'")
+    lowest, highest = layer.kinetic_strength, layer.static_strength
+    check_number("initial_stress", initial_stress, above=lowest, below=highest)
+    tau0, gamma = float(layer.convert_from_si(initial_stress, "stress")), layer.gamma
+    speed = float(front_speed(tau0, damping_ratio, release))
+    time = uniform_transition_time(tau0, gamma, damping_ratio, release)
+    paper, exact = paper_pulse(tau0, gamma), steady_pulse(tau0, gamma, speed=speed)
+    paper_time, paper_length = paper_transition_displacement(tau0, gamma)
+    # Twice this is the peak velocity, since the peak of the paper's pulse is 1/sqrt(gamma).
+    printed = layer.strength_drop / math.sqrt(2.0 * layer.shear_modulus * layer.density)
+    paper_peak = layer.convert_from_si(printed, "slip_velocity")
+    rows = {
+        "front_speed_right": (front_speed_undamped(tau0), speed, ""),
+        "transition_time": (paper_time, time, NO_NUCLEATION),
+        "transition_length": (paper_length, 2.0 * speed * time, NO_NUCLEATION),
+        "pulse_width": (paper.width, exact.width, ""),
+        "pulse_slip": (paper.slip, exact.slip, ""),
+        "pulse_peak_velocity": (paper_peak, exact.peak_velocity, FACTOR_OF_TWO),
+        "pulse_stress_drop": (1.0, exact.stress_drop, STRENGTH_DROP),
+    }
+    table = []
+    for name, (paper_value, exact_value, note) in rows.items():
+        quantity = QUANTITIES[name]
+        values = [
+            layer.convert_to_si(float(value), quantity) for value in (paper_value, exact_value)
+        ]
+        table.append((name, UNITS[quantity], *values, note))
+    columns = ["quantity", "unit", "paper", "exact", "note"]
+    return pd.DataFrame(table, columns=columns).set_index("quantity")
 
 
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
@@ -23,7 +114,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     Examples
     --------
-    >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
+    >>> float(damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0)) / 1e6
     5.0
     """
     zone = as_numbers("shear_modulus", shear_modulus, above=0.0)

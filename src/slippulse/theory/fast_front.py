@@ -63,8 +63,8 @@ class FastFront:
         # Those of the Gaussians that a front crosses within a fraction of a period of the waves.
         narrow = (width[:, 0] * self.kernel_rate < NARROW) | (self.kernel_rate == 0.0)
         self.narrow_features = features[narrow].ravel()
-        levels = [value for interval in prestress.intervals for value in interval[2:]]
-        lowest = float(np.min(prestress(self.features), initial=min(levels)))
+        levels = np.array(prestress.intervals)[:, 2:]
+        lowest = float(np.min(prestress(self.features), initial=np.min(levels)))
         check_number("lowest prestress", lowest, at_least=LOWEST)
         self.pieces = pieces(prestress)
         self._piece_ends = [piece.right for piece in self.pieces]

@@ -31,12 +31,13 @@ def uniform(level: float) -> Interval:
 
 def analytic(prestress: Prestress, background: Interval, x: np.ndarray) -> np.ndarray:
     """Pre-stress with one linear background everywhere: analytic, and exact in its interval."""
-    left, right, level, last = background
-    tau = np.broadcast_to(level, x.shape)
-    if level != last:
+    left, right, first, last = background
+    level: np.ndarray | float = first
+    if first != last:
         # Exact at both ends.
         fraction = (x - left) / (right - left)
-        tau = level = (1.0 - fraction) * level + fraction * last
+        level = (1.0 - fraction) * first + fraction * last
+    tau = np.broadcast_to(level, x.shape)
     if prestress.width is not None:
         rise = -np.expm1(-0.5 * (x / prestress.width) ** 2)
         tau = prestress.peak + (level - prestress.peak) * rise

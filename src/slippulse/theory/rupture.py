@@ -14,6 +14,7 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
+from ..model.removed import AnswersRemoved
 from ..model.roots import root_between
 from .curve import SAME
 from .domains import broadcast_numbers, check_domains
@@ -47,7 +48,7 @@ class FrontEnd(Limit):
     """The last point of a front: where it stops, or at the end of the time asked for."""
 
 
-class Rupture:
+class Rupture(AnswersRemoved):
     """The exact rupture of a pre-stress in the continuum limit.
 
     Parameters
@@ -102,7 +103,9 @@ class Rupture:
             curve, law = stretch.curve(), self.law
             restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
             ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-            marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+            marks = np.unique(
+                [0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features]
+            )
             marks = marks[curve.covers(marks)]
             keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
             self._parts.append(SolvedPart(*keys))

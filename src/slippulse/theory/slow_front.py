@@ -48,6 +48,8 @@ AT_END, NEAR_END, MANY = 1e-9, 1e-6, 5
 # A chunk that was shortened to end at an event is searched a little beyond its end.
 BEYOND = 1.2
 MOST_CHUNKS = 60
+# A front is not followed on a curve of more panels.
+MOST_PANELS = 100_000
 MOST_NEWTON_STEPS = 60
 
 
@@ -139,9 +141,14 @@ class FreeBoundary:
         later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         self.weight = np.concatenate([cut, later], axis=1)
         self.d_xi = self.early[:, None] - np.append(curve.early[panel:], self.early)
+        # Without leaf springs and drag the kernel is 1.
+        self.is_plain = front.stiffness == front.alpha == 0.0
+        self.plain_sum = self.weight.sum(axis=1) if self.is_plain else np.zeros(0)
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
         """The step to subtract from positions; None where the front would not be stable."""
+        if self.is_plain:
+            return self.plain_step(x)
         k, alpha = self.front.stiffness, self.front.alpha
         eta = self.early + 2.0 * x
         d_eta = eta[:, None] - np.append(self.late, eta)
@@ -156,9 +163,7 @@ class FreeBoundary:
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
         # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
         # nodes.
-        half = 0.5 * (x - self.front.x0)
-        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
-        area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
+        area, tau = self.crossed_by_front(x)
         fall = tau + growth
         if not np.all(fall < 0.0):
             return None
@@ -168,6 +173,17 @@ class FreeBoundary:
         matrix = (excess * tau) @ SLOPE + excess * (SLOPE @ tau) - turn
         matrix += np.diag(fall + turn.sum(axis=1))
         return np.linalg.solve(matrix, entered + area + excess @ (tau * slopes))
+
+    def plain_step(self, x: np.ndarray) -> np.ndarray | None:
+        """The same with a kernel of 1."""
+        area, tau = self.crossed_by_front(x)
+        return (self.plain_sum + area) / tau if np.all(tau < 0.0) else None
+
+    def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Integral of the pre-stress from the start of the chunk to positions, and its values."""
+        half = 0.5 * (x - self.front.x0)
+        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+        return half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
 
 
 @dataclass
@@ -194,13 +210,16 @@ class SlowFront:
         "unknown" where its characteristic comes from beyond the left end of the curve, and
         "unresolved" where no panel is short enough. A panel ends where the front stops.
         """
+        if len(self.curve.panels) > MOST_PANELS:
+            return Advance(None, "unresolved")
         for negligible in NEGLIGIBLE:
             entry = self.entry(progress.entered, negligible)
             if entry is None:
                 return Advance(None, "unknown")
             if entry.panel < 0:
                 return Advance(None, "stops")
-            if entry.passed > 0.0 and (rest := self.rest(entry)):
+            rest = self.rest(entry)
+            if rest is not None:
                 return Advance(rest, None, Progress(entered=self.position(entry)))
             advance = self.advance_from(entry, mark, progress.longest)
             if advance.stop != "stops":
@@ -259,22 +278,33 @@ class SlowFront:
             panel, s = (panel, s) if s + 1.0 >= REMAINDER else (panel - 1, 1.0)
         gain, passed = 0.0, False
         while panel >= 0 and not self.is_slow(panel):
-            parameters, source = s - (s + 1.0) * FRACTIONS, self.curve.source[panel]
-            weights = partial_weights(parameters)
-            moves = (weights[0] - weights) @ source / self.resistance
+            parameters = s - (s + 1.0) * FRACTIONS
+            moves = gain + self.moves(panel, parameters)
             # Only pre-stress that is not negative moves no front back.
-            most = NEGLIGIBLE[0] if np.min(source) < 0.0 else negligible
-            last = int(np.argmin(np.append(np.abs(gain + moves) <= most * self.size, False))) - 1
-            gain, passed = gain + float(moves[last]), passed or last > 0
+            negative = bool(np.min(self.curve.source[panel]) < 0.0)
+            most = self.size * (NEGLIGIBLE[0] if negative else negligible)
+            last = int(np.argmin(np.append(np.abs(moves) <= most, False))) - 1
+            gain, passed = float(moves[last]), passed or last > 0
             if last < FRACTIONS.size - 1:
-                if passed and moves[last + 1] < moves[last]:
-                    break
-                return Entry(int(panel), float(parameters[last]), passed * max(gain, self.least))
+                goes_on = not negative or moves[last + 1] >= moves[last]
+                return self.chosen(
+                    Entry(int(panel), float(parameters[last])), gain, passed, goes_on
+                )
             panel, s = panel - 1, 1.0
-        if passed:
-            # What comes next, if anything, does not move the front on.
-            return Entry(-1, 1.0)
-        return self.entry_behind_slow_front() if panel >= 0 else None
+        if panel >= 0:
+            return self.entry_behind_slow_front()
+        return Entry(-1, 1.0) if passed else None
+
+    def moves(self, panel: int, parameters: np.ndarray) -> np.ndarray:
+        """Motion of the front by the entries on a panel from its first parameter to each one."""
+        weights = partial_weights(parameters)
+        return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
+
+    def chosen(self, entry: Entry, gain: float, passed: bool, goes_on: bool) -> Entry:
+        """The entry with what was passed before it; below 0 where the front does not go on."""
+        if not passed:
+            return entry
+        return entry._replace(passed=max(gain, self.least)) if goes_on else Entry(-1, 1.0)
 
     @property
     def least(self) -> float:
@@ -295,7 +325,7 @@ class SlowFront:
         early = self.curve.evaluate("early", np.array([entry.panel]), np.array([entry.s]))[0]
         x_ends = self.x0, self.x0 + entry.passed
         time_ends = self.t0, float(early) + x_ends[1]
-        if time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
+        if entry.passed == 0.0 or time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
             return None
         x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
         source = np.full(COUNT, -0.5 * self.resistance * entry.passed)

@@ -43,16 +43,25 @@ class Stretch:
         default_factory=lambda: dict.fromkeys(SIDES, Progress())
     )
 
+    # The panels as one curve, by the side that is turned to the right, once it was asked for.
+    curves: dict[float, Curve] = field(default_factory=dict)
+
     def curve(self, side: float = RIGHT) -> Curve:
         """The panels as one curve, with a side turned to the right."""
         left = [side * x for x in self.restarts[-side]]
         right = [side * x for x in self.restarts[side]]
-        return Curve(seen_from(side, self.panels), (left, right))
+        if side not in self.curves:
+            self.curves[side] = Curve(seen_from(side, self.panels))
+        return self.curves[side].restarted((left, right))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels, and their end, of a front whose side is turned to the right."""
         new = seen_from(side, panels)
         self.panels = self.panels + new if side > 0.0 else new + self.panels
+        if side in self.curves and panels:
+            self.curves[side] = self.curves[side].joined(Curve(panels))
+        if -side in self.curves and panels:
+            self.curves[-side] = Curve(seen_from(LEFT, panels)).joined(self.curves[-side])
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
@@ -67,7 +76,7 @@ class Stretch:
                 if s > -1.0:
                     kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels = seen_from(side, kept)
+        self.panels, self.curves = seen_from(side, kept), {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < side * x]
 

@@ -243,8 +243,23 @@ class EdgedPart(Part):
         knots = self.knots
         ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
         slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
+        slow = np.union1d(slow, self._undone_stops()).astype(int)
         points = np.stack([knots.x, knots.stick], axis=1)[slow].tolist()
         return [Point(*point) for point in points]
+
+    def _undone_stops(self) -> list[int]:
+        """Knots where a front stops, but no trailing edge that outruns the waves begins."""
+        knots, told = self.knots, np.flatnonzero(self.knots.kind != BRIEF)
+        undone = []
+        for end, nearest in ((0, told[:1]), (-1, told[-1:])):
+            # A front that goes on at the end has not stopped.
+            stopped = knots.kind[end] == BRIEF and self.curve.edge_times[end] < self.until
+            if stopped and nearest.size:
+                distance = abs((knots.x[nearest] - knots.x[end]).item())
+                delay = abs((knots.stick[nearest] - knots.stick[end]).item())
+                if delay > distance * (1.0 + SAME):
+                    undone.append(end % knots.x.size)
+        return undone
 
     def first_stick(self) -> FirstStick | None:
         """The first sticking; None where nothing sticks before the end."""

@@ -8,27 +8,32 @@ from .evidence import Evidence
 from .kinds import Approximate, Qualitative
 
 QUANTITIES = ("speed", "pulse_width", "pulse_slip")
-# A point of the undamped pulse slides for W/v = pi tau_0/sqrt(gamma); a shear wave goes to the top
-# and back in 2 sqrt(2/gamma). This is the ratio of the two, over tau_0.
+CASE = ["gamma", "tau0", "weakening", "side"]
+# The paper's time of the transition, pi/sqrt(gamma), divided by that of a shear wave to the top and
+# back, 2 sqrt(2/gamma).
 CROSSINGS = np.pi / np.sqrt(8.0)
 
 
 def station(evidence: Evidence, step: int = 0) -> pd.DataFrame:
-    """Rows of all grids at the station nearest to the front, or at one some steps before."""
-    runs = evidence.tables["layer"].query("part != 'field'")
-    return runs[runs["station"] == np.sort(runs["station"].unique())[-1 - step]]
+    """Rows of all grids at the last place of measurement, or at one some steps before."""
+    runs = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
+    return runs[runs["station"] == runs["station"].max() - step]
 
 
 def finest(runs: pd.DataFrame, part: str, step: int = 0) -> pd.DataFrame:
-    """Rows of one part on its finest grid, or on the grid that is some steps coarser."""
-    rows = runs[runs["part"] == part]
-    cells = np.sort(rows["cells"].unique())[-1 - step]
-    return rows[rows["cells"] == cells].set_index(["gamma", "tau0", "weakening", "side"])
+    """Rows of one part on the finest grid of each run, or on one that is some steps coarser."""
+    rows = runs[runs["part"] == part].sort_values("cells", kind="stable")
+    return rows.groupby(CASE, sort=False).nth(-1 - step).set_index(CASE)
 
 
 def change(runs: pd.DataFrame, part: str, quantity: str) -> pd.Series:
     """Relative change of a number of each run from the second finest grid to the finest."""
     return (finest(runs, part)[quantity] / finest(runs, part, 1)[quantity] - 1.0).abs()
+
+
+def crossing_width(pulses: pd.DataFrame) -> pd.Series:
+    """Distance that a front runs while a shear front that it sheds at the top comes down."""
+    return np.sqrt(2.0 * pulses["speed"] ** 2 / pulses.index.get_level_values("gamma") - 1.0)
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
@@ -56,17 +61,14 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     pulses = finest(runs, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
-    damped = pulses["damped_pulse_width"] / pulses["paper_pulse_width"]
-    levels = pulses.reset_index()
-    fracture = float((levels["gamma"] * levels["weakening"] / levels["tau0"] ** 2).max())
     uncertainty = float((change(runs, "pulse", "pulse_width") * ratio).median())
     further = {}
-    for quantity in ("speed", "pulse_slip", "first_stick"):
+    for quantity in ("speed", "pulse_slip"):
         words = f"median of plane over formula, {quantity.replace('_', ' ')}"
         further[words] = float((pulses[quantity] / pulses[f"paper_{quantity}"]).median())
-    for name, widths in (("in the plane", ratio), ("in one dimension, as weakened", damped)):
-        further |= {f"narrowest {name}, over the formula": float(widths.min())}
-        further |= {f"widest {name}": float(widths.max())}
+    further |= {"narrowest in the plane, over the formula": float(ratio.min())}
+    further |= {"widest in the plane": float(ratio.max())}
+    energies = pulses["fracture_energy"]
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
@@ -74,51 +76,79 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         ratio=(float(ratio.median()), uncertainty),
         failing=rules.BEYOND,
         further=further,
-        told={"fracture": fracture, "crossings": CROSSINGS},
+        told={"least": float(energies.min()), "most": float(energies.max())}
+        | {"spread": largest_spread(pulses)},
     )
+
+
+def layer_stability(evidence: Evidence, id: str) -> Qualitative:
+    """Points of the map with less fracture energy than a length of the layer releases."""
+    points = evidence.tables["layer_map"]
+    brittle = points[points["fracture_energy"] < 1.0]
+    tough = points[points["fracture_energy"] > 1.0]
+    further = {f"points that are {name}": 0.0 for name in ("steady", "growing", "dying")}
+    counted = points["outcome"].value_counts()
+    further |= {f"points that are {name}": float(count) for name, count in counted.items()}
+    further["dying with more fracture energy than is released"] = float(
+        (tough["outcome"] == "dying").sum()
+    )
+    decided = [_holds(outcome) for outcome in brittle["outcome"]]
+    return Qualitative(decided=decided, further=further)
+
+
+def _holds(outcome: str) -> bool | None:
+    """Whether pulses sent from both sides settle; None if one of them was not tested."""
+    return {"steady": True, "growing": False, "dying": False}.get(outcome)
+
+
+def largest_spread(pulses: pd.DataFrame) -> float:
+    """Largest width divided by the smallest, less 1, of pulses that differ in fracture energy."""
+    widths = pulses["pulse_width"].groupby(level=["gamma", "tau0"]).agg(["max", "min", "count"])
+    several = widths[widths["count"] > 1]
+    return float((several["max"] / several["min"]).max() - 1.0)
 
 
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Numbers of the section on the premise: ends of ratios, of changes and of other columns."""
-    runs, study = station(evidence), evidence.tables["layer"]
-    pulses, barriers = finest(runs, "pulse").reset_index(), finest(runs, "barrier")
-    work = 2.0 * pulses["tau0"] * pulses["pulse_slip"]
-    kept = pulses["gamma"] * pulses["pulse_slip"] ** 2 + pulses["weakening"]
-    ranges = {name: pulses[name] for name in ("gamma", "tau0", "speed")}
-    ranges |= {
-        "first_stick": pulses["paper_first_stick"] / pulses["first_stick"],
-        "strip": pulses["strip_first_stick"] / pulses["first_stick"],
-        "waves": 1.0 - kept / work,
-        "damped": pulses["damped_pulse_width"] / pulses["pulse_width"],
-        "stop": runs[(runs["part"] == "barrier") & (runs["side"] < 0.0)]["end"],
+    runs = station(evidence)
+    pulses = finest(runs, "pulse")
+    # The level at which the fracture energy is varied.
+    level = float(pulses.reset_index()["tau0"].mode().iloc[0])
+    varied = pulses.xs(level, level="tau0", drop_level=False)
+    brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
+    patch = finest(evidence.tables["layer"], "patch")
+    ranges = {
+        "gamma": pulses.index.get_level_values("gamma"),
+        "tau0": pulses.index.get_level_values("tau0"),
+        "energy": varied["fracture_energy"],
+        "speed": varied["speed"],
+        "brittle_speed": brittle["speed"],
+        "width": varied["paper_pulse_width"] / varied["pulse_width"],
+        "slip": varied["pulse_slip"] / varied["paper_pulse_slip"],
+        "brittle_slip": brittle["pulse_slip"] / brittle["paper_pulse_slip"],
+        "crossing": pulses["pulse_width"] / crossing_width(pulses),
+        "first_stick": patch["first_stick"] / patch["strip_first_stick"],
     }
-    for name, gamma in (("thick", pulses["gamma"].max()), ("thin", pulses["gamma"].min())):
-        rows = pulses[pulses["gamma"] == gamma]
-        for quantity in QUANTITIES:
-            ranges[f"{name}_{quantity}"] = rows[f"paper_{quantity}"] / rows[quantity]
-    out = {"pulses": float(len(pulses)), "balance": -float(barriers["balance_distance"].max())}
-    out |= {"widest": float(pulses["pulse_width"].max()), "crossings": CROSSINGS}
+    out = {"pulses": float(len(pulses)), "level": level, "crossings": CROSSINGS}
+    out |= {"spread": largest_spread(varied), "formula_speed": float(varied["paper_speed"].max())}
     for name, values in ranges.items():
         out |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in QUANTITIES:
         out[f"{quantity}_change"] = float(change(runs, "pulse", quantity).max())
-        out[f"{quantity}_fine"] = float(change(runs, "fine", quantity).max())
-    free = finest(study, "free").sort_values("station").iloc[-2:]
-    out["free_speed"] = float(free["speed"].iloc[1])
-    out["free_before"], out["free_slip"] = free["pulse_slip"].tolist()
-    for step, name in ((0, "cells"), (1, "coarse_cells")):
-        out[name] = float(finest(runs, "pulse", step).reset_index()["cells"].max())
-    return out | coupled(evidence)
+    return out | across_a_step(evidence)
 
 
-def coupled(evidence: Evidence) -> dict[str, float]:
-    """Slip at two stations where the strength follows the normal stress, least and most."""
-    rows = evidence.tables["layer"].query("part == 'coupled'").query("cells == cells.max()")
-    slips = rows.pivot(index=["coupling", "side"], columns="station", values="pulse_slip")
-    couplings = {"weak": rows["coupling"].min(), "strong": rows["coupling"].max()}
-    out = {name: float(coupling) for name, coupling in couplings.items()}
-    for name, coupling in couplings.items():
-        for side, sign in (("right", 1.0), ("left", -1.0)):
-            before, after = slips.loc[(coupling, sign)].iloc[-2:]
-            out |= {f"{name}_{side}_before": float(before), f"{name}_{side}": float(after)}
-    return out
+def across_a_step(evidence: Evidence) -> dict[str, float]:
+    """Last slip of the pulses that enter a higher or a lower pre-stress, beside the uniform one."""
+    rows = evidence.tables["layer"].query("part == 'step'")
+    rows = rows[rows["cells"] == rows["cells"].max()].sort_values("station")
+    last = rows.groupby(["before", "tau0"])["pulse_slip"].last()
+    low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
+    return {
+        "lower": low,
+        "higher": high,
+        "upwards": float(last[low, high]),
+        "downwards": float(last[high, low]),
+        "uniform_lower": float(last[low, low]),
+        "uniform_higher": float(last[high, high]),
+    }

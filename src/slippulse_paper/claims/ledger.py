@@ -17,6 +17,7 @@ class Entry(SimpleNamespace):
 
     # Fields that only some kinds have.
     runs = left_out = 0
+    remark = False
     largest: Any = None
     exact_largest: Any = None
 
@@ -61,6 +62,8 @@ class Entry(SimpleNamespace):
             parts.append(f"follows from {names} and is not counted again")
         if self.beyond:
             parts.append("beyond the paper, and not counted")
+        if self.remark:
+            parts.append("a remark on a drawing, and not counted")
         return "; ".join(filter(None, parts))
 
     def _compared(self) -> str:

@@ -78,6 +78,7 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "thin_layer": pulses.thin_layer,
     "layer_regimes": layer.layer_regimes,
     "layer_width": layer.layer_width,
+    "layer_stability": layer.layer_stability,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
     "published_space_time_figure": space_time_figure.left,
@@ -92,9 +93,13 @@ UNWRITTEN = ("sentences", "doubt", "rule")
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
-EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict.fromkeys(
-    ("predicted", "measured", "uncertainty", "deviation")
-)
+EMPTY |= {
+    "beyond": False,
+    "remark": False,
+    "flips_at": [],
+    "at_earlier": "",
+    "asked": "",
+} | dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
 
 
 def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
@@ -133,7 +138,7 @@ def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping =
         # The spread of its runs, and the exact theory.
         out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     out |= {"id": id} | claim.written()
-    counted = not out["follows_from"] and not out["beyond"]
+    counted = not (out["follows_from"] or out["beyond"] or out["remark"])
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
     if "earlier_tolerance" in entry:
         out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))

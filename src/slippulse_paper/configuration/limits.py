@@ -43,8 +43,16 @@ def simulation_problems(config: Configuration) -> list[str]:
             problem = "a number too large or small to compute with; allowed: numbers near 1"
             problems.append(f"{key}: {problem}")
         except ValueError as error:
-            problems.append(f"{key}.{error}{lattice}")
+            problems.append(f"{key}.{error}{lattice}{_units(config, name)}")
     return problems
+
+
+def _units(config: Configuration, name: str) -> str:
+    """What the numbers of a refusal are in, if a scene has a layer."""
+    scene = config.scenes.get(name)
+    if scene is None or scene.layer is None:
+        return ""
+    return f" ({scene.layer.layer(scene.boundary).units_in_words})"
 
 
 def _check_profiles(scenes: Sequence[Scene]) -> None:

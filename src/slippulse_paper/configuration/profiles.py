@@ -12,6 +12,7 @@ import numpy as np
 
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough
+from slippulse.model.si_stress_file import read_in_si
 from slippulse.model.stress_file import read_dimensionless
 
 from .problems import ConfigError
@@ -33,15 +34,21 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
             # An overlay that was read before has both.
             return profile
         try:
-            table = read_dimensionless(folder / profile["file"], None, None)
+            columns = _columns(folder / profile["file"], in_si="layer" in profile)
         except ValueError as error:
             raise ConfigError(f"{key}.file: {error}") from None
-        return {
-            **profile,
-            "points": [list(row) for row in zip(table.x, table.prestress, strict=True)],
-        }
+        return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
     return _changed(overlay, read)
+
+
+def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
+    """Positions and stresses of a file, in m and Pa for a scene with a layer."""
+    if in_si:
+        x, stress = read_in_si(path)
+        return x.tolist(), stress.tolist()
+    table = read_dimensionless(path, None, None)
+    return table.x, table.prestress
 
 
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:

@@ -64,6 +64,9 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """A scene as a simulation of one run that records everything, up to where its fronts may go."""
+    layer = scene.layer
+    friction_ratio = layer and layer.layer(scene.boundary).friction_ratio
+    scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
@@ -73,6 +76,8 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     given["duration"] = {"time": scene.duration}
     given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
     given["record"] = ["fronts", "fields", "samples"]
+    if friction_ratio is not None:
+        given["friction_ratio"] = friction_ratio
     return Simulation.model_validate(given)
 
 

@@ -4,17 +4,20 @@ The refusals (`refusals`) follow from these, and docs/describe.py makes the JSON
 tables of config/README.md from them. A class has no docstring where the key of it says enough.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal, Self, TypeVar
 
+import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from slippulse.model.checks import short_repr
 from slippulse.model.friction import NAMES, friction_from
+from slippulse.model.layer_units import BOUNDARY_OF_TOP, Layer
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough
+from slippulse.model.si_quantities import PROFILE_QUANTITIES
 
 from ..text.markdown import harmless
 from .problems import nearest
@@ -75,6 +78,8 @@ Seed = Annotated[int, Field(ge=0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Boundary = Literal["displacement", "stress"]
+Top = Literal["held", "stress"]
+TOP_OF_BOUNDARY: Mapping[str, str] = {value: name for name, value in BOUNDARY_OF_TOP.items()}
 Switch = Annotated[bool, Field(strict=False)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
@@ -113,6 +118,10 @@ RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
 ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "law of friction of sliding blocks, below; by default the model's"
+IN_SI = "a layer; then profile, `duration` and `dx` are in m, Pa and s"
+# Quantity of each number of a scene that is in SI units with a layer.
+SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
+SI_KEYS |= {"dx": "length", "duration": "time"}
 KEPT = "what is kept: release and stick times; slip, velocity, acceleration at the end; samples"
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
@@ -120,7 +129,7 @@ RECORDED = "a list of fronts (always: all is measured from them), fields, sample
 class Rough(Block):
     """A rough background, as `sp.rough` makes it."""
 
-    level: Annotated[float, Field(lt=1.0)] = key("mean [S]")
+    level: float = key("mean, < 1 [S]")
     deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
     correlation_length: Positive = key("length above which nothing is correlated [H]")
     hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
@@ -129,11 +138,10 @@ class Rough(Block):
     spacing: Positive = key("distance of the positions [H]")
     seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
 
-    @model_validator(mode="after")
-    def _positions(self) -> Self:
+    def check(self) -> None:
+        """Raise ValueError if there is no such background."""
         seed = self.seed if isinstance(self.seed, int) else self.seed[0]
         rough(**(self.plain() | {"seed": seed}))
-        return self
 
 
 class Profile(Block):
@@ -176,23 +184,30 @@ class Profile(Block):
         if self.steps:
             given.append("steps")
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
+        if self.points is not None and "width" not in self.model_fields_set:
+            self.__dict__["width"] = None
         if self.file is not None:
             require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
-        self._check_points()
+        # The numbers of a scene with a layer are checked when they have no unit any more.
+        if getattr(self, "layer", None) is None:
+            self.check_table()
         return self
 
     def _given_ones(self, *names: str) -> list[str]:
         return [name for name in names if getattr(self, name) is not None]
 
-    def _check_points(self) -> None:
-        """Refuse points out of order. They have no Gaussian unless they have a width."""
+    def check_table(self) -> None:
+        """Raise ValueError if the points or the rough background are not allowed."""
         if self.points is not None:
-            if "width" not in self.model_fields_set:
-                self.__dict__["width"] = None
             try:
                 Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
             except ValueError as error:
                 raise ValueError(str(error).removeprefix("prestress.")) from None
+        if self.rough is not None:
+            try:
+                self.rough.check()
+            except ValueError as error:
+                raise ValueError(f"rough.{error}") from None
 
 
 class Beyond(Block):
@@ -237,15 +252,19 @@ class Physics(Block):
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
+        if getattr(self, "layer", None) is None:
+            self._check_gamma()
+        self.alone("beta", "damping_ratio")
+        self.alone("rate_strengthening", "friction")
+        return self
+
+    def _check_gamma(self) -> None:
         gamma = getattr(self, "gamma", None)
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
         else:
             allowed = "left out under boundary 'stress', which has no leaf springs"
             require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
-        self.alone("beta", "damping_ratio")
-        self.alone("rate_strengthening", "friction")
-        return self
 
 
 class Simulation(Physics):
@@ -294,8 +313,32 @@ class Simulation(Physics):
         return self
 
 
+class LayerKeys(Block):
+    """A layer in SI units; `Layer` of the library says more about each number."""
+
+    thickness: Positive = key("thickness H, from the interface to what is held on top [m]")
+    shear_modulus: Positive = key("shear modulus G [Pa]")
+    lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
+    poisson_ratio: float | None = key("instead of `lame_parameter`; between -1 and 0.5", None)
+    density: Positive = key("density [kg/m3]")
+    static_friction: Positive = key("coefficient of static friction, above the kinetic one")
+    kinetic_friction: NonNegative = key("coefficient of kinetic friction")
+    normal_stress: Positive = key("normal stress on the interface [Pa]")
+    top: Top | None = key("held (displacement) or stress; by default as `boundary`", None)
+
+    @model_validator(mode="after")
+    def _known_layer(self) -> Self:
+        self.layer("displacement")
+        return self
+
+    def layer(self, boundary: str) -> Layer:
+        """The layer, with the condition on top that a boundary condition stands for."""
+        given = {"top": TOP_OF_BOUNDARY[boundary]} | self.plain()
+        return Layer(**given)
+
+
 class NamedScene(Profile, Physics):
-    """One run by name."""
+    """One run by name, non-dimensional, or in SI units with a layer."""
 
     title: str = key("above figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
@@ -303,15 +346,93 @@ class NamedScene(Profile, Physics):
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
-    dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
+    dx: Positive | None = key("block spacing, <= 1; by default the preset's [H]", None)
     release: Release | None = key("by default the model's", None)
     duration: Positive = key("how long the run is [H/c]")
+    layer: LayerKeys | None = key(IN_SI, None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _boundary_of_layer(cls, given: Any) -> Any:
+        """Take the boundary condition from a layer, if it is not given."""
+        layer = given.get("layer") if isinstance(given, dict) else None
+        if not isinstance(layer, dict) or "boundary" in given:
+            return given
+        top = layer.get("top") or "held"
+        known = isinstance(top, str) and top in BOUNDARY_OF_TOP
+        return given | {"boundary": BOUNDARY_OF_TOP[top]} if known else given
+
+    @model_validator(mode="after")
+    def _layer(self) -> Self:
+        if self.layer is None:
+            too_large = self.dx is not None and self.dx > 1.0
+            require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
+            return self
+        top = self.layer.top
+        agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
+        require(agree, f"boundary: {self.boundary!r}", f"what layer.top = {top!r} means, or none")
+        require(self.gamma is None, f"gamma: {self.gamma}", "none, since the layer has it")
+        scene = self.in_model_units()
+        try:
+            scene.check_table()
+        except ValueError as error:
+            words = self.layer.layer(self.boundary).units_in_words
+            raise ValueError(f"{error} ({words})") from None
+        return self
+
+    def layer_parameters(self) -> dict[str, Any] | None:
+        """The parameters of the layer by name, as builtins; None if the scene has no layer."""
+        return None if self.layer is None else self.layer.layer(self.boundary).mapping()
+
+    def in_model_units(self) -> Self:
+        """The scene without its layer, non-dimensional; ValueError if a stress is not allowed."""
+        if self.layer is None:
+            return self
+        layer = self.layer.layer(self.boundary)
+        gamma = layer.gamma if self.boundary == "displacement" else None
+        given: dict[str, Any] = {"layer": None, "gamma": gamma}
+        for name, quantity in SI_KEYS.items():
+            value = getattr(self, name)
+            # A default is a number of the model already.
+            if name not in self.model_fields_set or value is None:
+                continue
+            if quantity == "stress":
+                given[name] = layer.level_from_pascal(name, value)
+            else:
+                given[name] = layer.convert_from_si(value, quantity)
+        allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
+        require((given.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
+        given |= self._background_in_model_units(layer)
+        quantities = PROFILE_QUANTITIES["bumps"]
+        given["bumps"] = [tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps]
+        return self.model_copy(update=given)
 
     @model_validator(mode="after")
     def _one_seed(self) -> Self:
         seed = self.rough.seed if self.rough is not None else 0
         require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
         return self
+
+    def _background_in_model_units(self, layer: Layer) -> dict[str, Any]:
+        """Steps, points and the rough background of a scene in SI units, non-dimensional."""
+        given: dict[str, Any] = {
+            "steps": [
+                (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
+                for x, level in self.steps
+            ]
+        }
+        if self.points is not None:
+            x, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            tau = layer.table_from_pascal("points", stress)
+            columns = layer.convert_from_si(x, "length").tolist(), tau.tolist()
+            given["points"] = [*zip(*columns, strict=True)]
+        if self.rough is not None:
+            changed = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
+            changed["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            for name in ("correlation_length", "start", "stop", "spacing"):
+                changed[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+            given["rough"] = self.rough.model_copy(update=changed)
+        return given
 
 
 class Preset(Block):
@@ -372,9 +493,23 @@ class DamageZone(Block):
     thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
 
 
+class LayerMap(Block):
+    gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
+    fracture_energy: Distinct[Positive] = key("fracture energies [tau_0^2/(2 gamma)]")
+    cells: int = key("of the grid over the height of the layer", ge=10, le=200)
+    chunks: int = key("how many jobs share the map, at most one per point", 1, ge=1, le=1000)
+
+    @model_validator(mode="after")
+    def _chunks(self) -> Self:
+        points = len(self.gamma) * len(self.fracture_energy)
+        require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
+        return self
+
+
 class Figures(Block):
     fig01_system_sketch: Sketch = key("the sketch of the system")
     fig07_damage_zone: DamageZone = key("the damage zone")
+    study_layer: LayerMap = key("the map of stability of the layer in the plane")
 
 
 class Claim(Block):

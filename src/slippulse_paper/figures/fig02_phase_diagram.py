@@ -43,7 +43,8 @@ BOUNDARIES = {"displacement": r"$\Gamma = 1$, any $\gamma$", "stress": r"$\Gamma
 LOOKS = {
     "arrested": (GREY, "arrest"),
     "crack-like, two-way": (style.BLUE, "two-way\ncrack"),
-    "crack-like, one-way": (style.SKY, "one-way\ncrack"),
+    "crack-like, one front slow": (style.SKY, "crack, one\nfront slow"),
+    "crack-like, one-way": (style.BLACK, "one-way\ncrack"),
     "pulses, two-way": (style.ORANGE, "two\nsteady pulses"),
     "pulse, one-way, growing": (style.PURPLE, "growing pulse"),
     "pulse, one-way, steady": (style.YELLOW, "steady pulse"),

@@ -65,7 +65,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
         roles = style.by_role(table[table["panel"] == panel])
-        space_time.draw_profile(profile, roles["prestress"])
+        space_time.draw_profile(profile, roles)
         space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
         style.panel_letter(profile, letter)

@@ -3,7 +3,10 @@
 from .shared.scaling import damping_figure, transition_table
 
 draw, table = damping_figure, transition_table
-NEEDS = {"measured": {"damping_displacement": ["transition"]}}
+NEEDS = {
+    "measured": {"damping_displacement": ["transition"]},
+    "uncertainties": ["damping_displacement"],
+}
 # A run of each simulation that the figure can draw, in words of configuration/drawn.py.
 DRAWS = {
     "damping_displacement": "boundary displacement and equal levels above 0",

@@ -8,6 +8,9 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from slippulse.data.files import write_whole
+from slippulse.data.readable_units import readable_unit
+from slippulse.model.layer_units import Layer
+from slippulse.model.si_quantities import QUANTITIES
 from slippulse.plotting.selection import spaced_indices
 from slippulse.plotting.space_time import limits
 from slippulse.plotting.style import BLUE, GREY, ORANGE
@@ -20,28 +23,38 @@ FIELDS = {
 }
 
 
-def save_animation(run: xr.Dataset, title: str, path: str | Path) -> None:
-    """Write an animated GIF of frames that are evenly spread over the samples of a run."""
+def save_animation(
+    run: xr.Dataset, title: str, path: str | Path, layer: Layer | None = None
+) -> None:
+    """Write an animated GIF of frames that are evenly spread over the samples of a run.
+
+    With a layer its axes are in SI units.
+    """
     lower, upper = limits(run)
-    x, times = run["sample_position"].values, run["sample_time"].values
-    inside = (x >= lower) & (x <= upper)
+    inside = (run["sample_position"].values >= lower) & (run["sample_position"].values <= upper)
+    x, unit_of_x = _drawn(run["sample_position"].values, "length", layer)
+    times, unit_of_time = _drawn(run["sample_time"].values, "time", layer)
     frames = spaced_indices(times.size, FRAMES)
     figure, lines = Figure(figsize=(6.4, 3.6), layout="constrained"), []
     panels = figure.subplots(2, 1, sharex=True)
     for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
-        values = run[name].values[:, inside]
+        values, unit = _drawn(run[name].values[:, inside], QUANTITIES[name], layer)
+        label += f" ({unit})" if unit else ""
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         (line,) = axes.plot(x[inside], values[0], color=colour)
         axes.set(ylabel=label, ylim=(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values)))
         lines.append((line, values))
-    panels[1].set(xlim=(lower, upper), xlabel=r"position $x$")
+    limits_of_x = np.array([lower, upper]) if layer is None else x[inside][[0, -1]]
+    panels[1].set(xlim=tuple(limits_of_x), xlabel=r"position $x$")
+    if unit_of_x:
+        panels[1].set_xlabel(rf"position $x$ ({unit_of_x})")
     clock = figure.suptitle("", fontsize=9.0)
     plain = title.replace("$", r"\$")
 
     def draw(frame: int) -> None:
         for line, values in lines:
             line.set_ydata(values[frame])
-        clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$")
+        clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
 
     # The layout is found once, for the longest title, and kept: the frames must not jump.
     draw(int(frames[-1]))
@@ -49,3 +62,12 @@ def save_animation(run: xr.Dataset, title: str, path: str | Path) -> None:
     figure.set_layout_engine("none")
     animation, writer = FuncAnimation(figure, draw, frames=frames), PillowWriter(fps=PER_SECOND)
     write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))
+
+
+def _drawn(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
+    """Return values as they are drawn, and their unit, which is empty without a layer."""
+    if layer is None:
+        return values, ""
+    numbers = layer.convert_to_si(values, quantity)
+    unit = readable_unit(quantity, numbers)
+    return numbers / unit.value, unit.text

@@ -1,14 +1,17 @@
 """A scene: slip velocity over time and position, fields at the end, and numbers beside theory."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from slippulse.model.layer_units import Layer
 from slippulse.plotting import space_time
 from slippulse.plotting.selection import spaced_indices
+from slippulse.plotting.si_tables import table_in_si, with_unit
 from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE, Look, by_role, panel_letter
 
 from ..text.numerals import MOST, number, with_uncertainty
@@ -21,11 +24,18 @@ FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
 LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
-def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str) -> pd.DataFrame:
+def table(
+    run: xr.Dataset,
+    numbers: pd.DataFrame,
+    theory: pd.Series,
+    title: str,
+    layer: Layer | None = None,
+) -> pd.DataFrame:
     """Rows of a run by role: those of `run_rows`, profile (a field at the end), steady (its largest
     value in the exact steady pulse of each side), number (`shared.numbers.scene_numbers`), title.
 
-    ``theory`` is the row of measured and predicted numbers of the run.
+    ``theory`` is the row of measured and predicted numbers of the run. With a layer the table is in
+    SI units (`shared.si_tables`), and so must be ``numbers``.
     """
     lower, upper = space_time.limits(run)
     x = run["x"].values
@@ -47,7 +57,10 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
     parts.append(rows.assign(role="steady").dropna())
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
     columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
-    return pd.concat(parts, ignore_index=True).reindex(columns=columns)
+    rows = pd.concat(parts, ignore_index=True)
+    if layer is None:
+        return rows.reindex(columns=columns)
+    return table_in_si(rows, layer).reindex(columns=[*columns, "unit"])
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -59,7 +72,7 @@ def draw(table: pd.DataFrame) -> Figure:
     heights = (3.1, 1.6, 0.2 + 0.16 * rows)
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     profile, axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
-    space_time.draw_profile(profile, roles["prestress"])
+    space_time.draw_profile(profile, roles)
     space_time.draw_map(axes, roles)
     axes.legend(loc="upper left")
     panel_letter(profile, "a")
@@ -76,13 +89,23 @@ def draw(table: pd.DataFrame) -> Figure:
         # The velocity is 0 in the middle; one entry of the legend stands for both sides and panels.
         if len(axes.lines) > 2 and field == "slip_velocity":
             axes.legend(handles=axes.lines[1:3], loc="center")
-        axes.set(xlabel=r"position $x$", ylabel=f"{name} at the end")
+        axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
+        # With a unit it would be longer than the panel is high.
+        end = "\nat the end" if "unit" in roles else " at the end"
+        axes.set_ylabel(with_unit(name, roles, field) + end)
         axes.set_xlim(ends["position"].min(), ends["position"].max())
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):
-        line = f"{with_symbols(row.label)}: {with_uncertainty(row.value, row.uncertainty)}"
+        measured = f"{with_uncertainty(row.value, row.uncertainty)} {_unit(row)}".strip()
+        line = f"{with_symbols(row.label)}: {measured}"
         if math.isfinite(row.theory):
             line += f" (theory {number(row.theory, MOST)})"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center")
     return figure
+
+
+def _unit(row: Any) -> str:
+    """Return the unit of a number; empty if the table is not in SI units."""
+    unit = getattr(row, "unit", "")
+    return unit if isinstance(unit, str) else ""

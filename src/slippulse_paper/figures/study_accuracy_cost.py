@@ -19,8 +19,13 @@ from slippulse.plotting.style import (
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
-PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
-PANELS["transition_time"] = r"$T_\text{trans}$"
+# Quantities with their title and the boundary condition, the one with the largest errors first.
+PANELS = {
+    "share_time": ("the 95 % time", r"$\Gamma = 0$"),
+    "transition_time": (r"$T_\text{trans}$", r"$\Gamma = 1$"),
+    "peak_velocity": ("peak velocity", r"$\Gamma = 1$"),
+    "front_speed": ("front speed", r"$\Gamma = 1$"),
+}
 BEST = "smallest error of any setting of the localised scheme at this work"
 LOOKS: dict[str, Look] = {
     "textbook": {"color": BLACK, "marker": "x", "linewidth": 0.6, "label": "textbook scheme"},
@@ -50,11 +55,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw three errors against the work, and the speed of the front against the step."""
-    figure, (*trades, speeds) = new_panels(PAGE, 5.0, "ab;cd")
+    """Draw four errors against the work, and the speed of the front against the step."""
+    figure, (*trades, speeds) = new_panels(PAGE, 5.0, "aabbcc;dddeee")
     # The names of the presets stand on the side that is empty.
     name: Look = {"textcoords": "offset points", "path_effects": HALO}
-    for axes, (quantity, title) in zip(trades, PANELS.items(), strict=True):
+    for axes, (quantity, (title, boundary)) in zip(trades, PANELS.items(), strict=True):
         rows = table[table["quantity"] == quantity]
         for role, look in LOOKS.items():
             part = rows[rows["role"] == role].sort_values("work")
@@ -65,7 +70,8 @@ def draw(table: pd.DataFrame) -> Figure:
         for preset in rows[rows["role"] == "preset"].itertuples():
             axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
         axes.set(xscale="log", yscale="log", xlabel="stencil passes over a block")
-        axes.set(ylabel=f"relative error of {title}", title=r"$\Gamma = 1$")
+        axes.set(ylabel=f"relative error of {title}", title=boundary)
+        axes.set_ylim(None, 2.5 * rows["error"].max())
     # On dx/(n dt) fronts lock.
     rows = table[table["part"] == "locking"]
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))

@@ -1,70 +1,143 @@
-"""Pulses of the layer in the plane, and one dimension over the plane against their width."""
+"""Pulses of the layer in the plane: what sets speed, width and slip, and which are stable."""
 
+import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, GREY, OPEN, PAGE, Look, entry
+from slippulse.plotting.style import (
+    BLACK,
+    GREEN,
+    GREY,
+    OPEN,
+    ORANGE,
+    PAGE,
+    PURPLE,
+    SMALL,
+    Look,
+    entry,
+)
 
-NEEDS = {"studies": ["layer"]}
+NEEDS = {"studies": ["layer", "layer_map"]}
 
-QUANTITIES = {"speed": "front speed", "pulse_width": "width", "pulse_slip": "slip"}
-QUANTITIES["first_stick"] = "first stick"
-# Numbers of one dimension by the prefix of their columns: how they are drawn, and what they are.
-LOOKS: dict[str, Look] = {
-    "paper": {"linestyle": "-", "marker": "o", "label": "formula of the paper"},
-    "damped": {"linestyle": ":", "marker": "s"} | OPEN,
-    "balance": {"linestyle": "--", "marker": "^", "label": "balance of energy"} | OPEN,
-    "strip": {"linestyle": "--", "marker": "v", "label": "shear wave to the top and back"} | OPEN,
-}
-LOOKS["damped"]["label"] = "1D, the same slip weakening, the paper's damping"
+QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
+CASE = ["gamma", "tau0", "fracture_energy"]
+PAPER = [f"paper_{quantity}" for quantity in QUANTITIES]
+MARKERS = ("o", "^", "s", "D")
 # Colours end at this fraction of the largest velocity, which is that of the tip alone.
 BRIGHT = 0.6
-KEYS = ["source", "tau0"]
+OUTCOMES: dict[str, Look] = {
+    "steady": {"marker": "o", "color": GREEN, "label": "steady"},
+    "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"} | OPEN,
+    "not settled": {"marker": "s", "color": PURPLE, "label": "not settled"} | OPEN,
+    "growing": {"marker": "^", "color": BLACK, "label": "grows"},
+    "dying": {"marker": "x", "color": ORANGE, "label": "dies"},
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One dimension over the plane on the finest grid (part ratio), and a field (part field)."""
+    """Parts field, pulse (finest grid, with its change from the grid before), step, and map."""
     study = tables["layer"]
-    runs = study[study["part"] == "pulse"]
-    runs = runs[(runs["cells"] == runs["cells"].max()) & (runs["station"] == runs["station"].max())]
-    parts = [study[study["part"] == "field"].dropna(axis="columns", how="all")]
-    for source in LOOKS:
-        for quantity in QUANTITIES:
-            if f"{source}_{quantity}" in runs:
-                ratio = runs[f"{source}_{quantity}"] / runs[quantity]
-                known = {"part": "ratio", "source": source, "quantity": quantity, "ratio": ratio}
-                parts.append(runs[["gamma", "tau0", "pulse_width"]].assign(**known))
-    return pd.concat(parts, ignore_index=True)
+    field = study[study["part"] == "field"].dropna(axis="columns", how="all")
+    pulses = study[study["part"] == "pulse"].sort_values("cells")
+    # The level at which most fracture energies have been run.
+    pulses = pulses[pulses["tau0"] == pulses["tau0"].mode().iloc[0]]
+    pulses = pulses[pulses["station"] == pulses["station"].max()].groupby(CASE)
+    finest, before = (pulses.nth(-1 - step).set_index(CASE) for step in (0, 1))
+    changes = (finest[QUANTITIES] - before[QUANTITIES]).abs().add_prefix("change_of_")
+    drawn = finest[[*QUANTITIES, "cells", *PAPER]].join(changes).reset_index()
+    steps = study[study["part"] == "step"]
+    steps = steps[steps["cells"] == steps["cells"].max()]
+    steps = steps[["part", "gamma", "tau0", "before", "sample_position", "pulse_slip"]]
+    points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")
+    return pd.concat([field, drawn.assign(part="pulse"), steps, points], ignore_index=True)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the velocity over the layer, (b-e) ratios of one dimension to the plane."""
-    figure, (map_axes, *panels) = style.new_panels(PAGE, 3.9, "aaaa;bcde", height_ratios=(1.0, 2.9))
-    field = table[table["part"] == "field"]
+    """Draw (a) velocity, (b-d) speed, width and slip, (e) pulses across a step, (f) the map."""
+    figure, panels = style.new_panels(
+        PAGE, 5.6, "aaaaaa;bbccdd;eeefff", height_ratios=(1.0, 2.3, 2.1)
+    )
+    _draw_field(figure, panels[0], table[table["part"] == "field"])
+    _draw_pulses(panels[1:4], table[table["part"] == "pulse"])
+    _draw_steps(panels[4], table[table["part"] == "step"])
+    _draw_map(panels[5], table[table["part"] == "map"])
+    return figure
+
+
+def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
+    """Draw the velocity over the layer, and the shear front from the top of the layer."""
     grid = field.pivot(index="y", columns="x", values="velocity")
     brightest = BRIGHT * float(grid.to_numpy().max())
     look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
-    image = map_axes.pcolormesh(grid.columns, grid.index, grid, rasterized=True, **look)
-    bar = figure.colorbar(image, ax=map_axes, aspect=6, pad=0.01, extend="max")
+    image = axes.pcolormesh(grid.columns, grid.index, grid, rasterized=True, **look)
+    bar = figure.colorbar(image, ax=axes, aspect=6, pad=0.01, extend="max")
     bar.set_label(r"$\dot u_x$")
-    map_axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
-    time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
-    map_axes.set_title(style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time))
-    ratios = table[table["part"] == "ratio"]
-    ends = 0.8 * ratios["ratio"].min(), 1.25 * ratios["ratio"].max()
-    for axes, (quantity, name) in zip(panels, QUANTITIES.items(), strict=True):
-        for (source, tau0), line in ratios[ratios["quantity"] == quantity].groupby(KEYS):
-            line, colour = line.sort_values("pulse_width"), style.colour("tau_0", tau0)
-            axes.plot(line["pulse_width"], line["ratio"], color=colour, **LOOKS[source])
-        axes.axhline(1.0, color=BLACK, linewidth=0.6)
-        axes.set(xscale="log", xlabel=r"width $W_\mathrm{p}/H$", title=name)
-        axes.set(yscale="log", ylim=ends)
-        style.few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
-        style.few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
-    panels[0].set_ylabel("one dimension / plane")
-    handles = [entry(color=GREY, **look) for look in LOOKS.values()]
-    for tau0 in ratios["tau0"].unique():
-        handles.append(entry(rf"$\tau_0 = {tau0:g}$", color=style.colour("tau_0", tau0)))
-    style.legend_below(figure, handles, 4)
-    return figure
+    axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
+    time, tau0, gamma, energy = field[["time", "tau0", "gamma", "fracture_energy"]].iloc[0]
+    title = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
+    axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {energy:.2g}$")
+    # The tip moves at the speed of the longitudinal wave, almost.
+    tip = grid.columns[np.flatnonzero(grid.to_numpy()[0] > 0.0)[-1]]
+    axes.plot([tip, tip - np.sqrt(2.0 / gamma - 1.0)], [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
+
+
+def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
+    """Draw speed, width and slip over the fracture energy, with the formulas of the paper."""
+    for marker, (gamma, rows) in zip(MARKERS, pulses.groupby("gamma"), strict=False):
+        rows, colour = rows.sort_values("fracture_energy"), style.colour("gamma", gamma)
+        crossing = np.sqrt(2.0 / gamma - 1.0)
+        scales = 1.0, crossing, rows["paper_pulse_slip"]
+        for axes, quantity, scale in zip(panels, QUANTITIES, scales, strict=True):
+            error = rows[f"change_of_{quantity}"] / scale
+            look: Look = {"color": colour, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
+            x, y = rows["fracture_energy"], rows[quantity] / scale
+            axes.errorbar(x, y, error, fmt=f"{marker}-", linewidth=0.8, **look)
+        line: Look = {"color": colour, "linewidth": 0.8}
+        panels[1].axhline(rows["paper_pulse_width"].iloc[0] / crossing, linestyle="--", **line)
+    dashed: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": "--"}
+    panels[0].axhline(pulses["paper_speed"].iloc[0], **dashed)
+    panels[2].axhline(1.0, **dashed)
+    for axes in panels[:2]:
+        axes.axhline(1.0, color=GREY, linewidth=0.6)
+    for axes in panels:
+        axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", xlim=(0.0, 1.0))
+        axes.set_ylim(0.0, None)
+    panels[0].set_ylabel(r"front speed $v$")
+    panels[1].set_ylabel(r"$W_\mathrm{p}/H\sqrt{2/\gamma-1}$")
+    panels[2].set_ylabel(r"slip / $(2\tau_0/\gamma)$")
+    handles = panels[0].get_legend_handles_labels()[0]
+    formula = entry("formula of the paper", **dashed)
+    panels[0].legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL)
+
+
+def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
+    """Draw the slip of pulses that enter another pre-stress, and of those in a uniform one."""
+    for (tau0, before), rows in steps.groupby(["tau0", "before"]):
+        rows = rows.sort_values("sample_position")
+        uniform = tau0 == before
+        look: Look = {"color": style.colour("tau_0", tau0), "linestyle": "-" if uniform else ":"}
+        label = rf"$\tau_0 = {tau0:g}$" if uniform else rf"${before:g}$, then ${tau0:g}$"
+        look |= {"marker": "o", "label": label} | ({} if uniform else OPEN)
+        axes.plot(rows["sample_position"], rows["pulse_slip"], **look)
+    axes.set(xlabel=r"position $x/H$", ylabel=r"slip left behind")
+    axes.set_title(style.conditions(True, gamma=round(float(steps["gamma"].iloc[0]), 3)))
+    axes.set_ylim(0.8 * steps["pulse_slip"].min(), 1.02 * steps["pulse_slip"].max())
+    axes.legend(loc="lower right", fontsize=SMALL, ncols=2)
+
+
+def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
+    """Mark what the pulses of each point do, over the fracture energy and the width they have."""
+    for outcome, rows in points.groupby("outcome"):
+        width = np.sqrt(2.0 / rows["gamma"] - 1.0)
+        look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
+        axes.plot(rows["fracture_energy"], width, **look)
+    axes.axvline(1.0, color=GREY, linewidth=0.6)
+    low, high = (np.sqrt(2.0 / points["gamma"].agg(end) - 1.0) for end in ("max", "min"))
+    axes.set(
+        yscale="log", xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylim=(0.7 * low, 1.9 * high)
+    )
+    axes.set(ylabel=r"width $\sqrt{2/\gamma-1}$", xlim=(0.0, None))
+    style.few_ticks(axes.yaxis, (1.0, 2.0, 5.0))
+    axes.legend(loc="upper left", fontsize=SMALL, ncols=2)

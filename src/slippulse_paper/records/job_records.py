@@ -5,10 +5,12 @@ still has the content that its job wrote. The record of a job is ``.records/NAME
 folder of its first output, NAME; a job with outputs in two folders has a record in each.
 """
 
+import base64
 import hashlib
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -131,17 +133,19 @@ class RecordedFiles:
         return states
 
     def problems(self) -> Iterator[tuple[str, str]]:
-        """Yield each file that is not what its job wrote, with the reason.
+        """Yield each file whose change Snakemake would not notice, with the reason.
 
         A missing file is no problem here: Snakemake makes it again where it is needed.
         """
-        states = self.states()
+        states, known = self.states(), _known_to_snakemake()
         for path in self.unreadable:
-            yield str(path), "cannot be read as the record of a job"
+            yield str(path.parent.parent / path.stem), "its record cannot be read"
         for name, state in states.items():
             try:
                 if not is_unchanged(name, state):
                     yield name, "not what its job wrote"
+                elif name not in known:
+                    yield name, "Snakemake's own record of it (in .snakemake) is lost"
             except OSError:
                 continue
         for path, record in self.records.items():
@@ -152,6 +156,18 @@ class RecordedFiles:
                     for output in record.outputs:
                         yield str(folder / output), f"made from another {source}"
                     break
+
+
+def _known_to_snakemake() -> set[str]:
+    """Return the paths of the files of which Snakemake has a record, which its names encode."""
+    folder = Path(".snakemake/metadata")
+    names = set()
+    for path in folder.rglob("*"):
+        # A long name is divided into folders, which begin with @.
+        encoded = "".join(part.removeprefix("@") for part in path.relative_to(folder).parts)
+        with suppress(ValueError):
+            names.add(base64.urlsafe_b64decode(encoded).decode())
+    return names
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:

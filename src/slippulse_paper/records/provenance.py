@@ -101,14 +101,26 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
         comment = COMMENTS.get(path.parts[0], comments.get(path.stem, "result"))
+        if path.parts[0] in COMPARED:
+            comment += f"; {COMPARED[path.parts[0]]}"
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
     form = "https://codecheck.org.uk/spec/config/1.0/"
-    content = {"version": form, "paper": paper, "manifest": entries}
+    summary = "make verify AGAINST=FOLDER compares all tables and verdicts with another run"
+    content = {"version": form, "paper": paper, "manifest": entries, "summary": summary}
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 
 
+# How a checker compares an output with one of another machine, by its folder or name.
+COMPARED = {
+    "claims.json": "compare first: the verdicts must be the same",
+    "claims.html": "read it",
+    "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",
+    "measurements": "equal within the uncertainties of the table in uncertainties/",
+    "studies": "equal to a relative 1e-6",
+    "manuscript": "read it; its numbers follow from the tables",
+}
 COMMENTS = {
     "data": "simulated data, netCDF-4",
     "measurements": "measured numbers, one row a run",

@@ -210,6 +210,26 @@ def edges(study: pd.DataFrame) -> str:
     return table(head, rows)
 
 
+def stability_limits(study: pd.DataFrame) -> str:
+    """Derived largest steps by scheme, order and damping ratio, with measured ones in brackets."""
+    ratios = sorted(study["damping_ratio"].unique())
+    rows = []
+    for (scheme, order), group in study.groupby(["scheme", "order"], sort=False):
+        cells = [f"{str(scheme).replace('_', ' ')}, order {order}"]
+        for row in group.sort_values("damping_ratio").to_dict("records"):
+            chain, rupture = (_limit(row, name) for name in ("measured", "measured_rupture"))
+            cells.append(f"{number(row['derived'], 3)} ({chain}, {rupture})")
+        rows.append(cells)
+    head = " | ".join(f"$b$ = {setting(ratio)} l16" for ratio in ratios)
+    return table(f"scheme l16 | {head}", rows)
+
+
+def _limit(row: Mapping, name: str) -> str:
+    """A measured limit divided by the derived one, marked where it lies beyond the bisection."""
+    sign = {"within": "", "below": "<", "above": ">"}[row[f"{name}_limit"]]
+    return f"{sign}{number(row[f'{name}_ratio'], 3)}"
+
+
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
     """Differences from the shipped configuration and verdicts, as a quotation; empty if none."""
     pair = "`{}`: {} (shipped: {})".format

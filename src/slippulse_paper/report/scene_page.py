@@ -4,13 +4,17 @@ import base64
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
+from slippulse.data.readable_units import readable_unit
+from slippulse.model.layer_units import Layer
 from slippulse.model.prestress import prestress_from
 from slippulse.model.recorded_law import law_of
+from slippulse.model.si_quantities import QUANTITIES
 
-from ..text.numerals import number, rounded, setting, with_uncertainty
+from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
 from .html import page
 
 PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
@@ -21,29 +25,19 @@ NONE = "\N{EN DASH}"
 
 
 def scene_page(
-    name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping, note: str
+    name: str,
+    title: str,
+    png: str | Path,
+    numbers: pd.DataFrame,
+    attributes: Mapping,
+    note: str,
+    layer: Layer | None = None,
 ) -> str:
-    """A page with its figure inside; ``note`` says what an altered configuration changed."""
-    shown = {key: attributes[key] for key in SHOWN if key in attributes}
-    if "steps_and_bumps" in shown:
-        profile, parts = prestress_from(attributes), []
-        if profile.points:
-            ends = f"x = {setting(profile.points[0][0])} to {setting(profile.points[-1][0])}"
-            parts.append(f"linear between {len(profile.points)} points from {ends}")
-        if profile.width is None:
-            shown["width"] = "no Gaussian at x = 0"
-            shown.pop("peak", None)
-        for x, level in profile.steps:
-            parts.append(f"step to {setting(level)} at x = {setting(x)}")
-        for x, amplitude, width in profile.bumps:
-            size = f"{setting(amplitude)} and width {setting(width)}"
-            parts.append(f"bump of {size} at x = {setting(x)}")
-        shown["steps_and_bumps"] = "; ".join(parts)
-    if "friction" in shown:
-        law = law_of(attributes)
-        words = [law.pop("law").replace("_", " ")]
-        words += [f"{key} = {setting(value)}" for key, value in law.items()]
-        shown["friction"] = ", ".join(words)
+    """A page with its figure inside; ``note`` says what an altered configuration changed.
+
+    With a layer all numbers are in SI units; ``attributes`` are those of the run, without units.
+    """
+    shown = _parameters(attributes, layer)
     return page(
         "scene.html",
         name=name,
@@ -54,12 +48,91 @@ def scene_page(
         promised="promised" in numbers,
         numbers=[_number(row) for row in numbers.itertuples()],
         parameters={key.replace("_", " "): value for key, value in shown.items()},
+        layer=layer and _layer_rows(layer),
+        scales=layer and _scale_rows(layer),
     )
+
+
+def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
+    """The parameters of the run that are shown, in SI units if there is a layer."""
+    shown = {key: attributes[key] for key in SHOWN if key in attributes}
+    if "steps_and_bumps" in shown:
+        shown["steps_and_bumps"] = _profile_text(attributes, layer)
+    if layer is not None:
+        numbers_in_si = layer.numbers_to_si(attributes)
+        for key in shown.keys() & QUANTITIES.keys():
+            shown[key] = _with_unit(numbers_in_si[key], QUANTITIES[key])
+    if "width" in shown and not math.isfinite(attributes["width"]):
+        shown["width"] = "no Gaussian at x = 0"
+        shown.pop("peak", None)
+    if "friction" in shown:
+        law = law_of(attributes)
+        words = [law.pop("law").replace("_", " ")]
+        words += [f"{key} = {setting(value)}" for key, value in law.items()]
+        shown["friction"] = ", ".join(words)
+    return shown
+
+
+def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
+    """The steps and bumps of the pre-stress in words."""
+
+    def write(value: float, quantity: str) -> str:
+        if layer is None:
+            return setting(value)
+        return _with_unit(layer.convert_to_si(value, quantity), quantity)
+
+    profile, parts = prestress_from(attributes), []
+    if profile.points:
+        first, last = (write(profile.points[row][0], "length") for row in (0, -1))
+        parts.append(f"linear between {len(profile.points)} points from x = {first} to {last}")
+    for x, level in profile.steps:
+        parts.append(f"step to {write(level, 'stress')} at x = {write(x, 'length')}")
+    for x, amplitude, width in profile.bumps:
+        size = f"{write(amplitude, 'stress_difference')} and width {write(width, 'length')}"
+        parts.append(f"bump of {size} at x = {write(x, 'length')}")
+    return "; ".join(parts)
+
+
+def _with_unit(value: float, quantity: str) -> str:
+    """Write a number in SI units with a readable prefix."""
+    unit = readable_unit(quantity, value)
+    return f"{rounded(value / unit.value)} {unit.text}"
+
+
+def _layer_rows(layer: Layer) -> dict[str, str]:
+    """The parameters of a layer, and what follows from them."""
+    rows = {
+        "thickness H": _with_unit(layer.thickness, "length"),
+        "shear modulus G": _with_unit(layer.shear_modulus, "stress"),
+    }
+    if layer.poisson_ratio is not None:
+        rows["Poisson's ratio"] = setting(layer.poisson_ratio)
+    if layer.lame_parameter is not None:
+        rows["Lamé parameter λ"] = _with_unit(layer.lame_parameter, "stress")
+    return rows | {
+        "density": f"{setting(layer.density)} kg/m³",
+        "static friction": setting(layer.static_friction),
+        "kinetic friction": setting(layer.kinetic_friction),
+        "normal stress": _with_unit(layer.normal_stress, "stress"),
+        "on top": f"the {'displacement' if layer.top == 'held' else 'shear stress'} is held",
+        "elasticity ratio γ = 2G/(λ + 2G)": rounded(layer.gamma),
+        "wave speed": _with_unit(layer.wave_speed, "speed"),
+        "static friction μ_s σ_n": _with_unit(layer.static_strength, "stress"),
+        "kinetic friction μ_k σ_n": _with_unit(layer.kinetic_strength, "stress"),
+    }
+
+
+def _scale_rows(layer: Layer) -> dict[str, str]:
+    """The units of the model, in SI."""
+    scales = layer.scales._asdict()
+    return {name.replace("_", " "): _with_unit(value, name) for name, value in scales.items()}
 
 
 def _number(row) -> dict[str, str]:
     """Cells of one measured number."""
     cells = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
+    cells["unit"] = getattr(row, "unit", "")
+    cells["paper"] = number(getattr(row, "paper", math.nan), 5).replace(MISSING, NONE)
     cells |= {"theory": NONE, "difference": NONE, "promise": "not covered"}
     if math.isfinite(row.theory):
         cells["theory"] = number(row.theory, 5)

@@ -2,13 +2,15 @@
 
 from slippulse.data.point import point
 from slippulse.data.store import load_dataset
+from slippulse.model.layer_units import Layer
 from slippulse.plotting.style import house_style
 
 from ..figures.scene_animation import save_animation
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data. Outputs: gif. Settings: title."""
+    """Files: data. Outputs: gif. Settings: title, layer (or None)."""
+    layer = Layer(**settings["layer"]) if settings.get("layer") else None
     data = point(load_dataset(files["data"]), 0)
     with house_style():
-        save_animation(data, settings["title"], outputs["gif"])
+        save_animation(data, settings["title"], outputs["gif"], layer)

@@ -4,25 +4,32 @@ from slippulse.data.files import write_text
 from slippulse.data.point import point
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.model.layer_units import Layer
 from slippulse.plotting.style import house_style, save_figure
 
 from ..figures import scene_figure as scene
-from ..figures.shared.main_numbers import at_constant_levels, scene_numbers
+from ..figures.shared.main_numbers import at_constant_levels, numbers_in_si, scene_numbers
 from ..report.scene_page import scene_page
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html. Settings: title, altered."""
+    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html.
+
+    Settings: title, altered, layer (parameters of a scene in SI units, or None).
+    """
     title, note = settings["title"], settings["altered"]
+    layer = Layer(**settings["layer"]) if settings.get("layer") else None
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     row = at_constant_levels(row)
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
+    if layer is not None:
+        numbers = numbers_in_si(numbers, row, layer)
     save_table(numbers, outputs["numbers"])
-    table = scene.table(data, numbers, row, title)
+    table = scene.table(data, numbers, row, title, layer)
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     with house_style():
         save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
-    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
+    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note, layer)
     write_text(page, outputs["html"])

@@ -60,6 +60,7 @@ def run_job(job: Job) -> None:
         os.environ[CONFIGURATION] = configuration = digest_of([dict(job.settings), *earlier])
         step = import_module(f"slippulse_paper.steps.{job.step}")
         show = progress_of(job.name, progress)
+        # A figure of a sweep is drawn by a module of another name: settings go first.
         settings = {**job.variables, **job.settings, "progress": show}
         step.run(job.inputs, job.outputs, settings)
         check_unchanged(read)

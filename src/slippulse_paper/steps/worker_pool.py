@@ -12,6 +12,7 @@ import sys
 import tempfile
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from threading import Lock, Thread
 
 from .job import Job, JobFailed, run_job
@@ -25,31 +26,40 @@ class WorkerPool:
     """Runs jobs in worker processes that are reused from one job to the next. Thread-safe."""
 
     def __init__(self) -> None:
-        self._workers = 1
         self._executor: ProcessPoolExecutor | None = None
         self._turn = Lock()
 
     def start(self, workers: int) -> None:
-        """Start one of the workers, which loads the libraries before the first job comes."""
-        self._workers = workers
-        self._submit(os.getpid)
+        """Start the first of some workers, which loads the libraries before a job comes."""
+        # If that is impossible, the first job says why.
+        with suppress(EOFError, OSError):
+            self._submit(workers, os.getpid)
 
-    def run(self, job: Job) -> None:
-        """Run a job. Raises JobFailed with the reason in one line."""
+    def run(self, job: Job, workers: int) -> None:
+        """Run a job in one of some workers. Raises JobFailed with the reason in one line."""
         try:
-            self._submit(run_job, job).result()
+            self._submit(workers, run_job, job).result()
         except BrokenProcessPool:
-            with self._turn:
-                self._executor = None
-            raise JobFailed(f"{job.name}: its process was killed") from None
+            self._executor = None
+            raise JobFailed("its process was killed") from None
+        except (EOFError, OSError) as error:
+            self._executor = None
+            raise JobFailed(f"its process could not be started: {error}") from None
         except SystemExit:
-            raise JobFailed(f"{job.name}: stopped") from None
+            raise JobFailed("stopped") from None
 
-    def _submit(self, function, *arguments) -> Future:
+    def _submit(self, workers: int, function, *arguments) -> Future:
         with self._turn:
             if self._executor is None:
-                self._executor = _new_executor(self._workers)
+                self._executor = _new_executor(workers)
             return self._executor.submit(function, *arguments)
+
+
+def run_here(job: Job) -> None:
+    """Run a job in this process, which Snakemake has started for it. Raises JobFailed."""
+    from . import worker_libraries  # noqa: F401
+
+    run_job(job)
 
 
 def _new_executor(workers: int) -> ProcessPoolExecutor:

@@ -21,7 +21,7 @@ NEEDS = {
         "space_time_stress": ["transition"],
     },
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
-    "studies": ["arrest_path", "derivations", "extremes"],
+    "studies": ["arrest_path", "derivations", "extremes", "stability"],
 }
 HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
 HEAD += "from the run of the shipped one."

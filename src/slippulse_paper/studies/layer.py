@@ -1,4 +1,8 @@
-"""The layer in the plane, beside the paper's equation in one dimension, under slip weakening."""
+"""The layer in the plane, beside the paper's equation in one dimension, under slip weakening.
+
+Fracture energies d_c/2 are given as fractions of G_0 = tau_0^2/(2 gamma), the energy that a length
+of the layer releases between the pre-stress and the kinetic friction.
+"""
 
 import math
 from collections.abc import Sequence
@@ -10,12 +14,8 @@ import numpy as np
 import pandas as pd
 
 from slippulse.model.prestress import Prestress
-from slippulse.solver.layer import LayerScene, simulate_layer
-from slippulse.theory.closed_pulse import (
-    paper_pulse,
-    paper_transition_displacement,
-    paper_transition_stress,
-)
+from slippulse.solver.layer import LayerRun, LayerScene, simulate_layer
+from slippulse.theory.closed_pulse import paper_pulse, paper_transition_stress
 from slippulse.theory.law_pulses import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
@@ -23,92 +23,193 @@ NEEDS = {"settings": ()}
 # gamma of lambda = G, for which the paper means its formulas; smaller ones give pulses of many H.
 GAMMA = 2.0 / 3.0
 GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
-LEVELS = (0.5, 0.65, 0.8, 0.95)
-# Fracture energy d_c/2 over tau_0^2/(2 gamma), the most that a length of the layer releases.
-TOUGHNESS = 5.0 / 12.0
-# Half of the length without friction, in half of which speeds are fitted, and the duration, at
-# GAMMA; they are longer at smaller gamma, as the paper's pulses are.
-NUCLEATION, DURATION = 2.0, 30.0
-# Three grids show what converges; one case has a finer one.
+# Fracture energies over G_0 at the level LEVEL, and other levels at one fracture energy.
+FRACTURE_ENERGIES = (0.05, 0.09, 0.21, 0.42, 0.7, 0.9)
+LEVEL, LEVELS, LEVELS_AT = 0.8, (0.5, 0.65, 0.95), 0.42
+# Half of the length without friction and the duration at GAMMA. All lengths and times of a scene
+# are multiplied by sqrt(GAMMA/gamma), as those of the paper's pulses are.
+NUCLEATION, DURATION = 2.0, 48.0
+# Places at which a pulse is measured at GAMMA, each over half of NUCLEATION on both sides, and its
+# speed over all of it: the last two show whether it has settled.
+PLACES = (6.0, 13.0, 16.0)
+# The same for other parts, as fractions of the path of the front.
+FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
+# Cells over the height: the first grid tells how long a run on the next ones must last.
 CELLS, FINE = (10, 20, 40), (20, 40, 80)
-# Fractions of the path of the front at which a pulse is measured: the last two say if it settles.
-STATIONS = (0.3, 0.6, 0.85)
+# Fracture energies up to this one need the finer grids, which at small gamma would take too long.
+BRITTLE, SHORT = 0.3, 0.2
+# Room for a trailing edge that comes later on a finer grid, relative and in H.
+LATER = 0.03, 1.0
 # The paper's damping.
 BETA = 1e-3
 # Pre-stress and weakening of the pulse whose top is free to rise, and of a crack under held stress.
-FREE, CRACK = (0.5, 0.225), (0.8, 0.8)
+FREE, CRACK, OTHER_DURATION = (0.5, 0.225), (0.8, 0.8), 30.0
 # A level that stops the left front under held stress, the width of the Gaussian at nucleation, and
 # weakenings.
 BARRIER, WIDTH = -0.75, 5.0
 WEAKENINGS = (0.05, 0.2, 0.8)
 # Coefficients of friction of a strength that follows the normal stress.
 COUPLINGS = (0.3, 0.6)
-# The drawn pulse, at twice the length of nucleation after this time, on every second cell.
-SNAPSHOT, EVERY = 12.0, 2
+# A pulse of one pre-stress enters another one at STEP: weakening and levels at GAMMA. Places at
+# which it is measured, before and beyond the step.
+STEP, STEP_WEAKENING, STEP_LEVELS = 10.0, 0.3, (0.65, 0.8)
+STEP_PLACES = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
+# The drawn pulse, and the time at which it is drawn, on every second cell.
+DRAWN_ENERGY, SNAPSHOT, EVERY = 0.21, 12.0, 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of a run at its stations by part, beside one dimension (pulse), and the part field.
+    """Rows of a run at its places by part, beside one dimension (pulse), and the part field.
 
-    Parts: pulse (held displacement), free (its top free to rise), coupled (strength by normal
-    stress), fine (one pulse on a finer grid), crack and barrier (held stress).
+    Parts: pulse (held displacement), patch (the same until the length without friction has stuck),
+    step (a pulse enters another pre-stress), free (its top free to rise), coupled (strength by
+    normal stress), crack and barrier (held stress).
     """
     rows = []
-    for gamma, tau0 in product(GAMMAS, LEVELS):
-        scene = uniform("displacement", gamma, tau0, TOUGHNESS * tau0**2 / gamma)
-        in_one_dimension = one_dimension(scene)
-        rows += [row | in_one_dimension for row in on_grids("pulse", scene, CELLS)]
-    rows += on_grids("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
+    for gamma in GAMMAS:
+        cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
+        for tau0, energy in cases + [(tau0, LEVELS_AT) for tau0 in LEVELS]:
+            scene = uniform("displacement", gamma, tau0, energy * tau0**2 / gamma)
+            theory = one_dimension(scene)
+            grids = FINE if energy < BRITTLE and gamma > SHORT else CELLS
+            rows += [row | theory for row in at_places("pulse", scene, grids, PLACES)]
+        # A strip that slides as one sticks when a shear wave has gone to the top and back.
+        strip = {"strip_first_stick": 2.0 / math.sqrt(0.5 * gamma)}
+        patch = uniform("displacement", gamma, LEVEL, LEVELS_AT * LEVEL**2 / gamma)
+        patch = replace(patch, duration=1.2 * strip["strip_first_stick"])
+        rows += [
+            row | strip for row in along_path("patch", patch, CELLS)[:: len(FRACTIONS_OF_PATH)]
+        ]
+    for before, level in product(STEP_LEVELS, repeat=2):
+        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:])
+    rows += along_path("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
     crack, barrier = uniform("stress", GAMMA, *CRACK), Prestress(BARRIER, 0.0, WIDTH)
-    rows += on_grids("crack", crack, CELLS)
-    main = uniform("displacement", GAMMA, 0.8, TOUGHNESS * 0.8**2 / GAMMA)
-    rows += on_grids("fine", main, FINE)
+    rows += along_path("crack", crack, CELLS)
+    main = uniform("displacement", GAMMA, LEVEL, LEVELS_AT * LEVEL**2 / GAMMA)
     for coupling in COUPLINGS:
-        rows += on_grids("coupled", replace(main, coupling=coupling), FINE[:2], (1, -1))
-    crack = replace(crack, prestress=barrier, duration=1.8 * DURATION)
+        rows += along_path("coupled", replace(main, coupling=coupling), FINE[:2], (1, -1))
+    crack = replace(crack, prestress=barrier, duration=1.8 * OTHER_DURATION)
     balance = {"balance_distance": paper_transition_stress(barrier)[0]}
     for weakening in WEAKENINGS:
-        stopped = on_grids("barrier", replace(crack, weakening=weakening), CELLS, (1, -1))
+        stopped = along_path("barrier", replace(crack, weakening=weakening), CELLS, (1, -1))
         rows += [row | balance for row in stopped]
-    return pd.concat([pd.DataFrame(rows), field(replace(main, duration=SNAPSHOT))])
+    drawn = uniform("displacement", GAMMA, LEVEL, DRAWN_ENERGY * LEVEL**2 / GAMMA)
+    return pd.concat([pd.DataFrame(rows), field(replace(drawn, duration=SNAPSHOT))])
+
+
+def stretch(gamma: float) -> float:
+    """Return the lengths and times of a scene divided by those at GAMMA."""
+    return math.sqrt(GAMMA / gamma)
 
 
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
-    """Scene in uniform pre-stress, which a length without friction nucleates."""
-    stretch = math.sqrt(GAMMA / gamma)
-    duration, nucleation = DURATION * stretch, NUCLEATION * stretch
+    """Scene in uniform pre-stress, in which a length without friction nucleates the rupture."""
+    duration, nucleation = OTHER_DURATION * stretch(gamma), NUCLEATION * stretch(gamma)
     prestress = Prestress(tau0, tau0, peak=tau0)
     return LayerScene(boundary, gamma, prestress, weakening, duration, nucleation=nucleation)
 
 
-def on_grids(
-    part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
+def across_a_step(
+    gamma: float,
+    level: float,
+    weakening: float,
+    before: float,
+    grids: Sequence[int],
+    places: Sequence[float] = STEP_PLACES,
 ) -> list[dict[str, Any]]:
-    """Rows of one scene, for each grid, side and station, of what passes there and is left."""
+    """Rows of a pulse that forms in one pre-stress and enters another one, or the same, at STEP."""
+    scene, position = uniform("displacement", gamma, before, weakening), STEP * stretch(gamma)
+    if before != level:
+        steps = (position, level), (-position, level)
+        scene = replace(scene, prestress=replace(scene.prestress, steps=steps))
+    rows = at_places("step", scene, grids, places)
+    energy = weakening * gamma / level**2
+    return [row | {"before": before, "tau0": level, "fracture_energy": energy} for row in rows]
+
+
+def at_places(
+    part: str, scene: LayerScene, grids: Sequence[int], places: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Rows of one scene at fixed places, for each grid; a run ends soon after the last place."""
+    scene = replace(scene, duration=DURATION * stretch(scene.gamma))
+    positions = [place * stretch(scene.gamma) for place in places]
     rows = []
     for cells in grids:
         run = simulate_layer(replace(scene, cells=cells))
-        known: dict[str, Any] = {"part": part, "gamma": scene.gamma, "tau0": scene.prestress.right}
-        known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": cells}
-        # The first stick is that in the length without friction, infinite without any.
-        sticks = run.stick_time[np.abs(run.x) <= scene.nucleation]
-        known["first_stick"] = float(sticks[np.isfinite(sticks)].min(initial=math.inf))
-        known["energy_residual"] = run.energy_residual
-        half = 0.5 * scene.nucleation
+        rows += measured(part, replace(scene, cells=cells), run, 1, positions)
+        if cells == grids[0]:
+            scene = shortened(scene, run, positions)
+    return rows
+
+
+def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> LayerScene:
+    """The scene with a duration and a trail that suffice for the positions, as a run shows.
+
+    The scene is returned as it is if the pulse does not pass all of them.
+    """
+    half = 0.5 * scene.nucleation
+    near = (run.x >= min(positions) - half) & (run.x <= max(positions) + half)
+    sticks = run.stick_time[near]
+    if not np.isfinite(sticks).all():
+        return scene
+    relative, absolute = LATER
+    later = absolute + relative * float(sticks.max())
+    return replace(
+        scene,
+        duration=float(sticks.max()) + later,
+        trail=max(0.0, float((sticks - run.x[near]).max())) + later,
+    )
+
+
+def along_path(
+    part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
+) -> list[dict[str, Any]]:
+    """Rows of one scene at fractions of the path of its front, for each grid and side."""
+    rows = []
+    for cells in grids:
+        run = simulate_layer(replace(scene, cells=cells))
         for side in sides:
             end = float((side * run.x[np.isfinite(run.release_time)]).max())
-            for station in STATIONS:
-                near = np.abs(run.x - side * station * end) <= half
-                speed = 1.0 / abs(np.polyfit(run.x[near], run.release_time[near], 1)[0])
-                width = speed * float((run.stick_time - run.release_time)[near].mean())
-                row = {"side": side, "end": side * end, "station": station, "speed": speed}
-                row |= {"pulse_width": width, "pulse_slip": float(run.slip[near].mean())}
-                rows.append(known | row)
+            positions = [side * fraction * end for fraction in FRACTIONS_OF_PATH]
+            rows += measured(part, replace(scene, cells=cells), run, side, positions)
+    return rows
+
+
+def measured(
+    part: str, scene: LayerScene, run: LayerRun, side: int, positions: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Rows of one run at positions, of what passes there and is left."""
+    tau0, gamma = scene.prestress.right, scene.gamma
+    known: dict[str, Any] = {"part": part, "gamma": gamma, "tau0": tau0, "side": side}
+    known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": scene.cells}
+    if tau0 > 0.0:
+        known["fracture_energy"] = scene.weakening * gamma / tau0**2
+    # Infinite where the middle of the length without friction never sticks.
+    middle = float(run.stick_time[np.argmin(np.abs(run.x))])
+    known["first_stick"] = middle if math.isfinite(middle) else math.inf
+    if math.isfinite(scene.trail):
+        # The middle was not followed for long enough.
+        known["first_stick"] = math.nan
+    sticks = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
+    known["earliest_stick"] = float(sticks.min())
+    known["earliest_stick_position"] = float(abs(run.x[np.argmin(sticks)]))
+    known["energy_residual"] = run.energy_residual
+    known["end"] = side * float((side * run.x[np.isfinite(run.release_time)]).max())
+    rows = []
+    for station, position in enumerate(positions, start=1):
+        distance = np.abs(run.x - position)
+        near, about = distance <= 0.5 * scene.nucleation, distance <= scene.nucleation
+        slid, released = (run.stick_time - run.release_time)[near], run.release_time[about]
+        row = {"station": station, "sample_position": position, "speed": math.nan}
+        if np.isfinite(released).all():
+            row["speed"] = 1.0 / abs(np.polyfit(run.x[about], released, 1)[0])
+        row["pulse_width"] = row["speed"] * float(slid.mean())
+        rows.append(known | row | {"pulse_slip": float(run.slip[near].mean())})
     return rows
 
 
 def one_dimension(scene: LayerScene) -> dict[str, float]:
-    """Numbers of the paper's equation at the parameters of a scene, and times of a strip."""
+    """Numbers of the paper's equation at the parameters of a scene."""
     tau0, gamma = scene.prestress.right, scene.gamma
     weakening = scene.weakening
     paper, damped = paper_pulse(tau0, gamma), weakening_pulse(tau0, gamma, BETA, weakening)
@@ -116,9 +217,6 @@ def one_dimension(scene: LayerScene) -> dict[str, float]:
         "paper_speed": paper.speed,
         "paper_pulse_width": paper.width,
         "paper_pulse_slip": paper.slip,
-        "paper_first_stick": paper_transition_displacement(tau0, gamma)[0],
-        # A strip that slides as one sticks when a shear wave has gone to the top and back.
-        "strip_first_stick": 2.0 / math.sqrt(0.5 * gamma),
         "damped_speed": damped.speed,
         "damped_pulse_width": damped.width,
         "damped_pulse_slip": damped.slip,
@@ -136,4 +234,5 @@ def field(scene: LayerScene) -> pd.DataFrame:
     velocity = run.velocity[np.ix_(rows, columns)]
     shape = {"x": x.ravel(), "y": y.ravel(), "velocity": velocity.ravel()}
     numbers = {"gamma": scene.gamma, "tau0": scene.prestress.right, "weakening": scene.weakening}
+    numbers["fracture_energy"] = DRAWN_ENERGY
     return pd.DataFrame(shape).assign(part="field", time=scene.duration, **numbers)

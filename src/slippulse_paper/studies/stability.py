@@ -1,5 +1,6 @@
 """Steps that blow up: the measured bound and the derived one, for every scheme and damping."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -15,8 +16,11 @@ NEEDS = {"settings": ()}
 
 # No damping, that of the paper's figures (0.1), and the decades in which the bound changes its law.
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
-# Bisected between these fractions of the derived bound, down to a resolution.
-BETWEEN, RESOLUTION = (0.7, 1.2), 0.01
+# Bisected between these fractions of the derived bound, down to a relative resolution. The derived
+# bound of orders with weak growth stands far below the step at which that growth is seen.
+BETWEEN, RESOLUTION = (0.7, 12.0), 0.01
+# What a bisection found: a limit between both ends, or that the limit lies beyond one of them.
+WITHIN, BELOW, ABOVE = "within", "below", "above"
 # A mode beyond the bound grows from rounding in STEPS steps, before a wave crosses the blocks.
 BLOCKS, STEPS = 400, 400
 # Blocks never slide this far below any stress.
@@ -41,23 +45,27 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": bound}
             for name, profile in PROFILES.items():
                 stable = partial(nothing_sticks, profile, bound, scheme, order, ratio)
-                fraction = largest_stable(stable)
+                fraction, place = largest_stable(stable)
                 row |= {name: bound * fraction, f"{name}_ratio": fraction}
+                row |= {f"{name}_limit": place}
             rows.append(row)
     return pd.DataFrame(rows)
 
 
-def largest_stable(stable: Callable[[float], bool]) -> float:
-    """Largest stable fraction by bisection; an end of BETWEEN where it lies beyond."""
+def largest_stable(stable: Callable[[float], bool]) -> tuple[float, str]:
+    """Return the largest stable fraction by bisection, and whether it lies between the ends.
+
+    If it lies beyond an end of BETWEEN, the fraction is that end.
+    """
     lower, upper = BETWEEN
     if not stable(lower):
-        return lower
+        return lower, BELOW
     if stable(upper):
-        return upper
-    while upper - lower > RESOLUTION:
-        middle = 0.5 * (lower + upper)
+        return upper, ABOVE
+    while upper > (1.0 + RESOLUTION) * lower:
+        middle = math.sqrt(lower * upper)
         lower, upper = (middle, upper) if stable(middle) else (lower, middle)
-    return lower
+    return lower, WITHIN
 
 
 def nothing_sticks(

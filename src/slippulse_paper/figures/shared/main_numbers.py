@@ -1,9 +1,14 @@
 """The main numbers of a run: their labels, the measured values and exact theory."""
 
 import json
+import math
 
 import numpy as np
 import pandas as pd
+
+from slippulse.data.readable_units import readable_unit
+from slippulse.model.layer_units import Layer
+from slippulse.model.si_quantities import QUANTITIES
 
 # Labels of the measured columns that both boundary conditions have, and of all by boundary.
 COMMON = {
@@ -76,3 +81,23 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     promise = [name for name in ("promised", "kept") if name in study]
     numbers = numbers.merge(study[["quantity", "uncertainty", *promise]], on="quantity")
     return numbers[["quantity", "label", "value", "uncertainty", "theory", *promise]]
+
+
+def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:
+    """Convert the numbers of a scene, each with a prefix of its own in a column unit.
+
+    The column paper has the number by the paper's formula as printed, from the row ``run`` of
+    measured and predicted numbers: its peak slip velocity in SI units is half of its own formula
+    without dimension (section IV A).
+    """
+    paper = [run.get(f"paper_{quantity}", math.nan) for quantity in numbers["quantity"]]
+    converted = numbers.assign(unit="", paper=np.array(paper, dtype=float))
+    converted.loc[converted["quantity"] == "pulse_peak_velocity", "paper"] *= 0.5
+    for index, row in converted.iterrows():
+        quantity = QUANTITIES[str(row["quantity"])]
+        unit = readable_unit(quantity, layer.convert_to_si(row["value"], quantity))
+        for column in ("value", "uncertainty", "theory", "paper"):
+            number = layer.convert_to_si(row[column], quantity)
+            converted.loc[index, column] = number / unit.value
+        converted.loc[index, "unit"] = unit.text
+    return converted

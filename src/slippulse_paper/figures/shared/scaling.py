@@ -22,13 +22,25 @@ DRAWN = 3
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a run: parameters, length and time as measured, by the paper, and exact."""
-    runs = pd.concat(tables.values(), ignore_index=True)
+    """One row per run: length and time as measured, with uncertainties, by the paper, and exact."""
+    names = [name for name in tables if "/" not in name]
+    runs = pd.concat([with_uncertainties(tables, name) for name in names], ignore_index=True)
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx"]
     kept.append("run_flags")
     for name in QUANTITIES:
         kept += [f"transition_{name}", f"paper_transition_{name}", f"exact_transition_{name}"]
+        kept.append(f"uncertainty_transition_{name}")
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
+
+
+def with_uncertainties(tables: dict[str, pd.DataFrame], name: str) -> pd.DataFrame:
+    """The runs of a sweep with the numerical uncertainty of both quantities."""
+    study = tables[f"uncertainties/{name}"].set_index(["quantity", "point"])["uncertainty"]
+    columns = {
+        f"uncertainty_transition_{quantity}": study.xs(f"transition_{quantity}").to_numpy()
+        for quantity in QUANTITIES
+    }
+    return tables[name].assign(**columns)
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
@@ -40,6 +52,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
         axes.text(0.5, 0.5, f"no run reaches ${symbol}$", ha="center", transform=axes.transAxes)
         return
     width = 1.0 if "edgecolors" in colours else 0.3
+    _error_bars(axes, x, y, runs[f"uncertainty_{quantity}"])
     _scatter(axes, runs, x, y, colours, s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
@@ -55,18 +68,34 @@ def ratio_inset(
     """Draw measured over predicted in a box over ``across``: runs, and exact lines by ``line``."""
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
+    draw_ratio(inset, runs, quantity, across, line)
     inset.set_xlabel(f"${SYMBOLS[across]}$", fontsize=SMALL, labelpad=0.0)
-    inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
+    look: Look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3}
+    look["borderaxespad"] = 0.3
+    inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
+    return inset
+
+
+def draw_ratio(axes: Axes, runs: pd.DataFrame, quantity: str, across: str, line: str) -> None:
+    """Draw measured over predicted against ``across``: runs with bars, exact lines by ``line``."""
+    axes.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
     for value, group in runs.groupby(line):
         group = group.sort_values(across)
         exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
         look: Look = {"color": style.colour(line, value), "linewidth": 0.8, "gid": "exact"}
-        inset.plot(group[across], exact, label=f"${SYMBOLS[line]}$ = {setting(value)}", **look)
-    ratio = runs[quantity] / runs[f"paper_{quantity}"]
-    _scatter(inset, runs, runs[across], ratio, {"c": style.colour(line, runs[line])})
-    look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3, "borderaxespad": 0.3}
-    inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
-    return inset
+        axes.plot(group[across], exact, label=f"${SYMBOLS[line]}$ = {setting(value)}", **look)
+    formula = runs[f"paper_{quantity}"]
+    _error_bars(
+        axes, runs[across], runs[quantity] / formula, runs[f"uncertainty_{quantity}"] / formula
+    )
+    colours = {"c": style.colour(line, runs[line])}
+    _scatter(axes, runs, runs[across], runs[quantity] / formula, colours)
+
+
+def _error_bars(axes: Axes, x: pd.Series, y: pd.Series, error: pd.Series) -> None:
+    """Draw bars of the numerical uncertainty, which a marker may hide."""
+    look: Look = {"fmt": "none", "ecolor": BLACK, "elinewidth": 0.7, "capsize": 1.5, "zorder": 2}
+    axes.errorbar(x, y, error, **look)
 
 
 def _scatter(

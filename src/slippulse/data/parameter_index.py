@@ -1,0 +1,138 @@
+"""An index of the runs of a sweep by all of their parameters at once.
+
+xarray's own indexes hold one coordinate each: two of them over one dimension cannot be selected
+by together, and before xarray 2025 no arithmetic was possible beside them.
+"""
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any, Self
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from xarray.core.indexing import IndexSelResult
+
+from ..model.checks import short_repr
+from ..model.scene import ATTRIBUTES
+
+# In this order parameters are tried as names of runs. Those that follow from earlier ones are none.
+ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
+# beta/dx is a quotient: numbers that differ by rounding are the same parameter.
+ROUNDING = 1e-9
+
+
+class ParameterIndex(xr.Index):
+    """The values of every parameter over ``point``; `sel` takes any of them, in any number.
+
+    It is the index of the dimension, too: in tables of pandas the runs are named by the parameters
+    that differ between them.
+    """
+
+    def __init__(self, values: Mapping[Hashable, np.ndarray]) -> None:
+        self.values = dict(values)
+
+    @classmethod
+    def from_variables(
+        cls, variables: Mapping[Any, xr.Variable], *, options: Mapping[str, Any]
+    ) -> Self:
+        """Make the index of variables over ``point``."""
+        return cls({name: variable.values for name, variable in variables.items()})
+
+    @classmethod
+    def concat(
+        cls,
+        indexes: Sequence[Self],
+        dim: Hashable,
+        positions: Any = None,
+    ) -> Self:
+        """Join indexes of the same parameters, at positions if they are given."""
+        joined = {}
+        for name in indexes[0].values:
+            joined[name] = np.concatenate([index.values[name] for index in indexes])
+        if positions is None:
+            return cls(joined)
+        order = np.argsort(np.concatenate([np.asarray(part) for part in positions]))
+        return cls({name: values[order] for name, values in joined.items()})
+
+    def create_variables(
+        self, variables: Mapping[Any, xr.Variable] | None = None
+    ) -> dict[Hashable, xr.Variable]:
+        """Return the coordinates, with the attributes that they had."""
+        attrs = {name: variable.attrs for name, variable in (variables or {}).items()}
+        return {n: xr.Variable("point", v, attrs.get(n)) for n, v in self.values.items()}
+
+    def rename(self, name_dict: Mapping[Any, Hashable], dims_dict: Mapping[Any, Hashable]) -> Self:
+        """Return the index with other names of parameters."""
+        return type(self)({name_dict.get(name, name): v for name, v in self.values.items()})
+
+    def to_pandas_index(self) -> pd.Index:
+        """Return the parameters that name the runs, or their numbers if none differs."""
+        names = independent_parameters(self.values) or ["point"]
+        if len(names) == 1:
+            return pd.Index(self.values[names[0]], name=names[0])
+        return pd.MultiIndex.from_arrays([self.values[name] for name in names], names=names)
+
+    def equals(self, other: xr.Index, **options: Any) -> bool:
+        """Return True if another index has the same values of the same parameters."""
+        if not isinstance(other, ParameterIndex) or self.values.keys() != other.values.keys():
+            return False
+        for name, values in self.values.items():
+            number = values.dtype.kind == "f" and other.values[name].dtype.kind == "f"
+            if not np.array_equal(values, other.values[name], equal_nan=number):
+                return False
+        return True
+
+    def isel(self, indexers: Mapping[Any, Any]) -> Self | None:
+        """Return the index of some runs; None for a single one, which has no dimension."""
+        rows = indexers["point"]
+        if isinstance(rows, xr.Variable):
+            if rows.dims != ("point",):
+                return None
+            rows = rows.values
+        if np.ndim(rows) == 0 and not isinstance(rows, slice):
+            return None
+        return type(self)({name: values[rows] for name, values in self.values.items()})
+
+    def sel(self, labels: dict[Any, Any], method: Any = None, tolerance: Any = None):
+        """Select the runs at values of parameters: one value, several, or a slice."""
+        chosen = np.ones(len(next(iter(self.values.values()))), dtype=bool)
+        for name, label in labels.items():
+            chosen &= self._matches(name, label, method == "nearest")
+        if not chosen.any():
+            wanted = ", ".join(f"{name} = {short_repr(label)}" for name, label in labels.items())
+            present = {name: np.unique(self.values[name]).tolist() for name in labels}
+            raise KeyError(f"{wanted}: no such run; the runs have {short_repr(present)}")
+        return IndexSelResult({"point": np.flatnonzero(chosen)})
+
+    def _matches(self, name: Hashable, label: Any, nearest: bool) -> np.ndarray:
+        values = self.values[name]
+        if isinstance(label, slice):
+            above = True if label.start is None else values >= label.start
+            below = True if label.stop is None else values <= label.stop
+            return np.broadcast_to(np.logical_and(above, below), values.shape)
+        matches = np.zeros(values.shape, dtype=bool)
+        for value in np.atleast_1d(np.asarray(label)).tolist():
+            if values.dtype.kind not in "if" or isinstance(value, str):
+                matches |= values == value
+                continue
+            if nearest:
+                value = values[np.argmin(np.abs(values - value))]
+            matches |= np.isclose(values, value, rtol=ROUNDING, atol=0.0)
+        return matches
+
+
+def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
+    """Return the parameters that differ between the runs and do not follow from earlier ones."""
+    names: list[str] = []
+    count = 1
+    for name in filter(values.__contains__, dict.fromkeys(ORDER)):
+        number = len(combinations(values, [*names, name]))
+        if number > count:
+            names, count = [*names, name], number
+    return names
+
+
+def combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
+    """Return the different combinations of some parameters, by the numbers of their values."""
+    codes = [np.unique(values[name], return_inverse=True)[1] for name in names]
+    return np.unique(np.stack(codes, axis=-1), axis=0)

@@ -1,0 +1,140 @@
+"""Sweeps as xarray users expect them: parameters as coordinates, and full products as grids."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..model.checks import check_that
+from ..model.scene import ATTRIBUTES
+from .parameter_index import ParameterIndex, combinations, independent_parameters
+from .variables import VARIABLES
+
+# Names of the axes of a full product, in the attributes of a sweep.
+AXES = "sweep_axes"
+FROM_SWEEP = "a Dataset that run_sweep or open_sweep returned"
+
+
+def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
+    """Return a sweep with its parameters as coordinates over ``point``, and the rows of its runs.
+
+    ``row_start`` is the first of the ``row_size`` blocks of each run, so that a selection of runs
+    still has its blocks.
+    """
+    number = {"units": "1", "long_name": VARIABLES["point"]}
+    sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), number))
+    names = [name for name in ("point", *ATTRIBUTES.split()) if name in sweep]
+    coordinates = names[1:]
+    if "row_size" in sweep:
+        size = sweep["row_size"].values
+        about = {"units": "1", "long_name": VARIABLES["row_start"]}
+        sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, about))
+        coordinates.append("row_size")
+    return sweep.drop_indexes("point").set_coords(coordinates).set_xindex(names, ParameterIndex)
+
+
+def open_sweep(path: str | Path) -> xr.Dataset:
+    """Open a data file of a sweep, with its parameters as coordinates.
+
+    Parameters
+    ----------
+    path : str or Path
+        File of ``results/data``, or one to which a sweep of `run_sweep` was written by
+        ``to_netcdf``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The sweep in memory, as `run_sweep` returns it: ``sweep.sel(gamma=0.3)`` selects runs.
+
+    Raises
+    ------
+    ValueError
+        If the file is not that of a sweep.
+    FileNotFoundError
+        If there is no such file.
+
+    Examples
+    --------
+    >>> sweep = sp.run_sweep([sp.Scene("stress", sp.Prestress(0.6, 0.6), 1.0, 0.1)])
+    >>> sweep.to_netcdf("sweep.nc")
+    >>> sp.open_sweep("sweep.nc").sel(left=0.6).sizes["point"]
+    1
+    """
+    data = xr.load_dataset(path)
+    check_that(is_sweep(data), "path", str(path), "the data file of a sweep, such as results/data")
+    return with_parameters(data.drop_vars(["row_start", "point"], errors="ignore"))
+
+
+def is_sweep(data: object) -> bool:
+    """Return True if a Dataset has the runs of a sweep over ``point``."""
+    if not isinstance(data, xr.Dataset) or "point" not in data.dims:
+        return False
+    return all(name in data.variables for name in ("boundary", "dx", "duration"))
+
+
+def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
+    """Return a sweep that is a full product of parameters with these as its axes.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of `sweep`, `run_sweep` or `open_sweep`, or a selection of its runs.
+    over : sequence of str, optional
+        Parameters that become axes; by default the lists given to `sweep`, else those that differ
+        between runs and do not follow from each other.
+
+    Returns
+    -------
+    xarray.Dataset
+        Every number over the axes in place of ``point``. The blocks are as they were: `point`
+        takes a run out by its number, and `measure` takes the grid.
+
+    Raises
+    ------
+    ValueError
+        If some combination of the values of the axes is no run, or several.
+
+    Examples
+    --------
+    >>> runs = sp.sweep(boundary="stress", left=[-0.4, -0.2], right=0.0, width=[1.0, 2.0],
+    ...                 duration=2.0, dx=0.1)
+    >>> sp.as_grid(runs)["releases"].sel(left=-0.4, width=2.0).item() > 0
+    True
+    """
+    check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
+    named = [over] if isinstance(over, str) else over
+    axes = _axes_of(sweep) if named is None else list(named)
+    known = bool(axes) and all(name in sweep.coords for name in axes)
+    check_that(known, "over", axes, "parameters of the sweep, at least one")
+    _check_product(sweep, axes)
+    bare = sweep.drop_indexes([name for name in sweep.xindexes if "point" in sweep[name].dims])
+    bare = _with_constants(bare.drop_vars("point", errors="ignore"), axes)
+    if len(axes) == 1:
+        return bare.swap_dims(point=axes[0]).sortby(axes[0])
+    return bare.set_index(point=axes).unstack("point")
+
+
+def _axes_of(sweep: xr.Dataset) -> list[str]:
+    """Return the parameters that were listed, or else those that differ between the runs."""
+    listed = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
+    return listed or independent_parameters({n: sweep[n].values for n in sweep.coords})
+
+
+def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
+    values = {name: sweep[name].values for name in axes}
+    product = math.prod(len(np.unique(one)) for one in values.values())
+    runs = sweep.sizes["point"]
+    full = len(combinations(values, axes)) == product == runs
+    check_that(
+        full, "number of runs", runs, f"{product}, one for each combination of {', '.join(axes)}"
+    )
+
+
+def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
+    """Return a sweep in which parameters that are the same in all runs are single numbers."""
+    parameters = [name for name in ATTRIBUTES.split() if name in sweep.coords and name not in axes]
+    constant = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
+    return sweep.assign_coords({name: sweep[name].variable[0] for name in constant})

@@ -1,0 +1,107 @@
+"""The quantity that each number of a run or of a measured table is, and its unit in SI."""
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+# SI unit of each quantity, as UDUNITS and the CF conventions write it. A stress is counted from 0,
+# a stress difference from the kinetic friction; energies are those of one metre of width.
+UNITS = {
+    "length": "m",
+    "time": "s",
+    "speed": "m s-1",
+    "slip": "m",
+    "slip_velocity": "m s-1",
+    "slip_acceleration": "m s-2",
+    "stress": "Pa",
+    "stress_difference": "Pa",
+    "damping": "m2 s-1",
+    "energy": "J m-1",
+}
+# Quantity and name of each variable of a run.
+VARIABLES = {
+    "x": ("length", "position"),
+    "prestress": ("stress", "initial shear stress"),
+    "release_time": ("time", "time of the first release, NaN where never"),
+    "stick_time": ("time", "time of the last stick, NaN where never or sliding at the end"),
+    "slip": ("slip", "slip at the end"),
+    "slip_velocity": ("slip_velocity", "slip velocity at the end"),
+    "slip_acceleration": ("slip_acceleration", "slip acceleration at the end"),
+    "sample_time": ("time", "time of a sample"),
+    "sample_position": ("length", "position of a sample"),
+    "sample_slip": ("slip", "slip at the sampled times and positions"),
+    "sample_velocity": ("slip_velocity", "slip velocity at the sampled times and positions"),
+}
+# Names of attributes and of measured numbers, by quantity; those that are not listed have no unit.
+_NAMES = {
+    "length": """
+        x position width dx first_stick_position limit_position front_intercept_right
+        front_intercept_left transition_length balance_distance last_release_distance
+        last_release_length paper_transition_length exact_transition_length pulse_front pulse_width
+        pulse_half_width slip_length_background slip_length_nucleation exact_pulse_width
+        exact_balance_distance
+    """,
+    "time": """
+        duration end_time first_stick_time limit_time transition_time last_release_time
+        paper_transition_time exact_transition_time slip_time_background slip_time_nucleation
+        exact_first_stick_time
+    """,
+    "speed": """
+        front_speed_right front_speed_left front_speed_error_right front_speed_error_left
+        late_front_speed_left late_front_speed_right exact_front_speed_left exact_front_speed_right
+    """,
+    "slip": "pulse_slip exact_pulse_slip exact_left_pulse_slip",
+    "slip_velocity": """
+        min_velocity largest_velocity pulse_peak_velocity exact_largest_velocity
+        exact_pulse_peak_velocity exact_left_pulse_peak_velocity
+    """,
+    "slip_acceleration": "pulse_acceleration exact_pulse_acceleration",
+    "stress": "left right peak beyond min_stuck_stress",
+    "stress_difference": "pulse_stress_drop",
+    "damping": "beta",
+    "energy": """
+        work_of_prestress kinetic_energy elastic_energy leaf_spring_energy viscous_loss event_loss
+        friction_loss
+    """,
+}
+QUANTITIES = {name: quantity for name, (quantity, _) in VARIABLES.items()}
+for _quantity, _names in _NAMES.items():
+    QUANTITIES |= dict.fromkeys(_names.split(), _quantity)
+# The profile as JSON: quantities of the numbers of each row.
+PROFILE_QUANTITIES = {
+    "steps": ("length", "stress"),
+    "bumps": ("length", "stress_difference", "length"),
+    "points": ("length", "stress"),
+}
+# Converts one value, or an array, of a quantity.
+Converter = Callable[[Any, str], Any]
+
+
+def converted_run(run: Any, convert: Converter) -> Any:
+    """Return a Dataset over x with all variables and attributes converted."""
+    variables = {
+        name: (variable.dims, convert(variable.values, VARIABLES[name][0]), variable.attrs)
+        for name, variable in run.variables.items()
+    }
+    coordinates = {name: variables.pop(name) for name in run.coords}
+    converted = run.assign_coords(coordinates).assign(variables)
+    converted.attrs = converted_numbers(run.attrs, convert)
+    return converted
+
+
+def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[str, Any]:
+    """Return numbers by name, converted where they have a unit."""
+    converted = dict(numbers)
+    for name in QUANTITIES.keys() & converted.keys():
+        if converted[name] is not None:
+            converted[name] = convert(converted[name], QUANTITIES[name])
+    if "steps_and_bumps" in converted:
+        parts = json.loads(converted["steps_and_bumps"])
+        for part, rows in parts.items():
+            if not isinstance(rows, list):
+                # A measured table has a summary of the points.
+                continue
+            quantities = PROFILE_QUANTITIES[part]
+            parts[part] = [[*map(convert, row, quantities)] for row in rows]
+        converted["steps_and_bumps"] = json.dumps(parts)
+    return converted

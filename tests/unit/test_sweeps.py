@@ -1,0 +1,169 @@
+"""Sweeps by their parameters: selections, grids, tables of numbers, files, and progress."""
+
+import dataclasses
+import os
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import slippulse as sp
+
+LEVELS, GAMMAS = [0.4, 0.5], [0.6, 0.3]
+VALUES = {"boundary": "displacement", "damping_ratio": 0.1, "dx": 0.1, "duration": 8.0}
+FIELDS = ("fronts", "fields")
+
+
+@pytest.fixture(scope="module")
+def runs() -> xr.Dataset:
+    return sp.sweep(gamma=GAMMAS, left=LEVELS, record=FIELDS, **VALUES)
+
+
+def alone(gamma: float, level: float) -> xr.Dataset:
+    return sp.simulate(sp.Scene(prestress=sp.Prestress(level, level), gamma=gamma, **VALUES))
+
+
+def test_every_combination_is_a_run_in_the_order_of_the_lists(runs):
+    assert runs["gamma"].values.tolist() == [0.6, 0.6, 0.3, 0.3]
+    assert runs["left"].values.tolist() == runs["right"].values.tolist() == 2 * LEVELS
+    for number, (gamma, level) in enumerate((g, tau) for g in GAMMAS for tau in LEVELS):
+        assert sp.point(runs, number).equals(alone(gamma, level))
+
+
+def test_runs_are_selected_by_any_parameters_and_keep_their_blocks(runs):
+    one = runs.sel(gamma=0.3, left=0.5)
+    assert one["point"].values.tolist() == [3] and sp.point(one).equals(alone(0.3, 0.5))
+    assert runs.sel(gamma=0.3).sel(left=0.5).identical(one)
+    # beta/dx may be a rounding error away from the number that was given.
+    assert runs.sel(damping_ratio=0.1 + 1e-15).sizes["point"] == 4
+    assert runs.sel(left=slice(0.45, None), boundary="displacement").sizes["point"] == 2
+    assert runs.sel(gamma=0.35, method="nearest")["gamma"].values.tolist() == [0.3, 0.3]
+    assert runs.sel(gamma=[0.3, 0.6]).sizes["point"] == 4
+    assert sp.point(runs.isel(point=2)).equals(sp.point(runs, 2))
+    with pytest.raises(KeyError, match=r"gamma = 0\.5: no such run; the runs have .*0\.3, 0\.6"):
+        runs.sel(gamma=0.5)
+
+
+def test_xarray_and_pandas_do_with_a_sweep_what_their_users_expect(runs):
+    sticks = runs["first_stick_time"]
+    expected = [float(sticks.sel(gamma=gamma).mean()) for gamma in sorted(GAMMAS)]
+    assert sticks.groupby("gamma").mean().values.tolist() == expected
+    assert (sticks * runs["gamma"] / runs["gamma"]).values == pytest.approx(sticks.values)
+    assert sticks.where(runs["gamma"] > 0.4).isnull().sum() == 2
+    table = runs.drop_dims("block").to_dataframe()
+    assert table.index.names == ["gamma", "left"] and len(table) == 4
+    assert table["first_stick_time"].loc[0.3, 0.5] == float(sticks[3])
+    line = runs.sel(left=0.5).drop_dims("block").to_dataframe()
+    assert line.index.tolist() == GAMMAS and line.index.name == "gamma"
+    numbers = runs.drop_dims("block")
+    assert xr.concat([numbers, numbers], "point").sel(left=0.4).sizes["point"] == 4
+    assert numbers.sortby("left").sel(left=0.4).equals(numbers.sel(left=0.4))
+    assert numbers.rename(gamma="elasticity").sel(elasticity=0.3).sizes["point"] == 2
+
+
+def test_a_full_product_is_a_grid_and_another_one_is_refused(runs):
+    grid = sp.as_grid(runs)
+    assert grid["first_stick_time"].sizes == {"gamma": 2, "left": 2}
+    assert grid["dx"].dims == ()
+    assert sp.point(grid.sel(gamma=0.3, left=0.5)).equals(alone(0.3, 0.5))
+    # The lists need not be known: beta, right and the ratio follow from other parameters.
+    bare = sp.as_grid(runs.assign_attrs(sweep_axes=""))
+    assert bare["slip"].equals(grid["slip"]) and bare.sizes == grid.sizes
+    measured = sp.measure(grid).set_index(["gamma", "left"])
+    assert measured["transition_time"].loc[0.3, 0.5] == float(runs["first_stick_time"][3])
+    line = sp.as_grid(runs.sel(gamma=0.3), over="left")
+    assert line["first_stick_time"].dims == ("left",)
+    with pytest.raises(ValueError, match="number of runs: 3; allowed: 4, one for each comb"):
+        sp.as_grid(runs.isel(point=[0, 1, 2]))
+    with pytest.raises(ValueError, match=r"over: \['speed'\]; allowed: parameters"):
+        sp.as_grid(runs, over=["speed"])
+
+
+def test_a_sweep_is_measured_as_each_of_its_runs(runs):
+    table = sp.measure(runs)
+    assert table.index.name == "point" and len(table) == 4
+    for number, row in table.iterrows():
+        for name, value in sp.measure(sp.point(runs, number)).items():
+            np.testing.assert_equal(row[name], value)
+    assert sp.measure(runs.sel(left=0.5))["gamma"].tolist() == GAMMAS
+    with pytest.raises(ValueError, match=r"run: .*; allowed: a sweep that was recorded with"):
+        sp.measure(sp.sweep(left=0.5, record=("fields",), gamma=0.5, **VALUES))
+
+
+def test_a_sweep_comes_back_from_a_file(runs, tmp_path):
+    runs.to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
+    again = sp.open_sweep(tmp_path / "sweep.nc")
+    xr.testing.assert_identical(again, runs)
+    assert again.sel(gamma=0.3).sizes["point"] == 2
+    alone(0.3, 0.5).to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
+    with pytest.raises(ValueError, match="allowed: the data file of a sweep"):
+        sp.open_sweep(tmp_path / "run.nc")
+
+
+@pytest.mark.parametrize(
+    ("refusal", "values"),
+    [
+        ("parameter: 'gama'; allowed: boundary", {"gama": 0.3}),
+        ("left: None; allowed: a level", {"right": 0.3}),
+        (
+            "prestress: .*; allowed: prestress, or left",
+            {"prestress": sp.Prestress(0, 0), "left": 0},
+        ),
+        ("gamma: \\[\\]; allowed: a value, or a list", {"left": 0.5, "gamma": []}),
+        ("gamma: -1.0; allowed", {"left": 0.5, "gamma": [0.3, -1.0]}),
+    ],
+)
+def test_wrong_lists_are_refused(refusal, values):
+    with pytest.raises(ValueError, match=refusal):
+        sp.sweep(**VALUES | values)
+    with pytest.raises(ValueError, match="duration: None; allowed: a value, which every scene"):
+        sp.sweep(boundary="stress", left=0.5, dx=0.1)
+
+
+def test_a_pre_stress_may_be_listed_too():
+    profiles = [sp.Prestress(0.5, 0.5), sp.Prestress(0.5, 0.5, width=2.0)]
+    runs = sp.sweep(boundary="stress", prestress=profiles, dx=[0.1, 0.2], duration=1.0)
+    assert runs["width"].values.tolist() == [1.0, 1.0, 2.0, 2.0]
+    assert sp.as_grid(runs)["releases"].sizes == {"dx": 2, "width": 2}
+
+
+def test_all_cores_are_used_by_default(monkeypatch):
+    used = []
+    module = sys.modules["slippulse.simulation.simulate"]
+    solve = module.solve_sweep
+    monkeypatch.setattr(module, "solve_sweep", lambda *a: used.append(a[4]) or solve(*a))
+    sp.sweep(boundary="stress", left=0.5, dx=0.1, duration=1.0)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    assert used == [cores]
+
+
+def test_without_tqdm_progress_says_so_in_one_line_and_goes_on(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 1.0, 0.1)
+    for run in (
+        lambda: sp.simulate(scene, progress=True),
+        lambda: sp.run_sweep([scene] * 2, progress=True),
+    ):
+        assert run()["release_time"].size
+        shown = capsys.readouterr().err
+        assert shown == "progress: tqdm is not installed, so that no bar is drawn\n"
+
+
+def test_a_damping_ratio_stands_for_beta():
+    profile = sp.Prestress(0.6, 0.6)
+    scene = sp.Scene("stress", profile, 15.0, dx=0.01, damping_ratio=0.1)
+    assert scene == sp.Scene("stress", profile, 15.0, dx=0.01, beta=1e-3)
+    assert scene.beta == 1e-3 and scene.damping_ratio == 0.1
+    assert dataclasses.replace(scene, dx=0.02).damping_ratio == 0.05
+    assert sp.Scene.from_attributes(scene.attributes()) == scene
+    assert hash(scene) == hash(dataclasses.replace(scene))
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        scene.beta = 0.0
+    refused = r"damping_ratio: 0\.1; allowed: damping_ratio or beta \(here 0\.0\), not both"
+    with pytest.raises(ValueError, match=refused):
+        sp.Scene("stress", profile, 15.0, 0.01, beta=0.0, damping_ratio=0.1)
+    with pytest.raises(ValueError, match=refused):
+        sp.Scene("stress", profile, 15.0, 0.01, 0.0, 0.0, damping_ratio=0.1)
+    with pytest.raises(ValueError, match=r"damping_ratio: -1; allowed: a finite number and >= 0"):
+        sp.Scene("stress", profile, 15.0, 0.01, damping_ratio=-1)
