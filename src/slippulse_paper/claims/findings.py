@@ -11,6 +11,7 @@ from slippulse.measurement.inference import inference
 
 from ..text.prose import fill
 from . import layer_claims as layer
+from . import rough_claims as rough
 from . import transition_claims as transition
 from .evidence import Evidence, evaluated, value_of
 
@@ -95,6 +96,7 @@ COMPUTED: dict[str, Callable[[Evidence], dict]] = {
     "collapse_against_damping": collapse,
     "front_never_arrives": never_arrives,
     "layer_in_plane": layer.layer_in_plane,
+    "pulses_on_rough_prestress": rough.rough_numbers,
     "published_figure_made_with": best_fit,
     # Between the two criteria of the duration.
     "duration_criterion": lambda _: {"factor": float(np.pi / np.sqrt(2.0))},

@@ -12,14 +12,14 @@ NEEDS = {"studies": ["rough_prestress"]}
 table = style.as_given
 
 KEYS = ["level", "deviation", "correlation_length", "hurst"]
-COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, "tab:red", "tab:cyan")
+COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY)
 HEAD = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) survival and (b) death rate with the displacement held, (c, d) the stress held."""
     figure, (lives, rates, walks, velocities) = style.new_panels(PAGE, 5.6, "ab;cd")
-    held = table[(table["boundary"] == "displacement")]
+    held = table[table["boundary"] == "displacement"]
     ensembles = held[(held["part"] == "ensemble") & (held["deaths"] > 0.0)]
     for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
         label = ", ".join(f"{row[key]:g}" for key in KEYS)
@@ -28,7 +28,7 @@ def draw(table: pd.DataFrame) -> Figure:
         look: Look = {"color": colour, "capsize": 2.0, "fmt": marker, "markersize": 4.0}
         rates.errorbar(row["barrier_rate"], row["rate"], errors, **look)
     lives.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
-    lives.set(ylim=(0.6, 1.01), xlim=(0.0, None))
+    lives.set(ylim=(0.6, 1.01), xlim=(0.0, ensembles["stop"].max()))
     lives.legend(title=HEAD, loc="lower left", fontsize=SMALL, title_fontsize=SMALL)
     ends = np.array([3e-5, 1e-2])
     rates.plot(ends, ends, color=BLACK, linewidth=0.8)

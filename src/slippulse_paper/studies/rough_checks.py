@@ -67,7 +67,7 @@ def grid(sweep: Mapping[str, Any]) -> pd.DataFrame:
         for scene in expand({**sweep, "profiles": profiles, "dx": [dx]})[0]:
             solution = solve_on_lattice(scene)
             run = Recorded(solution.arrays(), {"dx": dx})
-            fates += [fate(run, side) for side in (1, -1)]
+            fates += [fate(run, side, profiles[0]["rough"]["stop"]) for side in (1, -1)]
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
 
@@ -81,7 +81,9 @@ def balance(group: Sequence[Mapping[str, Any]], sweep: Mapping[str, Any]) -> pd.
     for dx in BALANCE_SPACINGS:
         gaps = []
         for scene, death in zip(expand({**shorter, "dx": [dx]})[0], exact_deaths, strict=True):
-            one = fate(Recorded(solve_on_lattice(scene).arrays(), {"dx": dx}), 1)
+            one = fate(
+                Recorded(solve_on_lattice(scene).arrays(), {"dx": dx}), 1, group[0]["rough"]["stop"]
+            )
             gaps += [death - one.distance] if one.died else []
         counts = {"deaths": len(gaps), "pulses": len(profiles)}
         rows.append({"part": "balance", "dx": dx, "change": np.median(gaps)} | counts)

@@ -32,7 +32,7 @@ NEEDS = {
 }
 
 # Keys of a rough profile that all runs of an ensemble have in common.
-KEYS = ("level", "deviation", "correlation_length", "hurst", "spacing")
+KEYS = ("level", "deviation", "correlation_length", "hurst", "spacing", "stop")
 # Pulses are followed from here on, farther than their nucleation reaches.
 START = 5.0
 # Levels at which front speeds are computed, for interpolation.
@@ -85,17 +85,22 @@ def ensembles(data: xr.Dataset, profiles: list[dict]) -> Iterator[Ensemble]:
     yield from groups.values()
 
 
-def fate(run: Recorded, side: int) -> Fate:
-    """Return how far the pulse on one side (1 or -1) has gone, and whether all of it has stuck."""
+def fate(run: Recorded, side: int, stop: float) -> Fate:
+    """Return how far the pulse on one side (1 or -1) has gone, and whether all of it has stuck.
+
+    A pulse is no longer followed where the rough pre-stress stops.
+    """
     ahead = (side * run["x"] > 0.0) & np.isfinite(run["release_time"])
     # Rounded, equal distances stay equal on both sides.
     distance = round(float(np.max(side * run["x"][ahead], initial=0.0)), 9)
-    return Fate(distance, bool(np.isfinite(run["stick_time"][ahead]).all()))
+    died = bool(np.isfinite(run["stick_time"][ahead]).all())
+    return Fate(min(distance, stop), died and distance < stop)
 
 
 def held_displacement(group: Ensemble) -> pd.DataFrame:
     """Deaths against the rate of barriers, survival, and the local state where slip is recorded."""
-    fates = [fate(run, side) for run in group.runs for side in (1, -1)]
+    stop = group.keys["stop"]
+    fates = [fate(run, side, stop) for run in group.runs for side in (1, -1)]
     row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(group.keys)
     if "slip" in group.runs[0]:
         row |= local_state(group)
@@ -136,7 +141,7 @@ def local_state(group: Ensemble) -> dict[str, float]:
 
 def held_stress(group: Ensemble, push: float) -> pd.DataFrame:
     """Deaths and velocities against the integral of the pre-stress of each run, and survival."""
-    fates = [fate(run, 1) for run in group.runs]
+    fates = [fate(run, 1, group.keys["stop"]) for run in group.runs]
     pulses = pd.DataFrame(fates).assign(part="pulse")
     integrals = [integral(profile) for profile in group.profiles]
     pulses["balance"] = [balance_position(MIDDLES, total) for total in integrals]
