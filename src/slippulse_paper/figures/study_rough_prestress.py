@@ -46,6 +46,8 @@ def draw(table: pd.DataFrame) -> Figure:
         pulses = _of(stress, row, "pulse")
         pulses = pulses[~pulses["died"].astype(bool)]
         look = {"color": colour, "label": label, "markersize": 2.5, "linestyle": "none"} | OPEN
+        # The pulses that differ least are drawn last.
+        look["zorder"] = 3.0 - row["deviation"]
         velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look)
     long = stress[stress["part"] == "long_survival"]
     walks.plot(long["distance"], long["survival"], color=GREY, label="balance alone")
