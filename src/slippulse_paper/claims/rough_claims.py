@@ -70,7 +70,7 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
     out |= {"long_least": ratio[long].min(), "long_largest": ratio[long].max()}
     out |= {"long_length": dying["correlation_length"].max()}
     for name, row in (("short", first), ("smooth", last)):
-        out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation", "width")}
+        out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation")}
         out |= {f"{name}_local": row["off_local"], f"{name}_mean": row["off_mean"]}
         out |= {f"{name}_slowness": row["slowness_off"]}
     out |= {"memory": first["memory"], "forgotten": forgotten["high"].max()}

@@ -20,12 +20,12 @@ from .survival_statistics import death_rate
 NEEDS = {"sweeps": ["rough_displacement", "rough_settling", "rough_stress"]}
 
 # Seeds of each ensemble whose deaths are compared between spacings.
-GRID_SEEDS, GRID_SPACINGS = 5, (0.05, 0.025, 0.0125)
+GRID_SEEDS, GRID_SPACINGS = 10, (0.05, 0.025)
 # Seeds whose deaths with the stress held are compared with the balance, up to a time, by spacing.
 BALANCE_SEEDS, BALANCE_TIME, BALANCE_SPACINGS = 20, 60.0, (0.1, 0.05, 0.025)
 # Seeds that are also solved exactly, up to a time, against lattices of these spacings, at blocks at
 # this distance from each other.
-EXACT_SEEDS, EXACT_TIME, EXACT_SPACINGS = 3, 12.0, (0.05, 0.025)
+EXACT_SEEDS, EXACT_TIME, EXACT_SPACINGS = 2, 12.0, (0.05, 0.025)
 EXACT_DISTANCE = 0.25
 # Bump of the pre-stress that a pulse forgets, the seeds that meet it, and distances beyond the bump
 # in units of the memory. A Gaussian ends EDGE widths from its centre.

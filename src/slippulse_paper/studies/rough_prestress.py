@@ -42,7 +42,7 @@ FINE = 0.05
 MIDDLES = FINE * (np.arange(-600, 3200) + 0.5)
 # Further seeds whose deaths are found without a simulation, up to a distance, from fields of a
 # coarser spacing. The exponent of survival is that beyond ASYMPTOTE, many death scales.
-FIRST_SEED, LONG_SEEDS, LONG, LONG_SPACING, ASYMPTOTE = 1001, 500, 2500.0, 0.5, 200.0
+FIRST_SEED, LONG_SEEDS, LONG, LONG_SPACING, ASYMPTOTE = 1001, 500, 2000.0, 0.5, 200.0
 # Every so many steps of the long curve of survival are kept.
 LONG_STEP = 5
 
@@ -127,7 +127,7 @@ def local_state(group: Ensemble) -> dict[str, float]:
         exact_times.append(np.mean(slowness))
     slip, relative_level = np.concatenate(slips), np.concatenate(levels)
     return {
-        "width": pulse.width,
+        "pulse_width": pulse.width,
         "memory": memory,
         # Median distance from the steady slip at the local pre-stress, and at the mean one.
         "off_local": float(np.median(np.abs(slip / relative_level - 1.0))),
