@@ -8,8 +8,7 @@ from .kinds import Qualitative
 # Names of the exponent and of the ends of its interval, and numbers of ensembles under held stress.
 ENDS = (("exponent", ""), ("low", "_low"), ("high", "_high"))
 STRESS_KEYS = ("level", "deviation", "pulses", "deaths", "cracks", "survival", "low", "high")
-STRESS_KEYS += ("predicted", "velocity_mean", "velocity_deviation", "velocity_predicted")
-STRESS_KEYS += ("death_scale", "stop")
+DISTANCES, VELOCITIES = ("death_scale", "stop"), ("velocity_deviation", "velocity_predicted")
 
 
 def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
@@ -19,7 +18,7 @@ def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
 
 
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
-    """No pulse dies where the deviation is a small part of the level; the paper has no such limit."""
+    """No pulse dies where the deviation is a small part of the level, a limit of ours."""
     rows = ensembles(evidence, "displacement")
     relative = rows["deviation"] / rows["level"]
     small = relative <= evidence.tolerance(id)
@@ -75,9 +74,10 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         out |= {f"{name}_slowness": row["slowness_off"]}
     out |= {"memory": first["memory"], "forgotten": forgotten["high"].max()}
     out |= {f"tail_{name}": exponent[f"exponent{end}"] for name, end in ENDS}
-    out |= {f"rough_{key}": rough[key] for key in STRESS_KEYS}
-    out |= {f"quiet_{key}": quiet[key] for key in STRESS_KEYS}
-    out |= {f"above_{key}": above[key] for key in STRESS_KEYS}
+    keys = (*STRESS_KEYS, *DISTANCES, *VELOCITIES, "predicted", "velocity_mean")
+    out |= {f"rough_{key}": rough[key] for key in keys}
+    out |= {f"quiet_{key}": quiet[key] for key in keys}
+    out |= {f"above_{key}": above[key] for key in keys}
     out |= {"balance_coarse": balance["change"].iloc[-1], "balance_fine": balance["change"].iloc[0]}
     out |= {"balance_dx": balance["dx"].iloc[0], "balance_coarse_dx": balance["dx"].iloc[-1]}
     return {name: float(value) for name, value in out.items()}

@@ -25,8 +25,8 @@ def draw(table: pd.DataFrame) -> Figure:
         label = ", ".join(f"{row[key]:g}" for key in KEYS)
         _survival(lives, _of(held, row, "survival"), colour, label)
         errors = [[row["rate"] - row["rate_low"]], [row["rate_high"] - row["rate"]]]
-        look: Look = {"color": colour, "capsize": 2.0, "fmt": marker, "markersize": 4.0}
-        rates.errorbar(row["barrier_rate"], row["rate"], errors, **look)
+        bars: Look = {"color": colour, "capsize": 2.0, "fmt": marker, "markersize": 4.0}
+        rates.errorbar(row["barrier_rate"], row["rate"], errors, **bars)
     lives.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
     lives.set(ylim=(0.6, 1.01), xlim=(0.0, ensembles["stop"].max()))
     lives.legend(title=HEAD, loc="lower left", fontsize=SMALL, title_fontsize=SMALL)
@@ -45,10 +45,10 @@ def draw(table: pd.DataFrame) -> Figure:
             walks.plot(curve["distance"], curve["predicted"], "--", color=colour, linewidth=0.9)
         pulses = _of(stress, row, "pulse")
         pulses = pulses[~pulses["died"].astype(bool)]
-        look = {"color": colour, "label": label, "markersize": 2.5, "linestyle": "none"} | OPEN
+        look: Look = {"color": colour, "label": label, "markersize": 2.5, "linestyle": "none"}
         # The pulses that differ least are drawn last.
         look["zorder"] = 3.0 - row["deviation"]
-        velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look)
+        velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look, **OPEN)
     long = stress[stress["part"] == "long_survival"]
     walks.plot(long["distance"], long["survival"], color=GREY, label="balance alone")
     tail = long[long["distance"] > 0.2 * long["distance"].max()]

@@ -148,10 +148,10 @@ def held_stress(group: Ensemble, push: float) -> pd.DataFrame:
     states = [end_state(run, total) for run, total in zip(group.runs, integrals, strict=True)]
     pulses = pulses.join(pd.DataFrame(states))
     row = {"part": "ensemble"} | death_rate(fates, START)
-    at_start = np.searchsorted(MIDDLES, START)
+    at_start = int(np.searchsorted(MIDDLES, START))
     pushes = np.array([push_at(total, at_start) for total in integrals])
-    row |= {"push": push, "diffusivity": diffusivity(group.keys)}
-    row["death_scale"] = float(np.mean(pushes)) ** 2 / row["diffusivity"]
+    rate = diffusivity(group.keys)
+    row |= {"push": push, "diffusivity": rate, "death_scale": float(np.mean(pushes)) ** 2 / rate}
     curve = survival(fates).assign(part="survival")
     walked = np.maximum(curve["distance"].to_numpy() - START, FINE)[:, np.newaxis]
     walks = first_passage(walked, pushes, group.keys)
@@ -162,7 +162,7 @@ def held_stress(group: Ensemble, push: float) -> pd.DataFrame:
         "cracks": int(alive["is_crack"].sum()),
         "velocity_mean": alive["velocity"].mean(),
         "velocity_deviation": alive["velocity"].std(),
-        "velocity_predicted": 0.5 * np.sqrt(row["diffusivity"] * alive["distance"].mean()),
+        "velocity_predicted": 0.5 * np.sqrt(rate * alive["distance"].mean()),
         "velocity_off": (alive["velocity"] - alive["exact_velocity"]).abs().median(),
     }
     return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**group.keys)
