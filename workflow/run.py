@@ -63,7 +63,7 @@ def full_target(target: str) -> str:
 
 def take_over() -> None:
     """Remove what a killed run has left, unless another run is at work in this folder."""
-    from slippulse.data.files import UNFINISHED
+    from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
 
     held = take(STATE / "slippulse.lock")
@@ -71,25 +71,42 @@ def take_over() -> None:
         sys.exit("Another run is at work in this folder: wait for it, or stop it.")
     locks = [*STATE.glob("locks/*.lock")]
     if locks:
-        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED}*")]:
+        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED_MARK}*")]:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
     held.close()
 
 
-def changed_results() -> list[str]:
-    """List results that are not what their jobs wrote, which Snakemake does not notice."""
+def changed_results() -> dict[str, str]:
+    """Return results that are not what their jobs wrote, which Snakemake does not notice."""
     from slippulse_paper.records.job_records import RecordedFiles
 
     problems = dict(RecordedFiles(RESULTS).problems())
     for name in problems:
         if Path(name).is_dir():
             sys.exit(f"{name} is a folder; remove or rename it: a file of that name is needed")
-    if problems:
-        name, reason = next(iter(problems.items()))
-        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
-        print(f"{count} renewed where needed: {name}: {reason}", file=sys.stderr)
-    return [*problems]
+    return problems
+
+
+def renewal(options: list[str], targets: list[str]) -> list[str]:
+    """Return Snakemake's options that renew the changed results among those of the targets."""
+    problems = changed_results()
+    if not problems:
+        return []
+    look = summary(options, targets)
+    needed = {line.partition("\t")[0] for line in look.stdout.splitlines()}
+    names = [name for name in problems if name in needed]
+    if names:
+        count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
+        print(f"{count} renewed: {names[0]}: {problems[names[0]]}", file=sys.stderr)
+    return ["--forcerun", *names] if names else []
+
+
+def summary(options: list[str], targets: list[str]) -> subprocess.CompletedProcess[str]:
+    """Run Snakemake's --summary, which lists the files of the targets with their state."""
+    look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
+    command = [sys.executable, "-m", "snakemake", *look, *options, "--", *targets]
+    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
 
 
 def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
@@ -138,7 +155,8 @@ class Run:
         self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
         # The shell waits for the other end of this pipe, which the system closes with this process.
         end_group = f"read _; kill -KILL -{self.process.pid}"
-        self.guard = subprocess.Popen(["sh", "-c", end_group], stdin=subprocess.PIPE)
+        how = {"stdin": subprocess.PIPE, "start_new_session": True}
+        self.guard = subprocess.Popen(["sh", "-c", end_group], **how)
 
     def end(self) -> None:
         """End all processes of the run."""
@@ -159,9 +177,8 @@ def replicate(given: Mapping[str, str]) -> int:
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
     take_over()
-    if changed := changed_results():
-        options += ["--forcerun", *changed]
-    run = Run(["--cores", given.get("CORES") or "2", *options, "--", *targets])
+    renewed = renewal(options, targets)
+    run = Run(["--cores", given.get("CORES") or "2", *options, *renewed, "--", *targets])
 
     def stop(number: int, _frame: object) -> None:
         for other in SIGNALS:
@@ -198,17 +215,15 @@ def wanted(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
 def verify(given: Mapping[str, str]) -> int:
     """Print each result that is not as a run would make it now. Returns the exit code."""
     options, targets = wanted(given)
-    look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
-    command = [sys.executable, "-m", "snakemake", *look, *options_of(options), "--", *targets]
-    summary = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
-    if summary.returncode:
-        return summary.returncode
-    problems = dict(outdated(summary.stdout))
+    look = summary(options_of(options), targets)
+    if look.returncode:
+        return look.returncode
+    problems = dict(outdated(look.stdout))
     problems |= dict(unrecorded(problems))
     for name, reason in sorted(problems.items()):
         print(f"{name}: {reason}")
     if not problems:
-        files = summary.stdout.count("\n") - 1
+        files = look.stdout.count("\n") - 1
         print(f"{files} files are as a run would make them now")
     return int(bool(problems))
 

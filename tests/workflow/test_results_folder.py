@@ -58,13 +58,13 @@ def folder(small) -> Path:
 # A function of the shell that edits a source or a text, as `rsync -a` and `cp -p` leave it.
 SHELL = 'edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }; '
 # Reasons that verify gives: the first and the last two are ours, the others are Snakemake's.
-CHANGED, MISSING, SOURCES = "not what its job wrote", "missing", "set of parameters changed"
+CHANGED, MISSING, SOURCES = "not what its job wrote", "missing", "params changed"
 RECORD, UNKNOWN = "its record cannot be read", "no job has recorded it"
 # Files of each kind: some are removed, and some changed, which keeps their size.
 REMOVED = f"{FIGURE}.csv findings.json explorer.html manuscript/replication.pdf codecheck.yml"
 EDITED = f"data/barrier.nc uncertainties/coarser/one.csv {FIGURE}.png claims.json checksums.txt"
 EDITED += " predictions/arrest.csv data/mine.nc manuscript/verdicts.yaml studies/extremes.csv"
-EDITED += " manuscript/replication.html provenance.json kernels/localised.txt scenes/one.html"
+EDITED += " manuscript/replication.html provenance.json kernels/localised.txt"
 EDITED += " measurements/mine/2-of-2.csv measurements/arrest.csv figures/sweep_mine.csv claims.html"
 # Commands, and what verify then says of some results. All commands of a table change one folder,
 # where each change is named and repaired by itself.

@@ -12,8 +12,7 @@ rule join:
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
         # A million runs took 1.2 kB each; other sweeps may take twice as much.
-        mem_mb=lambda wildcards, attempt: attempt
-        * (1000 + joined_runs(wildcards) // 400),
+        mem_mb=lambda wildcards, attempt: attempt * (1000 + joined_runs(wildcards) // 400),
     params:
         settings=joined_settings,
         code=code_of("join"),

@@ -84,9 +84,9 @@ rule write_explorer:
 
 rule write_report:
     input:
+        **inputs_of(REPORT_NEEDS),
         texts=[project(path) for path in REPORT_TEXTS],
         pictures=expand("results/figures/{name}.png", name=NEEDS),
-        **inputs_of(REPORT_NEEDS),
         sources=[project(f"manuscript/{document}.md") for document in DOCUMENTS],
         claims="results/claims.json",
         findings="results/findings.json",
