@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN, PAGE, SMALL, Look
+from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN_MARKER, PAGE_WIDTH, SMALL_TEXT, Look
 
 NEEDS = {"studies": ["rough_prestress"]}
 table = style.as_given
@@ -18,7 +18,7 @@ HEAD = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) survival and (b) death rate with the displacement held, (c, d) the stress held."""
-    figure, (lives, rates, walks, velocities) = style.new_panels(PAGE, 5.6, "ab;cd")
+    figure, (lives, rates, walks, velocities) = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
     held = table[table["boundary"] == "displacement"]
     ensembles = held[(held["part"] == "ensemble") & (held["deaths"] > 0.0)]
     for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
@@ -29,7 +29,7 @@ def draw(table: pd.DataFrame) -> Figure:
         rates.errorbar(row["barrier_rate"], row["rate"], errors, **bars)
     lives.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
     lives.set(ylim=(0.6, 1.01), xlim=(0.0, ensembles["stop"].max()))
-    lives.legend(title=HEAD, loc="lower left", fontsize=SMALL, title_fontsize=SMALL)
+    lives.legend(title=HEAD, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
     ends = np.array([3e-5, 1e-2])
     rates.plot(ends, ends, color=BLACK, linewidth=0.8)
     rates.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
@@ -48,7 +48,7 @@ def draw(table: pd.DataFrame) -> Figure:
         look: Look = {"color": colour, "label": label, "markersize": 2.5, "linestyle": "none"}
         # The pulses that differ least are drawn last.
         look["zorder"] = 3.0 - row["deviation"]
-        velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look, **OPEN)
+        velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look, **OPEN_MARKER)
     long = stress[stress["part"] == "long_survival"]
     walks.plot(long["distance"], long["survival"], color=GREY, label="balance alone")
     tail = long[long["distance"] > 0.2 * long["distance"].max()]
@@ -56,12 +56,12 @@ def draw(table: pd.DataFrame) -> Figure:
     walks.plot(tail["distance"], guide, ":", color=BLACK, label="slope $-1/2$")
     walks.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
     walks.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
-    walks.legend(loc="lower left", fontsize=SMALL)
+    walks.legend(loc="lower left", fontsize=SMALL_TEXT)
     top = float(velocities.dataLim.x1)
     velocities.plot([0.0, top], [0.0, top], color=BLACK, linewidth=0.8, zorder=0.0)
     velocities.set(xlabel="half of the pre-stress integral", title=r"$\Gamma = 0$")
     velocities.set_ylabel("slip velocity of the pulse")
-    velocities.legend(title=HEAD, loc="upper left", fontsize=SMALL, title_fontsize=SMALL)
+    velocities.legend(title=HEAD, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
     return figure
 
 
