@@ -15,6 +15,7 @@ from slippulse.measurement.inference import infer_parameters
 
 from ..text.prose import fill
 from . import layer_claims as layer
+from . import rough_claims as rough
 from . import transition_claims as transition
 from .evidence import Evidence, evaluated, value_of
 
@@ -108,6 +109,7 @@ COMPUTED_FINDINGS: dict[str, Callable[[Evidence], dict]] = {
     "collapse_against_damping": collapse,
     "front_never_arrives": never_arrives,
     "layer_in_plane": layer.layer_in_plane,
+    "pulses_on_rough_prestress": rough.rough_numbers,
     "published_figure_made_with": best_fit,
     # The factor between T_trans and H/c_s.
     "duration_criterion": lambda _: {"factor": float(np.pi / np.sqrt(2.0))},

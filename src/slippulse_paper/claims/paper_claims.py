@@ -20,6 +20,9 @@ from . import (
     pulse_claims as pulses,
 )
 from . import (
+    rough_claims as rough,
+)
+from . import (
     space_time_claims as space_time_figure,
 )
 from . import (
@@ -77,6 +80,8 @@ JUDGES_BY_CLAIM: dict[str, Callable[[Evidence, str], Claim]] = {
     "stress_front_speeds_near_one": transition.stress_front_speeds_near_one,
     "displacement_pulse_unique": pulses.displacement_pulse_unique,
     "perturbed_pulses_settle": pulses.perturbed_pulses_settle,
+    "rough_pulses_go_on": rough.rough_pulses_go_on,
+    "rough_stress_pulses_change": rough.rough_stress_pulses_change,
     "stress_pulse_not_unique": pulses.stress_pulse_not_unique,
     "stress_pulse_set_by_prestress": pulses.stress_pulse_set_by_prestress,
     "transition_diverges": transition.transition_diverges,
