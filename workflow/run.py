@@ -63,7 +63,7 @@ def full_target(target: str) -> str:
 
 def take_over() -> None:
     """Remove what a killed run has left, unless another run is at work in this folder."""
-    from slippulse.data.files import UNFINISHED
+    from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
 
     held = take(STATE / "slippulse.lock")
@@ -71,7 +71,7 @@ def take_over() -> None:
         sys.exit("Another run is at work in this folder: wait for it, or stop it.")
     locks = [*STATE.glob("locks/*.lock")]
     if locks:
-        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED}*")]:
+        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED_MARK}*")]:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
     held.close()

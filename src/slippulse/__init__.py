@@ -1,4 +1,4 @@
-"""slippulse: the onset of slip pulses in frictional rupture, replicated.
+"""Simulate, measure and predict slip pulses in frictional rupture.
 
     import slippulse as sp
     prestress = sp.Prestress(left=0.6, right=0.6)
@@ -7,7 +7,8 @@
     sp.measure(run)["transition_time"]                      # T_trans
     sp.theory.front_speed(0.6, damping_ratio=0.1)           # exact
 
-A module is loaded at the first use of one of its names (`__init__.pyi`), so that this import is
+The package replicates a paper on the onset of slip pulses. Its public names are listed in
+`__init__.pyi`. A module is loaded when one of its names is first used, which keeps this import
 fast.
 """
 

@@ -11,12 +11,12 @@ import numpy as np
 import pandas as pd
 
 import slippulse as sp
-from slippulse.measurement.promise import judged
+from slippulse.measurement.promise import judge_promises
 from slippulse.measurement.table import PARAMETERS
 from slippulse.measurement.uncertainty import grid_tables
-from slippulse.model.stability import chosen_step
+from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 
 # The first three are the grid study, the others look for the cheapest spacing that is enough.
 FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
@@ -91,7 +91,7 @@ def drawn(number):
 
 def numbers(layer, duration, dx, ratio, **scheme):
     scene = sp.Scene(duration=duration, dx=dx, beta=ratio * dx, **layer, **scheme)
-    return measured_row(sp.simulate(scene), SETTINGS)
+    return measured_row(sp.simulate(scene), MEASURE_SETTINGS)
 
 
 def judge(number, accuracy, most_steps):
@@ -106,11 +106,11 @@ def judge(number, accuracy, most_steps):
         return result
     rows = []
     for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
-        step = min(1.0, chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2))
+        step = min(1.0, choose_step("localised", 8, ratio, layer["gamma"] * spacing**2))
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
     study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)
-    study = judged(study, tables[0], accuracy, SETTINGS["share"])
+    study = judge_promises(study, tables[0], accuracy, MEASURE_SETTINGS["share"])
     truth = numbers(layer, duration, min(0.01, duration / 2000.0), ratio, scheme="continuum")
     promised = study[study["kept"] != ""].set_index("quantity")
     exact = pd.Series({name: truth.get(name, math.nan) for name in promised.index}, dtype=float)

@@ -6,7 +6,7 @@ import tolerances as tol
 from matplotlib.lines import Line2D
 
 import slippulse as sp
-from slippulse.measurement.inference import inference, likely
+from slippulse.measurement.inference import chi_square_rise, infer_parameters
 
 deviation = lambda rows, value, exact: np.abs(rows[value] / rows[exact] - 1.0)
 rises = lambda values: bool((np.diff(values) > 0.0).all())
@@ -181,7 +181,7 @@ def test_the_lattice_of_the_space_time_figure_lies_on_the_exact_edges(draw):
 
 def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_best_fits(draw):
     drawn = draw("study_published_figure")
-    fits, axes = inference(drawn.measured["published_figure"]), drawn.figure.axes
+    fits, axes = infer_parameters(drawn.measured["published_figure"]), drawn.figure.axes
     for release in ("total", "elastic"):
         fit, rows = fits[release], select(drawn.table, part="best", release=release)
         pulls = [fit["pulls"][name] for name in rows["reading"]]
@@ -198,7 +198,7 @@ def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_b
             assert inner[:, 0].min() < fit["damping_ratio"] < inner[:, 0].max()
     # Curves are drawn as far as they are accepted.
     highest = max(line.get_ydata().max() for line in axes[0].lines if line.get_gid())
-    assert highest <= likely(0.95, 7)
+    assert highest <= chi_square_rise(0.95, 7)
 
 
 def test_lattices_a_tenth_away_from_the_line_where_pulses_cease_to_stick_are_on_its_side(draw):

@@ -20,7 +20,7 @@ from matplotlib.patches import Rectangle
 from PIL import Image
 from pypdf import PdfReader
 
-from slippulse.data.files import CONFIGURATION
+from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting import style
 from slippulse.plotting.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
 from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
@@ -85,7 +85,7 @@ def test_states_of_a_block_are_apart_in_grey():
 @pytest.mark.parametrize("configuration", ["0123456789abcdef", ""])
 def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp_path, monkeypatch):
     """A figure that no job made has no configuration."""
-    monkeypatch.setenv(CONFIGURATION, configuration)
+    monkeypatch.setenv(CONFIGURATION_VARIABLE, configuration)
     figure, (axes,) = style.new_panels(COLUMN, 2.0, "a")
     axes.set(xlabel="pre-stress AVATAR", ylabel=r"$\tau_0$")
     style.save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf")

@@ -10,7 +10,7 @@ import pytest
 import yaml
 from pypdf import PdfReader
 
-from slippulse.data.files import CONFIGURATION
+from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting.style import new_panels
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative
 from slippulse_paper.claims.paper_claims import written
@@ -127,7 +127,7 @@ def build(tmp_path_factory):
             "verdicts": folder / "verdicts",
         }
         with pytest.MonkeyPatch.context() as patch:
-            patch.setenv(CONFIGURATION, DIGEST)
+            patch.setenv(CONFIGURATION_VARIABLE, DIGEST)
             patch.setattr(write_report, "inputs_of", lambda files, settings: inputs)
             write_report.run({}, outputs, {})
         pages = [path.read_text(encoding="utf-8") for path in outputs["html"]]

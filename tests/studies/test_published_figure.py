@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy.optimize import least_squares
 
-from slippulse.measurement.inference import curve, inference, likely
+from slippulse.measurement.inference import chi_square_rise, infer_parameters, interpolate_fits
 from slippulse.model.prestress import Prestress
 from slippulse_paper.studies import published_figure as study_module
 from slippulse_paper.studies.published_figure import BETA, NEAR, LeftPanel
@@ -33,7 +33,7 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     ratios = {"total": (0.08, 0.1, 0.13, 0.17), "elastic": (0.1, 0.15, 0.22, 0.3)}
     monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
     monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
-    best = inference(study_module.table({}, {}, config))["best"]
+    best = infer_parameters(study_module.table({}, {}, config))["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
     assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
@@ -44,7 +44,7 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
 @pytest.mark.parametrize("part", READINGS)
 @pytest.mark.parametrize("release", ["total", "elastic"])
 def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release, part):
-    fits = inference(table, part=part)
+    fits = infer_parameters(table, part=part)
     best = fits[release]
     fitted = ~panel.readings["arrow"] | (part == "arrows")
     assert fitted.sum() == READINGS[part]
@@ -59,15 +59,20 @@ def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release,
     assert result.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
     assert fits["best"]["chi2"] == min(fits["total"]["chi2"], fits["elastic"]["chi2"])
     profile = table[(table["part"] == part) & (table["release"] == release)]
-    line, fitted = curve(profile), profile.loc[profile["weight"] > 0.0, "reading"].unique()
+    line, fitted = (
+        interpolate_fits(profile),
+        profile.loc[profile["weight"] > 0.0, "reading"].unique(),
+    )
     for level, (low, high) in best["regions"].items():
         assert low < ratio < high
         chi_square = np.interp([low, high], line["damping_ratio"], line["chi2"])
-        assert chi_square == pytest.approx(best["chi2"] + likely(level), abs=0.15)
+        assert chi_square == pytest.approx(best["chi2"] + chi_square_rise(level), abs=0.15)
     assert best["chi2"] == pytest.approx(sum(best["pulls"][name] ** 2 for name in fitted))
     # Less three parameters.
     assert best["dof"] == READINGS[part] - 3
-    assert [likely(0.95), likely(0.95, 2)] == pytest.approx([3.841, 5.991], abs=1e-3)
+    assert [chi_square_rise(0.95), chi_square_rise(0.95, 2)] == pytest.approx(
+        [3.841, 5.991], abs=1e-3
+    )
 
 
 @pytest.mark.parametrize("part", READINGS)
@@ -86,7 +91,7 @@ def test_an_end_beyond_the_fits_is_not_known(table):
     ratio = table["damping_ratio"]
     profile = (table["part"] == "profile") & (table["release"] == "elastic")
     kept = profile & (ratio < 0.29) & (ratio > 0.1)
-    low, high = inference(table[kept])["elastic"]["regions"][0.95]
+    low, high = infer_parameters(table[kept])["elastic"]["regions"][0.95]
     assert np.isnan(low) and np.isfinite(high)
 
 

@@ -1,4 +1,4 @@
-"""Wrong arguments are refused in one line: the argument, its value, what is allowed."""
+"""Wrong arguments are refused in one line with the argument, its value and what is allowed."""
 
 import math
 import re
@@ -56,7 +56,7 @@ TAKE_A_NUMBER = [
 
 linear = lambda alpha: {"friction": sp.friction("linear_rate", alpha=alpha)}
 WITHOUT_SPRINGS = GOOD | {"gamma": 0.0}
-# Values of the right kind that are refused, by what the refusal says of argument and value.
+# Values of the right type that are refused, by the part of the message that names them.
 SCENES = {
     "boundary: 'strain'; allowed: displacement, stress": {"boundary": "strain"},
     "gamma: 0.65; allowed: 0 or left out under boundary 'stress'": {"boundary": "stress"},
@@ -157,7 +157,7 @@ LATE = sp.Samples([0.1, 3.5], [0.0])
 TOO_LATE = "samples.times: 3.5; allowed: up to the duration of the scene, 0.2"
 LARGEST = "damping_ratio: -1.0; allowed: a finite number and >= 0 and <= 1e+100"
 SLOW = "tau0: 0.3; allowed: > 0.50849, values whose front outr"
-# Further calls: what the refusal says, the function, and its arguments.
+# Further calls: part of the message, the function, and its arguments.
 CALLS = [
     (TOO_LATE, sp.simulate, TINY, LATE),
     (TOO_LATE, sp.simulate, EXACT, LATE),
@@ -224,7 +224,7 @@ for cases, call in (
 
 
 @pytest.mark.parametrize(("argument", "call"), TAKE_A_NUMBER)
-def test_an_argument_that_is_no_number_is_refused(argument, call):
+def test_an_argument_that_is_not_a_number_is_refused(argument, call):
     for value in NO_NUMBERS:
         # Arrays, an empty one too, are good where one number is.
         if isinstance(value, list) and not value and argument in ("tau0", "x"):

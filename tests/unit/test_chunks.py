@@ -1,18 +1,17 @@
-"""Chunks of a sweep: each run is in one, costs are about equal, and joined they are the sweep."""
+"""Chunks of a sweep: each has some of the runs at about equal cost; joined they are the sweep."""
 
 from itertools import chain
 
 import numpy as np
 import pytest
 
-from slippulse.data.files import CONFIGURATION as VARIABLE
-from slippulse.data.files import UnreadableFile
+from slippulse.data.files import CONFIGURATION_VARIABLE, UnreadableFile
 from slippulse_paper.configuration.chunks import runs_of
 from slippulse_paper.configuration.resolve import resolve
 from slippulse_paper.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
-CONFIGURATION = "0123456789abcdef"
+DIGEST = "0123456789abcdef"
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either
 # kind alone too. A level of 0, so that integers in one chunk are fractions in the next.
@@ -39,7 +38,7 @@ def test_each_run_is_in_one_chunk(chunks, runs):
 
 
 @pytest.mark.parametrize("inner", [8, 10, 20, 99, 100, 101])
-def test_costs_that_repeat_are_spread_whatever_their_period(inner):
+def test_periodic_costs_are_spread_evenly_over_chunks(inner):
     cost = np.tile(np.r_[np.ones(inner - 1), inner], 40_000 // inner)
     sums = np.array([cost[list(runs_of(number, 10, cost.size))].sum() for number in range(1, 11)])
     # With a fixed first chunk one of ten would have half of all costs at 10, 20 and 100.
@@ -62,7 +61,7 @@ def made(shipped, tmp_path_factory):
             settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
             settings["solver"] = simulate.SOLVERS[blocks[1.0]["scheme"]]
             with pytest.MonkeyPatch.context() as patch:
-                patch.setenv(VARIABLE, CONFIGURATION)
+                patch.setenv(CONFIGURATION_VARIABLE, DIGEST)
                 simulate.run({}, outputs, settings | {"sweep": blocks.pop(1.0)})
             measure.run(outputs, outputs, settings)
             study_grid.run({"finest": files[1]}, outputs, settings | {"sweeps": blocks})
@@ -77,11 +76,13 @@ JOINED[1:] = [pytest.param(*case, marks=pytest.mark.slow) for case in JOINED[1:]
 
 
 @pytest.mark.parametrize(("name", "chunks"), JOINED)
-def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
+def test_joined_chunks_have_the_bytes_of_the_complete_sweep(
+    made, tmp_path, name, chunks, monkeypatch
+):
     sweep = made(name)
     files_of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
     joined = [tmp_path / file.name for file in sweep]
-    monkeypatch.setenv(VARIABLE, CONFIGURATION)
+    monkeypatch.setenv(CONFIGURATION_VARIABLE, DIGEST)
     for kind, *files, path in zip(KINDS, *files_of_chunks, joined, strict=True):
         settings = {"kind": kind, "record": SWEEPS[name]["record"]}
         join.run({"chunks": files, "finest": [joined[1]]}, {"joined": path}, settings)

@@ -1,4 +1,4 @@
-"""The shipped configuration, settings for a target error, and bounds on what a run takes."""
+"""The shipped configuration, settings for a target error, and bounds on the cost of a run."""
 
 import math
 from dataclasses import replace
@@ -8,7 +8,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.cost import bound_of
+from slippulse.model.cost import bound_cost
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.promised_spacings import promised
 from slippulse_paper.configuration.resolve import accuracy_of, resolve
@@ -29,7 +29,7 @@ def scenes_of(shipped: dict, name: str, coarser: float = 1.0):
     return sweep, expand(sweep)[0]
 
 
-def test_sweeps_are_the_product_of_their_lists_and_cover_what_the_paper_states(shipped):
+def test_sweeps_are_products_of_their_lists_and_cover_the_paper(shipped):
     sweep, scenes = scenes_of(shipped, "scaling_stress")
     assert len(scenes) == len(sweep["left"]) * len(sweep["width"]) >= 60
     assert {scene.prestress.left for scene in scenes} == set(sweep["left"])
@@ -68,10 +68,10 @@ EXTREMES.append(AGAIN | {"order": 8})
 
 
 @pytest.mark.parametrize("change", EXTREMES, ids=str)
-def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(change):
+def test_a_run_exceeds_its_cost_bound_at_most_by_a_small_factor(change):
     scene = sp.Scene(**PLAIN | change)
     scene = replace(scene, max_step=min(1.0, 0.9 * scene.largest_stable_step))
-    bound, run = bound_of(scene), sp.simulate(scene)
+    bound, run = bound_cost(scene), sp.simulate(scene)
     assert run.attrs["block_updates"] < tol.BOUND_FACTOR * bound.block_updates
     assert run.nbytes < bound.bytes
     assert scene.dx != 0.76 or run.attrs["re_releases"] > 10_000
@@ -109,7 +109,7 @@ def test_a_smaller_error_takes_a_finer_lattice_at_the_same_damping_ratio(scene):
     assert all(scene.max_step <= scene.largest_stable_step for scene in scenes)
 
 
-def test_the_spacing_follows_the_scenes_own_lengths():
+def test_the_spacing_follows_the_lengths_of_the_scene():
     spacing = lambda **change: sp.settings_for(1e-3, **PULSE | change)["dx"]
     # Lengths in units of 1/sqrt(gamma) and W together are the same scene on another scale.
     scaled = {"gamma": 0.65 / 16.0, "prestress": sp.Prestress(0.5, 0.5, 4.0)}
@@ -124,7 +124,7 @@ def test_the_spacing_follows_the_scenes_own_lengths():
     assert sp.settings_for(1e-2, **deep)["dx"] < sp.settings_for(1e-2, **CRACK)["dx"]
 
 
-def test_without_an_accuracy_every_block_is_what_it_was(config):
+def test_without_an_accuracy_no_spacing_changes(config):
     preset, accuracy = config["presets"][config["preset"]], accuracy_for(config)
     assert accuracy == accuracy_for(config, accuracy=None) == preset | {"whole": True}
     for simulation in config["simulations"].values():
@@ -152,7 +152,7 @@ def test_with_an_accuracy_each_scene_has_its_own_spacing_but_not_by_the_textbook
 
 
 @pytest.mark.parametrize("name", ASKED)
-def test_a_spacing_that_is_the_question_stays(config, name):
+def test_a_spacing_under_study_is_not_changed(config, name):
     simulation = dict(config["simulations"][name])
     assert ASKED[name] in simulation
     if "beta" in simulation:

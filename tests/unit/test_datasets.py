@@ -1,4 +1,4 @@
-"""Many scenes in one Dataset, by any scheme: order, threads, single points, and complete files."""
+"""Sweeps as one Dataset, with every scheme: order of the runs, threads, single runs, and files."""
 
 import dataclasses
 import stat
@@ -14,7 +14,7 @@ import slippulse as sp
 from slippulse.data.files import write_whole
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
-from slippulse.data.sweeps import FIELDS, FRONTS
+from slippulse.data.sweeps import FIELD_VARIABLES, FRONT_VARIABLES
 from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import VARIABLES
 
@@ -44,7 +44,7 @@ def sweep(threads: int = 1, record=RECORDS) -> xr.Dataset:
     return sp.run_sweep(SCENES, SAMPLES, record, threads)
 
 
-def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_do_not(tmp_path):
+def test_only_equal_data_give_equal_bytes_with_any_number_of_threads(tmp_path):
     other = sweep().copy(deep=True)
     other["slip"][3] += 1e-12
     for number, data in enumerate((sweep(1), sweep(2), sweep(5), other)):
@@ -53,7 +53,7 @@ def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_d
     assert one == two == three != other
 
 
-def test_a_point_is_what_the_scene_alone_gives_as_far_as_it_is_asked_for():
+def test_a_run_of_a_sweep_equals_the_same_scene_simulated_alone():
     together = sweep(2)
     for index, (scene, samples) in enumerate(zip(SCENES, SAMPLES, strict=True)):
         alone, again = sp.simulate(scene, samples), sp.point(together, index)
@@ -63,14 +63,14 @@ def test_a_point_is_what_the_scene_alone_gives_as_far_as_it_is_asked_for():
             assert type(again.attrs[name]) is type(value), name
     fields, full = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
-    kept = (fields | {*FRONTS}, fields | {*FIELDS}, sampled)
+    kept = (fields | {*FRONT_VARIABLES}, fields | {*FIELD_VARIABLES}, sampled)
     for record, names in zip(RECORDS, kept, strict=True):
         run = sp.point(sweep(record=(record,)), 1)
         assert set(run.variables) == names
         assert all(run[name].variable.equals(full[name].variable) for name in names), record
 
 
-def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_reason():
+def test_progress_counts_scenes_and_a_failing_scene_ends_the_sweep():
     seen = []
     sp.run_sweep(SCENES, None, ("fronts",), 2, lambda *done: seen.append(done))
     assert seen == [(done, len(SCENES)) for done in range(1, len(SCENES) + 1)]
@@ -81,8 +81,8 @@ def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_
         sp.run_sweep([*SCENES, broken], None, ("fronts",), 2)
 
 
-def test_a_sample_is_the_state_of_a_run_that_ends_there():
-    """At rest where no block is near."""
+def test_a_sample_equals_the_final_state_of_a_run_that_ends_at_its_time():
+    """A position without a block is at rest."""
     times = np.array([0.0, 0.777, 2.5, 5.9])
     positions = np.array([-900.0, -3.0, -0.52, 0.0, 0.07, 2.0, 900.0])
     run = sp.simulate(ONE, sp.Samples(times, positions))
@@ -113,7 +113,7 @@ def test_samples_do_not_change_the_run_and_are_mirrored_at_mirrored_positions(sc
     assert np.array_equal(slip, slip[:, ::-1])
 
 
-def test_a_dataset_comes_back_as_it_was_and_opens_without_this_project(tmp_path):
+def test_a_saved_dataset_is_read_unchanged_here_and_by_xarray(tmp_path):
     before = sweep()
     save_dataset(before, tmp_path / "run.nc")
     xr.testing.assert_identical(sp.open_sweep(tmp_path / "run.nc"), before)
@@ -124,7 +124,7 @@ def test_a_dataset_comes_back_as_it_was_and_opens_without_this_project(tmp_path)
         assert data["slip"].size == int(data["row_size"].sum())
 
 
-def test_a_data_file_follows_the_conventions_it_names_and_every_variable_has_units_and_a_name():
+def test_a_data_file_follows_its_conventions_and_describes_every_variable():
     data = sweep()
     assert data.attrs["Conventions"].startswith("CF-") and data.attrs["featureType"] == "profile"
     assert data["row_size"].attrs["sample_dimension"] == "block"
@@ -135,7 +135,7 @@ def test_a_data_file_follows_the_conventions_it_names_and_every_variable_has_uni
             assert variable.attrs["long_name"] not in ("", name.replace("_", " ")), name
 
 
-def test_the_table_of_columns_has_the_units_and_the_meaning_that_files_have(project):
+def test_the_page_of_columns_describes_variables_as_files_do(project):
     text = (project / "docs/columns.md").read_text(encoding="utf-8")
     rows = text.replace("\\|", "|").splitlines()
     scenes = [dataclasses.replace(HELD, scheme="continuum")] * 2
@@ -155,7 +155,7 @@ def test_a_table_has_nine_digits_and_no_index(tmp_path):
     assert load_table(tmp_path / "t.csv")["value"].tolist() == [3.14159265]
 
 
-def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_as_any(tmp_path):
+def test_a_file_is_replaced_only_when_the_new_one_is_complete(tmp_path):
     path = tmp_path / "deep/er/data.txt"
     write_whole(path, lambda part: part.write_text("old"))
 
@@ -177,7 +177,7 @@ def exactly(scene: sp.Scene, samples: sp.Samples | None = None) -> xr.Dataset:
 
 @pytest.mark.parametrize("name", EXACT)
 def test_the_exact_scheme_is_the_exact_rupture(name):
-    """Lattices tend to it: see theory_exact/test_against_lattice.py."""
+    """Lattices converge to it: see theory_exact/test_against_lattice.py."""
     scene = EXACT[name]
     run, x = exactly(scene), scene.dx * np.arange(-20, 30, 5)
     rupture = sp.theory.Rupture(scene.prestress, scene.gamma, 0.1, duration=scene.duration)
@@ -188,7 +188,7 @@ def test_the_exact_scheme_is_the_exact_rupture(name):
     assert blocks["slip"].values == pytest.approx(rupture.slip(x, scene.duration))
 
 
-def test_exact_and_lattice_datasets_have_one_form_and_are_empty_where_nothing_is_released():
+def test_exact_and_lattice_datasets_have_the_same_form():
     samples = sp.Samples(times=np.linspace(0.0, 8.0, 5), positions=np.linspace(-4.0, 4.0, 9))
     lattice, exact = sp.simulate(HELD, samples), exactly(HELD, samples)
     assert set(exact.variables) == set(lattice.variables)
@@ -207,8 +207,11 @@ def test_exact_and_lattice_datasets_have_one_form_and_are_empty_where_nothing_is
     assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene.duration
 
 
-def test_beyond_what_is_known_no_number_of_a_run_is_given():
-    """Lattices stick at x = 2 at 4.2 first, and last at 5.7 and 5.68 for dx = 0.04 and 0.02."""
+def test_no_number_is_given_that_an_exact_solution_does_not_know():
+    """On lattices the block at x = 2 first sticks at 4.2.
+
+    It sticks for the last time at 5.7 for dx = 0.04, and at 5.68 for dx = 0.02.
+    """
     profile = sp.Prestress(0.5, 0.5, bumps=((8.0, 0.5, 1.0),))
     scene = sp.Scene("displacement", profile, 9.0, 0.04, 0.65, 0.1 * 0.04)
     samples = sp.Samples(np.linspace(0.0, 9.0, 10), np.linspace(-12.0, 20.0, 65))
@@ -224,7 +227,7 @@ def test_beyond_what_is_known_no_number_of_a_run_is_given():
     for name in (*unknown, "pulse_half_width", "trailing_edge_5", "trailing_edge_9"):
         assert np.isnan(numbers[name]), name
     assert numbers["regime"] == "undecided"
-    # What came before, and fronts that outrun the waves, is known.
+    # Earlier numbers are known, and so are fronts that are faster than the waves.
     for name in ("first_stick_time", "front_speed_left", "front_speed_right", "pulse_front"):
         assert numbers[name] == pytest.approx(expected[name], rel=0.01), name
     rupture = sp.theory.Rupture(profile, 0.65, 0.1, duration=9.0)
@@ -232,8 +235,8 @@ def test_beyond_what_is_known_no_number_of_a_run_is_given():
     assert np.isnan(rupture.final_slip(2.0))
 
 
-def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
-    """A second nucleation whose waves hold a position that is about to stick."""
+def test_the_end_of_an_exact_solution_is_flagged():
+    """Waves from a second nucleation keep a position sliding that is about to stick."""
     profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
     run = exactly(dataclasses.replace(HELD, prestress=profile, duration=16.0))
     assert run.attrs["run_flags"] == "construction_ended" and run.attrs["limit_reason"]

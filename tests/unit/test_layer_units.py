@@ -23,7 +23,7 @@ BLOCK = sp.Layer(
     normal_stress=5e6,
 )
 TOPS = ("held", "stress")
-# A stress that reaches static friction, 3 MPa, around x = 0 alone.
+# A stress that reaches static friction, 3 MPa, only around x = 0.
 X = np.linspace(-0.3, 0.3, 121)
 STRESS = 2.7e6 + 0.35e6 * np.exp(-0.5 * (X / 0.02) ** 2)
 DURATION, DX = 45e-6, 1e-3
@@ -64,7 +64,7 @@ def ruptured(request):
 
 @pytest.mark.parametrize("layer", random_layers())
 def test_the_scales_make_every_term_of_the_equation_of_motion_one(layer):
-    """The terms of the mean equation of motion, appendix A, over the strength drop."""
+    """The terms of the mean equation of motion (appendix A) are divided by the strength drop."""
     scales, modulus = layer.scales, layer.longitudinal_modulus
     fraction = 0.5 if layer.top == "held" else 1.0
     inertia = fraction * layer.density * layer.thickness * scales.slip / scales.time**2
@@ -79,7 +79,7 @@ def test_the_scales_make_every_term_of_the_equation_of_motion_one(layer):
     assert scales.length / scales.time == pytest.approx(layer.wave_speed, rel=1e-12)
 
 
-def test_only_slip_and_energy_differ_between_the_conditions_on_top():
+def test_only_slip_and_energy_scales_depend_on_the_top_of_the_layer():
     held, free = (changed(top=top).scales._asdict() for top in TOPS)
     ratios = {name: held[name] / free[name] for name in held}
     twice = {"slip", "slip_velocity", "slip_acceleration", "energy"}
@@ -94,7 +94,7 @@ def test_either_second_modulus_gives_the_same_layer():
 
 
 def integrate_in_si(layer, x, stress, duration):
-    """Slip of the layer by Euler-Cromer steps of its dimensional equation; appendix A."""
+    """Return the slip of a layer by Euler-Cromer steps of its dimensional equation (appendix A)."""
     fraction, springs = (0.5, layer.shear_modulus) if layer.top == "held" else (1.0, 0.0)
     mass = fraction * layer.density * layer.thickness
     stiffness = fraction * layer.longitudinal_modulus * layer.thickness / (x[1] - x[0]) ** 2
@@ -114,7 +114,7 @@ def integrate_in_si(layer, x, stress, duration):
 
 
 @pytest.mark.parametrize("top", TOPS)
-def test_a_run_in_si_units_is_that_of_the_dimensional_equation(top):
+def test_a_run_in_si_units_solves_the_dimensional_equation(top):
     layer = changed(top=top)
     dx, duration = 5e-3, 20e-6
     x = dx * np.arange(-30, 31)
@@ -126,7 +126,7 @@ def test_a_run_in_si_units_is_that_of_the_dimensional_equation(top):
     assert simulated == pytest.approx(velocity, abs=0.01 * velocity.max())
 
 
-def test_a_run_returns_from_si_units_to_rounding(ruptured):
+def test_a_run_converted_to_si_units_and_back_is_unchanged(ruptured):
     layer, scene, run = ruptured
     there = layer.to_si(run)
     back = layer.from_si(there)
@@ -178,7 +178,7 @@ def test_attributes_and_measured_numbers_are_in_si_units(ruptured):
 
 
 def test_every_number_with_a_unit_is_converted():
-    """Names of numbers of the model that say a unit, and measured ones that are not ratios."""
+    """Numbers have a unit if their description names one, or if they are measured and no ratio."""
     without = {"gamma", "friction_ratio", "max_step", "damping_ratio", "rate_strengthening"}
     named = {name for name, text in NAMES.items() if "in units of" in text or "position" in text}
     assert named - {"steps_and_bumps"} - without <= {*QUANTITIES}
@@ -208,7 +208,7 @@ def test_a_thicker_layer_scales_lengths_and_times(factor):
 
 @pytest.mark.parametrize("layer", random_layers())
 def test_the_paper_prints_half_of_the_peak_velocity(layer):
-    """Section IV A as printed, beside the exact numbers without damping."""
+    """Compare the numbers printed in section IV A with the exact numbers without damping."""
     layer = dataclasses.replace(layer, top="held")
     tau = 0.37
     stress = layer.convert_to_si(tau, "stress")

@@ -1,4 +1,4 @@
-"""Numbers of made-up and simulated runs: regime, shape, steadiness, and a front held up."""
+"""Measured numbers of made-up and simulated runs: regime, pulse shape and state, transition."""
 
 import numpy as np
 import pandas as pd
@@ -8,13 +8,13 @@ import xarray as xr
 import slippulse as sp
 from slippulse.measurement.front_paths import arrival
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
-from slippulse.measurement.regime import REGIMES, classify
+from slippulse.measurement.regime import REGIMES, classify_regime
 from slippulse.measurement.table import far_field, half_width, lattice_noise, sliding_at_once
-from slippulse.measurement.transition import STALL, transition_stress
+from slippulse.measurement.transition import STALLED_WAIT_FRACTION, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.prediction.comparison import measured_table, pulse_state
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 from slippulse.simulation.simulate import Samples, simulate
 from slippulse.theory import ArrestingCrack, Rupture, front_speed
 
@@ -27,15 +27,18 @@ PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 def made_up(
     centre=0.0, left=0.0, right=1.0, before=1.0, speeds=(0.0, 1.0), last_release=DURATION
 ) -> xr.Dataset:
-    """A run with given velocities at the end, at x = 0 and on both sides, and speeds of fronts.
+    """Make a run with given final velocities and front speeds.
 
-    ``before`` is the largest velocity at two thirds of the duration; it is 1 at an earlier sample.
+    centre, left, right : slip velocity at the end, at x = 0, -10 and 10
+    before : largest velocity at two thirds of the duration; an earlier sample has velocity 1
+    speeds : front speeds on the left and on the right; 0 for a front that stops early
+    last_release : time until which the fronts run
     """
     x = np.linspace(-40.0, 40.0, 801)
     release = np.full(x.shape, np.nan)
     release[np.abs(x) < 1e-9] = 0.0
     for speed, sign in zip(speeds, (-1.0, 1.0), strict=True):
-        # One without a speed stops early, at one position.
+        # A front without a speed stops early, at a distance of 2.
         side = (sign * x > 0.0) & (np.abs(x) <= (speed * last_release or 2.0))
         release[side] = np.abs(x[side]) / speed if speed else 0.1 * last_release
     velocity = np.zeros((10, 3))
@@ -50,34 +53,35 @@ def made_up(
 SHARE, CHANGE = "centre_velocity_share", "largest_velocity_change"
 LATE = "late_front_speed_left"
 SLOW = (0.5, 0.6)
-# A made-up run on both sides of each threshold, with numbers that decide.
+# For each threshold, made-up runs on both sides of it: the regime, the run, the measured numbers.
 CASES = [
-    # Steady is a change within the tolerance.
+    # A pulse is steady if its change is within the tolerance.
     (GROWING, dict(right=1.03), {CHANGE: 0.03}),
     (STEADY, dict(right=1.01), {CHANGE: 0.01}),
     (STEADY, dict(right=0.99), {CHANGE: -0.01}),
     (DECAYING, dict(right=0.97), {CHANGE: -0.03}),
-    # A front runs when it keeps up with the waves.
+    # A front runs if it is as fast as the waves.
     (PULSES, dict(left=1.0, speeds=(0.99, 1.0)), {LATE: 0.99}),
     (STEADY, dict(left=1.0, speeds=(0.95, 1.0)), {LATE: 0.95, "late_front_speed_right": 1.0}),
     (CRACKS, dict(centre=0.5, left=1.0, speeds=(1.0, 1.0)), {}),
-    # A nucleation point slower than `still` is a pulse.
+    # A rupture whose nucleation point is slower than `still` is a pulse.
     (STEADY, dict(centre=0.04), {SHARE: 0.04}),
     (CRACK, dict(centre=0.06), {SHARE: 0.06}),
-    # It is compared with the largest velocity of the moment.
+    # The nucleation point is compared with the largest velocity at the end.
     (CRACK, dict(centre=0.06, right=0.5, before=0.5), {SHARE: 0.12}),
     (STEADY, dict(centre=0.06, right=2.0, before=2.0), {SHARE: 0.03}),
     (GROWING, dict(centre=0.02, right=0.5, before=0.4), {SHARE: 0.04, CHANGE: 0.25}),
-    # No release in the last tenth is arrest, before the shape of slip counts.
+    # Without a release in the last tenth of the duration, a rupture is arrested, whatever its
+    # shape.
     (ARRESTED, dict(centre=1.0, left=1.0, last_release=15.0), {}),
-    # A front that has stopped does not matter.
+    # A front that has stopped does not count.
     (ARRESTED, dict(last_release=26.4, speeds=(0.0, 1.2)), {}),
     (STEADY, dict(last_release=27.6, speeds=(0.0, 1.2)), {}),
-    # A small fraction of the largest velocity of the run is arrest, too.
+    # A rupture whose velocity has become small is arrested, too.
     (ARRESTED, dict(right=0.04, before=0.04), {}),
     (STEADY, dict(right=0.06, before=0.06), {}),
     (ARRESTED, dict(right=0.0, before=0.0, last_release=9.0), {SHARE: np.nan}),
-    # Where no front keeps up with the waves, the sides that slide run.
+    # If no front is as fast as the waves, the rupture runs on the sides that slide.
     (CRACKS, dict(left=0.06, centre=0.5, speeds=SLOW), {}),
     (SLOW_FRONT, dict(left=0.04, centre=0.5, speeds=SLOW), {}),
     # A crack with one front slower than the waves, and one with a front that has stopped.
@@ -89,15 +93,16 @@ CASES = [
 
 
 @pytest.mark.parametrize(("expected", "run", "numbers"), CASES)
-def test_every_regime_is_reached_and_each_threshold_decides(expected, run, numbers):
-    out = classify(made_up(**run), STILL, TOLERANCE)
+def test_each_threshold_separates_two_regimes(expected, run, numbers):
+    out = classify_regime(made_up(**run), STILL, TOLERANCE)
     assert out["regime"] == expected
     assert {name: out[name] for name in numbers} == pytest.approx(numbers, abs=1e-3, nan_ok=True)
 
 
-def test_thresholds_are_arguments():
+def test_regimes_depend_on_the_thresholds_that_are_passed():
     thresholds, run = ((0.3, 0.05), (0.3, 0.2), (0.1, 0.05)), made_up(centre=0.2, before=0.9)
-    assert [classify(run, *pair)["regime"] for pair in thresholds] == [GROWING, STEADY, CRACK]
+    regimes = [classify_regime(run, *pair)["regime"] for pair in thresholds]
+    assert regimes == [GROWING, STEADY, CRACK]
 
 
 @pytest.mark.parametrize(
@@ -115,7 +120,7 @@ def test_thresholds_are_arguments():
         (DECAYING, 0.0, (-0.6, 0.0), -0.01),
     ],
 )
-def test_simulated_ruptures(expected, gamma, levels, later):
+def test_simulated_ruptures_have_the_expected_regime(expected, gamma, levels, later):
     boundary, duration = ("displacement", 20.0) if gamma else ("stress", 40.0)
     steps, duration = ((), duration) if later is None else (((15.0, later),), 80.0)
     # With fewer than ten blocks in the Gaussian, damping alone makes a steady pulse decay.
@@ -124,7 +129,7 @@ def test_simulated_ruptures(expected, gamma, levels, later):
     reach = 1.5 * duration + 10.0
     run = simulate(scene, Samples(np.linspace(0.0, duration, 10), np.linspace(-reach, reach, 801)))
     assert run.attrs["run_flags"] == ""
-    assert classify(run, STILL, TOLERANCE)["regime"] == expected
+    assert classify_regime(run, STILL, TOLERANCE)["regime"] == expected
 
 
 def fields(velocity: np.ndarray) -> xr.Dataset:
@@ -133,7 +138,7 @@ def fields(velocity: np.ndarray) -> xr.Dataset:
     return xr.Dataset(named, {"x": 0.01 * np.arange(velocity.size)})
 
 
-def test_half_widths_and_waves_of_the_lattice():
+def test_half_width_and_lattice_noise_of_known_profiles():
     run = fields(np.exp(-0.5 * ((X - 8.0) / 0.7) ** 2))
     assert half_width(run, PULSE) == pytest.approx(2.0 * 0.7 * np.sqrt(2.0 * np.log(2.0)), rel=1e-4)
     assert np.isnan(half_width(fields(np.exp(-X)), PULSE))
@@ -147,7 +152,7 @@ def test_half_widths_and_waves_of_the_lattice():
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
 
 
-def test_blocks_that_slide_at_once_and_the_longest_wait_of_a_front():
+def test_number_of_sliding_blocks_and_longest_wait_of_a_front():
     x = np.arange(-6.0, 7.0)
     # Each slides for 1.5; the last three to the right are still sliding.
     stick = np.where(x > 3.0, np.nan, np.abs(x) + 1.5)
@@ -187,7 +192,7 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
         (moving(0.95), {"profile_change": 0.367}),
     ],
 )
-def test_what_changes_is_measured(run, expected):
+def test_changes_of_the_far_pulse_are_measured(run, expected):
     numbers = {quantity: far_field(run)[quantity] for quantity in expected}
     assert numbers == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
 
@@ -203,14 +208,20 @@ def test_what_changes_is_measured(run, expected):
         (-0.25, 0.02, 0.0, "not reached"),
     ],
 )
-def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state, paper_accuracy):
+def test_a_stalled_front_is_late_and_a_resolved_front_is_not(
+    level, dx, ratio, state, paper_accuracy
+):
     profile = Prestress(level, 0.0)
     exact = ArrestingCrack(profile, ratio).transition(0.95).time
     run = simulate(Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, **paper_accuracy))
     numbers = transition_stress(run, 0.95)
     assert numbers["transition_state"] == state
     late = numbers["transition_time"] / exact - 1.0
-    allowed = {"resolved": abs(late) < 1.5 * STALL, "stalled": late > STALL, "not reached": True}
+    allowed = {
+        "resolved": abs(late) < 1.5 * STALLED_WAIT_FRACTION,
+        "stalled": late > STALLED_WAIT_FRACTION,
+        "not reached": True,
+    }
     assert allowed[state]
 
 
@@ -229,7 +240,7 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
         (0.5, 5.0, {"boundary": "stress", "gamma": 0.0}, "none"),
     ],
 )
-def test_what_a_pulse_is_called(level, duration, values, expected):
+def test_a_pulse_has_the_expected_state(level, duration, values, expected):
     plain = {"boundary": "displacement", "gamma": 0.65, "dx": 0.05, "beta": 0.005, "max_step": 0.5}
     run = simulate(Scene(prestress=Prestress(level, level), duration=duration, **plain | values))
     assert pulse_state(run, leading_pulse(run, 0.3)) == expected
@@ -237,7 +248,7 @@ def test_what_a_pulse_is_called(level, duration, values, expected):
     assert front_speed(0.3, 10.0, "elastic") > 1.1
 
 
-def test_an_exact_run_is_measured_as_a_lattice_is():
+def test_an_exact_run_is_measured_like_a_lattice():
     scene = Scene("displacement", Prestress(0.5, 0.5), 8.0, 0.02, 0.65, 2e-3, scheme="continuum")
     numbers = sp.measure(simulate(scene))
     transition = Rupture(scene.prestress, 0.65, 0.1, duration=8.0).transition
@@ -247,8 +258,8 @@ def test_an_exact_run_is_measured_as_a_lattice_is():
     assert numbers["run_flags"] == ""
 
 
-def test_one_run_of_a_sweep_has_the_numbers_of_its_row(shipped):
-    assert shipped["measure"] == SETTINGS
+def test_a_run_from_a_sweep_has_the_numbers_of_its_row(shipped):
+    assert shipped["measure"] == MEASURE_SETTINGS
     scenes = [Scene("stress", Prestress(-1.0, 0.0), time, 0.05, beta=5e-3) for time in (2.0, 9.0)]
     sweep = sp.run_sweep(scenes, record=("fronts", "fields"))
     table = measured_table(sweep, shipped["measure"])

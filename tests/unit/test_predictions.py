@@ -1,4 +1,4 @@
-"""Predictions of theory for runs under every law of friction."""
+"""Predictions of theory for runs under every friction law."""
 
 import pytest
 from pytest import approx
@@ -6,7 +6,7 @@ from verification.test_friction_laws import EXAMPLES
 
 from slippulse import Prestress, friction, theory
 from slippulse.model.run import Run
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 from slippulse_paper.steps.predict import TOPICS, predictions
 
 # Theory knows the others.
@@ -14,22 +14,22 @@ OTHERS = EXAMPLES.keys() - {"coulomb", "linear_rate"}
 
 
 def predicted(*laws):
-    """Predictions for two equal levels under each law, one row a law."""
+    """Return predictions for two equal levels, with one row for each friction law."""
     layer = Prestress(0.6, 0.6)
     laws = [law.mapping() for law in laws]
     runs = [Run("displacement", layer, 0.65, 0.02, 0.002, "total", law) for law in laws]
-    return predictions(TOPICS, runs, SETTINGS)
+    return predictions(TOPICS, runs, MEASURE_SETTINGS)
 
 
 @pytest.mark.parametrize("law", sorted(OTHERS))
-def test_no_theory_is_named_that_ignores_the_friction_of_a_run(law):
+def test_no_prediction_ignores_the_friction_law_of_a_run(law):
     table = predicted(friction("coulomb"), friction(law, **EXAMPLES[law]))
     assert table.loc[0].equals(predicted(friction("coulomb")).loc[0])
     assert table.loc[1].isna().all()
     assert predicted(friction(law, **EXAMPLES[law])).isna().all(axis=None)
 
 
-def test_a_rate_term_changes_pulses_leaves_fronts_and_has_no_predicted_transition():
+def test_linear_rate_friction_changes_predicted_pulses_but_not_fronts():
     row = predicted(friction("linear_rate", alpha=0.3)).loc[0]
     speed = theory.front_speed(0.6, 0.1)
     pulse = theory.steady_pulse(0.6, 0.65, 0.002, speed, rate_strengthening=0.3)

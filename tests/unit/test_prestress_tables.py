@@ -1,4 +1,4 @@
-"""Pre-stress through points: values, mirror images, balance, samples of functions, storage."""
+"""Pre-stress through points: values, mirror images, balance, sampled functions, data files."""
 
 import dataclasses
 import json
@@ -14,7 +14,7 @@ import slippulse as sp
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.model.balance import integral
-from slippulse.model.cost import bound_of
+from slippulse.model.cost import bound_cost
 from slippulse.prediction.comparison import measured_table
 
 X = [-9.0, -4.0, -4.0, -1.5, 0.5, 3.0, 3.0, 8.0]
@@ -23,7 +23,7 @@ BUMPS = ((5.0, -0.3, 0.5),)
 
 
 def mirrored(profile):
-    """The mirror image of a profile with a table."""
+    """Return the mirror image of a profile with a table."""
     x, tau = np.array(profile.points[::-1]).T
     bumps = tuple((-centre, *rest) for centre, *rest in profile.bumps)
     return sp.Prestress.through(-x, tau, profile.width, profile.peak, bumps)
@@ -43,7 +43,7 @@ def test_a_table_is_linear_between_its_points_and_constant_beyond():
 
 
 def test_levels_and_steps_are_special_cases_of_a_table():
-    """At a jump the value farther from x = 0 holds, and at x = 0 the larger one."""
+    """At a jump, the value on the side away from x = 0 holds; at x = 0 the larger one."""
     steps = ((5.0, 0.3), (-4.0, 0.7))
     levels = sp.Prestress(0.6, 0.5, steps=steps)
     x, tau = [-4.0, -4.0, 0.0, 0.0, 5.0, 5.0], [0.7, 0.6, 0.6, 0.5, 0.5, 0.3]
@@ -55,7 +55,7 @@ def test_levels_and_steps_are_special_cases_of_a_table():
     assert table.level(np.array([0.0, -4.0, 5.0])).tolist() == [0.6, 0.7, 0.3]
 
 
-def test_intervals_join_the_points_and_leave_out_jumps():
+def test_intervals_connect_the_points_and_leave_out_jumps():
     intervals = sp.Prestress.through(X, TAU).intervals
     assert intervals[0] == (-math.inf, -9.0, 0.1, 0.1)
     assert intervals[-1] == (8.0, math.inf, 0.35, 0.35)
@@ -78,7 +78,7 @@ def test_a_mirrored_table_is_mirrored_to_the_last_bit(width):
     assert not uneven.symmetric
 
 
-def test_points_on_a_line_change_nothing_beyond_rounding():
+def test_additional_points_on_a_line_change_nothing_except_rounding():
     profile = sp.Prestress.through(X, TAU)
     extra = np.array([-8.1, -7.7, -2.2, 1.1, 6.0])
     x, tau = np.append(X, extra), np.append(TAU, profile(extra))
@@ -90,7 +90,7 @@ def test_points_on_a_line_change_nothing_beyond_rounding():
 
 @pytest.mark.parametrize("width", [None, 0.7])
 @pytest.mark.parametrize("ends", [(-12.0, 25.0), (1.0, 2.0), (3.0, -7.5)])
-def test_the_integral_of_a_table_is_that_of_the_profile(width, ends):
+def test_the_integral_of_a_table_equals_a_numerical_integral(width, ends):
     profile = sp.Prestress.through(X, TAU, width, bumps=BUMPS)
     marks = [x for x in {*X, 5.0, 0.0} if min(ends) < x < max(ends)] or None
     accuracy = {"points": marks, "epsabs": 1e-13, "epsrel": 1e-12, "limit": 400}
@@ -112,15 +112,15 @@ BALANCED = {
 
 @pytest.mark.parametrize("case", BALANCED)
 @pytest.mark.parametrize("shift", [0.0, 7.25])
-def test_the_balance_of_a_table_is_exact_and_moves_with_it(case, shift):
-    """Without a Gaussian, it is the first one to the left of where the rupture starts."""
+def test_the_balance_of_a_table_is_exact_and_shifts_with_the_table(case, shift):
+    """Without a Gaussian, it is the nearest one on the left of the nucleation."""
     x, tau, expected = BALANCED[case]
     profile = sp.Prestress.through(np.array(x) + shift, tau)
     balance = sp.theory.prestress_balance_position(profile)
     assert balance == pytest.approx(expected + shift, rel=tol.ALGEBRA)
 
 
-def test_a_table_of_a_gaussian_has_its_balance():
+def test_a_table_of_a_gaussian_has_the_balance_of_the_gaussian():
     gaussian = sp.Prestress(-0.5, 0.0)
     expected = sp.theory.prestress_balance_position(gaussian)
     ramp = sp.Prestress.through([0.0, 0.0], [-0.5, 0.0], width=1.0)
@@ -146,8 +146,8 @@ def test_a_function_is_sampled_within_the_tolerance():
     assert jump(np.array([0.333, 0.3334])).tolist() == [0.5, 0.2]
 
 
-def test_a_rough_field_is_that_of_its_seed_on_every_machine():
-    """Values of numpy 2; the generator and its normal numbers are the same in every version."""
+def test_a_seed_gives_the_same_rough_field_on_every_machine():
+    """The values are from numpy 2. Every version of numpy makes the same normal numbers."""
     field = sp.rough(0.4, 0.1, 1.0, 0.5, start=-2.0, stop=2.0, spacing=1.0, seed=7)
     assert field.x.tolist() == [-2.0, -1.0, 0.0, 1.0, 2.0]
     assert field.tau == pytest.approx(PINNED, abs=1e-9)
@@ -157,8 +157,8 @@ def test_a_rough_field_is_that_of_its_seed_on_every_machine():
 PINNED = [0.388905282, 0.412092875784, 0.354833795798, 0.295509910493, 0.313468016576]
 
 
-def test_rough_fields_have_the_deviation_and_the_spectrum_that_were_asked_for():
-    """The logarithm of the amplitude falls by hurst + 1/2 where waves are short."""
+def test_rough_fields_have_the_requested_deviation_and_spectrum():
+    """At short wavelengths the amplitude falls with the power hurst + 1/2 of the wave number."""
     spacing, seeds = 0.05, range(300)
     shape = 0.2, 0.1, 2.0, 0.7, -25.0, 25.0, spacing
     fields = np.array([sp.rough(*shape, seed).tau for seed in seeds])
@@ -178,8 +178,8 @@ LONG = sp.Prestress.through(*sp.rough(0.3, 0.1, 1.0, 0.5, -100.0, 100.0, 0.02, 3
 SHORT = sp.Prestress.through(X, TAU, bumps=BUMPS)
 
 
-def test_a_scene_with_a_table_comes_back_from_its_data(config, tmp_path):
-    """A text of more than 64 kB, too; in a measured row a long table has only a digest."""
+def test_a_scene_with_a_table_can_be_read_from_its_data(config, tmp_path):
+    """This includes a text of more than 64 kB. A measured row has only a digest of a long table."""
     settings = {"duration": 0.2, "dx": 0.02, "gamma": 0.65, "beta": 2e-3}
     plain = sp.Prestress(0.3, 0.3)
     scenes = [sp.Scene("displacement", one, **settings) for one in (LONG, plain, SHORT)]
@@ -199,7 +199,7 @@ def test_a_scene_with_a_table_comes_back_from_its_data(config, tmp_path):
     assert json.loads(scenes[1].attributes()["steps_and_bumps"]) == {"steps": [], "bumps": []}
 
 
-def test_theory_of_levels_is_for_fronts_that_have_left_the_table(config):
+def test_the_level_ahead_is_known_once_a_front_has_left_the_table(config):
     ramp = sp.Prestress.through([-3.0, 0.0, 3.0], [0.5, 0.3, 0.6], width=1.0)
     scene = sp.Scene("displacement", ramp, duration=2.0, dx=0.05, gamma=0.65)
     for duration, levels in ((2.0, (np.nan, np.nan)), (20.0, (0.5, 0.6))):
@@ -208,13 +208,13 @@ def test_theory_of_levels_is_for_fronts_that_have_left_the_table(config):
         assert np.array_equal(ahead, levels, equal_nan=True)
 
 
-def test_the_bound_of_a_table_holds_and_is_not_that_of_its_highest_value():
+def test_the_cost_bound_of_a_table_holds_and_is_not_too_high():
     table = sp.Prestress.through([-1.0, 0.0, 1.0, 5.0, 5.0], [0.3, 1.0, 0.3, 0.9, 0.3])
     scene = sp.Scene("displacement", table, duration=20.0, dx=0.1, gamma=0.65, beta=0.02)
-    bound, run = bound_of(scene), sp.simulate(scene)
+    bound, run = bound_cost(scene), sp.simulate(scene)
     assert run.attrs["block_updates"] < bound.block_updates
     high = sp.Scene("displacement", sp.Prestress(0.9, 0.3), 20.0, 0.1, gamma=0.65, beta=0.02)
-    assert bound.block_updates < 0.5 * bound_of(high).block_updates
+    assert bound.block_updates < 0.5 * bound_cost(high).block_updates
 
 
 UNRESOLVED = {

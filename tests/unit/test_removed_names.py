@@ -1,4 +1,4 @@
-"""Names that were removed answer with the new way, and the list of changes has them."""
+"""Names that were removed are refused with their replacement, which CHANGELOG.md lists too."""
 
 import pytest
 
@@ -15,16 +15,16 @@ OWNERS = {
 
 
 @pytest.mark.parametrize("owner", OWNERS)
-def test_a_removed_attribute_answers_with_the_new_way(owner):
+def test_a_removed_attribute_is_refused_with_its_replacement(owner):
     for name, instead in REMOVED[owner].items():
-        with pytest.raises(AttributeError) as answer:
+        with pytest.raises(AttributeError) as refusal:
             getattr(OWNERS[owner], name)
-        assert str(answer.value) == f"{owner}: {name} was removed; write {instead}"
+        assert str(refusal.value) == f"{owner}: {name} was removed; write {instead}"
     with pytest.raises(AttributeError, match=r"has no attribute|No slippulse\.theory attribute"):
         _ = OWNERS[owner].no_such_name
 
 
-def test_a_removed_argument_answers_with_the_new_way():
+def test_a_removed_argument_is_refused_with_its_replacement():
     with pytest.raises(TypeError, match="rate_strengthening was removed; write friction="):
         sp.Scene("stress", PROFILE, 1.0, 0.1, rate_strengthening=0.1)
     with pytest.raises(TypeError, match="unexpected keyword argument 'no_such_name'"):

@@ -1,4 +1,4 @@
-"""The root finders against roots in closed form, and what they refuse."""
+"""The root finders, compared with roots in closed form, and their refusals."""
 
 import math
 

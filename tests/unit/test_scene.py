@@ -1,4 +1,4 @@
-"""The pre-stress: values, symmetry, steps, bumps, integral; and derived parameters of a scene."""
+"""Values, symmetry, steps, bumps and integral of a pre-stress, and derived numbers of a scene."""
 
 import dataclasses
 from itertools import product
@@ -43,7 +43,7 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("boundary", OTHERS)
-def test_a_scene_comes_back_from_its_attributes_data_and_measured_row(boundary, config, tmp_path):
+def test_a_scene_can_be_made_from_its_attributes_data_and_measured_row(boundary, config, tmp_path):
     scene = OTHERS[boundary]
     assert sp.Scene.from_attributes(scene.attributes()) == scene
     save_dataset(sp.run_sweep([scene], record=("fronts",)), tmp_path / "data.nc")
@@ -54,8 +54,8 @@ def test_a_scene_comes_back_from_its_attributes_data_and_measured_row(boundary, 
     assert sp.Scene.from_attributes(row) == scene
 
 
-def test_a_run_that_was_saved_by_xarray_gives_its_scene_numbers_and_picture(tmp_path):
-    """A file has numpy's integers and floats where a run has those of Python."""
+def test_a_run_saved_by_xarray_can_be_measured_and_drawn(tmp_path):
+    """A file has integers and floats of numpy, whereas a run has integers and floats of Python."""
     scene = sp.Scene(**DISPLACEMENT | {"dx": 0.1, "duration": 6.0, "half_lattice": False})
     run = sp.simulate(scene, sp.Samples([0.0, 3.0], [0.0, 1.0]))
     run.to_netcdf(tmp_path / "run.nc")
@@ -70,7 +70,7 @@ def test_a_run_that_was_saved_by_xarray_gives_its_scene_numbers_and_picture(tmp_
         assert sp.Scene.from_attributes(sp.point(opened, 1).attrs) == scene
 
 
-def test_samples_keep_copies_that_nobody_changes():
+def test_samples_keep_unchangeable_copies_of_their_arrays():
     times, positions = np.array([1.0, 2.0, 4.0]), np.array([0.5])
     samples = sp.Samples(times, positions)
     scene = sp.Scene(**DISPLACEMENT | {"dx": 0.1})
@@ -84,7 +84,7 @@ def test_samples_keep_copies_that_nobody_changes():
         samples.times = times
 
 
-def test_a_pre_stress_keeps_copies_that_nobody_changes():
+def test_a_pre_stress_keeps_unchangeable_copies_of_its_parts():
     steps, bumps = [[3.0, 0.1]], [[4.0, 0.1, 1.0]]
     profile = sp.Prestress(0.3, 0.3, steps=steps, bumps=bumps)
     steps[0][1], bumps[0][1] = 0.9, 0.9
@@ -105,7 +105,7 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
 
 
 @pytest.mark.parametrize("kind", [np.float32, int])
-def test_parameters_are_computed_with_in_double_precision(kind):
+def test_parameters_are_converted_to_double_precision(kind):
     """A spacing squared in single precision would change the seventh digit of a result."""
     values = {"duration": kind(7), "dx": kind(1), "gamma": kind(1), "beta": kind(0)}
     scene = sp.Scene("displacement", sp.Prestress(kind(0), kind(0), kind(2), kind(1)), **values)
@@ -154,7 +154,7 @@ def test_a_step_replaces_the_level_beyond_its_position_on_its_side(steps):
 @pytest.mark.parametrize(
     ("symmetric", "values"), [*product([True], SYMMETRIC), *product([False], ASYMMETRIC)]
 )
-def test_symmetry_is_what_the_values_say(symmetric, values):
+def test_a_profile_is_symmetric_if_its_values_are(symmetric, values):
     profile, x = sp.Prestress(**{"left": 0.3, "right": 0.3} | values), np.linspace(0.0, 20.0, 2001)
     assert profile.symmetric is symmetric
     assert np.allclose(profile(x), profile(-x), rtol=0.0, atol=tol.STENCIL) is symmetric
@@ -162,7 +162,7 @@ def test_symmetry_is_what_the_values_say(symmetric, values):
 
 @pytest.mark.parametrize("ends", [(-9.0, 25.0), (2.0, 3.0), (4.0, -7.5), (1.0, 1.0), (15.0, 18.0)])
 @pytest.mark.parametrize("name", PROFILES)
-def test_the_integral_is_that_of_the_profile(name, ends):
+def test_the_integral_equals_a_numerical_integral(name, ends):
     profile = PROFILES[name]
     marks = [0.0, *(p for p, _ in profile.steps), *(c for c, _, _ in profile.bumps)]
     inside = [mark for mark in marks if min(ends) < mark < max(ends)] or None
@@ -172,8 +172,8 @@ def test_the_integral_is_that_of_the_profile(name, ends):
 
 
 @pytest.mark.parametrize("width", [1e-200, 1.0, 1e300])
-def test_the_pre_stress_is_balanced_where_its_closed_form_says(width):
-    """Where the tail of the peak is below rounding: a level, and two halves of a Gaussian."""
+def test_the_balance_position_has_its_closed_form(width):
+    """Far from the peak the integral is that of the level and of two halves of a Gaussian."""
     position = sp.theory.prestress_balance_position(sp.Prestress(-0.1, 0.0, width))
     assert position / width == pytest.approx(-21.0 * np.sqrt(0.5 * np.pi), rel=tol.ALGEBRA)
 

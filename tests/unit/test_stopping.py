@@ -36,12 +36,12 @@ def test_an_interrupt_stops_a_run_within_a_second(kind):
     process = subprocess.Popen(command, **pipes, preexec_fn=handle)
     assert process.stdout.readline() == "started\n"
     time.sleep(0.7)
-    asked = time.monotonic()
+    signal_time = time.monotonic()
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=30)
+    _, error_output = process.communicate(timeout=30)
     # A second is promised; the machine may be busy.
-    assert time.monotonic() - asked < 2.0
-    assert process.returncode != 0 and "KeyboardInterrupt" in said
+    assert time.monotonic() - signal_time < 2.0
+    assert process.returncode != 0 and "KeyboardInterrupt" in error_output
 
 
 def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(capsys):
@@ -57,7 +57,7 @@ def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(caps
     assert capsys.readouterr().err == ""
 
 
-def test_one_holds_it_at_a_time(tmp_path):
+def test_only_one_process_holds_a_lock_at_a_time(tmp_path):
     path = tmp_path / "new/run.lock"
     held = lock.take(path)
     assert held is not None and lock.take(path) is None and lock.main([str(path)]) == 1
@@ -66,7 +66,7 @@ def test_one_holds_it_at_a_time(tmp_path):
 
 
 @pytest.mark.parametrize("end", ["terminate", "kill"])
-def test_who_waits_gets_it_when_the_holder_ends(tmp_path, end):
+def test_a_waiting_process_gets_the_lock_when_its_holder_ends(tmp_path, end):
     path = str(tmp_path / "setup.lock")
     wait = [sys.executable, lock.__file__, path, sys.executable, "-c"]
     hold = (

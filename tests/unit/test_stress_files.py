@@ -1,4 +1,4 @@
-"""Pre-stress from files: what is read, what is refused, and what decides that results are old."""
+"""Pre-stress from files: reading, refusals, and results that depend on a file."""
 
 import os
 
@@ -25,7 +25,7 @@ GOOD = {
 
 
 @pytest.mark.parametrize("case", GOOD)
-def test_a_csv_file_gives_the_table_that_is_in_it(case, tmp_path):
+def test_the_table_of_a_csv_file_is_read(case, tmp_path):
     path = tmp_path / "stress.csv"
     path.write_text(GOOD[case], encoding="utf-8")
     profile = sp.Prestress.from_file(path)
@@ -42,7 +42,7 @@ def test_columns_may_be_named(tmp_path):
 
 
 @pytest.mark.parametrize("engine", ["h5netcdf", "scipy"])
-def test_a_netcdf_file_gives_the_table_that_is_in_it(engine, tmp_path):
+def test_the_table_of_a_netcdf_file_is_read(engine, tmp_path):
     x, tau = np.array(POINTS).T
     data = xr.Dataset({"tau": ("place", tau, {"units": "1"}), "x": ("place", x, {"units": "H"})})
     data.to_netcdf(tmp_path / "stress.nc", engine=engine)
@@ -100,7 +100,7 @@ scenes:
 
 
 @pytest.mark.parametrize("name", ["none.csv", "../none.csv", "/none/none.nc", "."])
-def test_a_file_that_is_not_there_is_refused_by_its_path(name, tmp_path):
+def test_a_missing_file_is_refused_with_its_path(name, tmp_path):
     overlay = tmp_path / "mine.yaml"
     overlay.write_text(OVERLAY.format(file=name), encoding="utf-8")
     for read in (lambda: read_overlay(overlay), lambda: sp.Prestress.from_file(tmp_path / name)):
@@ -124,7 +124,7 @@ def resolved_of(overlay, shipped, name="mine"):
     )
 
 
-def test_the_content_of_a_file_decides_and_not_its_name_or_time(tmp_path, shipped):
+def test_results_depend_on_the_content_of_a_file_not_on_its_name_or_time(tmp_path, shipped):
     overlay, digests = tmp_path / "mine.yaml", []
     for name, text, seconds in (
         ("a.csv", TEXT, 1e9),
@@ -150,7 +150,7 @@ PROFILES = [
 ]
 
 
-def test_profiles_of_a_sweep_are_points_and_a_rough_one_for_each_seed(shipped):
+def test_profiles_of_a_sweep_become_points_with_one_rough_profile_per_seed(shipped):
     sweep = resolved_of({"simulations": {"mine": SWEEP | {"profiles": PROFILES}}}, shipped)
     scenes, _ = expand(sweep)
     rough = [sp.Prestress.through(*sp.rough(**ROUGH, seed=seed), width=1.0) for seed in (3, 5)]
@@ -173,8 +173,8 @@ def test_profiles_without_a_table_have_no_labels(shipped):
     assert set(sweep["profiles"][0]) == {"left", "right", "width", "peak", "steps", "bumps"}
 
 
-def test_a_scene_samples_as_far_as_its_fronts_may_go(shipped):
-    """Beyond a ramp a front is as fast as the last level makes it."""
+def test_a_scene_is_sampled_as_far_as_its_fronts_can_go(shipped):
+    """Beyond a ramp, the front speed is that of the last level."""
     common = {"title": "t", "boundary": "displacement", "gamma": 0.65, "duration": 20.0}
     profile = {"points": [[0.0, 0.8], [1.0, 0.3]], "width": 1.0, "damping_ratio": 0.0}
     left = {"points": [[-1.0, 0.3], [0.0, 0.3]], "width": 1.0, "damping_ratio": 0.0}

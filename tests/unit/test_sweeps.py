@@ -24,7 +24,7 @@ def alone(gamma: float, level: float) -> xr.Dataset:
     return sp.simulate(sp.Scene(prestress=sp.Prestress(level, level), gamma=gamma, **VALUES))
 
 
-def test_every_combination_is_a_run_in_the_order_of_the_lists(runs):
+def test_a_sweep_has_one_run_for_each_combination_in_order(runs):
     assert runs["gamma"].values.tolist() == [0.6, 0.6, 0.3, 0.3]
     assert runs["left"].values.tolist() == runs["right"].values.tolist() == 2 * LEVELS
     for number, (gamma, level) in enumerate((g, tau) for g in GAMMAS for tau in LEVELS):
@@ -45,7 +45,7 @@ def test_runs_are_selected_by_any_parameters_and_keep_their_blocks(runs):
         runs.sel(gamma=0.5)
 
 
-def test_xarray_and_pandas_do_with_a_sweep_what_their_users_expect(runs):
+def test_xarray_and_pandas_operations_work_on_a_sweep(runs):
     sticks = runs["first_stick_time"]
     expected = [float(sticks.sel(gamma=gamma).mean()) for gamma in sorted(GAMMAS)]
     assert sticks.groupby("gamma").mean().values.tolist() == expected
@@ -62,7 +62,7 @@ def test_xarray_and_pandas_do_with_a_sweep_what_their_users_expect(runs):
     assert numbers.rename(gamma="elasticity").sel(elasticity=0.3).sizes["point"] == 2
 
 
-def test_a_full_product_is_a_grid_and_another_one_is_refused(runs):
+def test_a_full_product_becomes_a_grid_and_other_sweeps_are_refused(runs):
     grid = sp.as_grid(runs)
     assert grid["first_stick_time"].sizes == {"gamma": 2, "left": 2}
     assert grid["dx"].dims == ()
@@ -80,7 +80,7 @@ def test_a_full_product_is_a_grid_and_another_one_is_refused(runs):
         sp.as_grid(runs, over=["speed"])
 
 
-def test_a_sweep_is_measured_as_each_of_its_runs(runs):
+def test_measuring_a_sweep_equals_measuring_each_run(runs):
     table = sp.measure(runs)
     assert table.index.name == "point" and len(table) == 4
     for number, row in table.iterrows():
@@ -91,7 +91,7 @@ def test_a_sweep_is_measured_as_each_of_its_runs(runs):
         sp.measure(sp.sweep(left=0.5, record=("fields",), gamma=0.5, **VALUES))
 
 
-def test_a_sweep_comes_back_from_a_file(runs, tmp_path):
+def test_a_sweep_can_be_read_from_a_file(runs, tmp_path):
     runs.to_netcdf(tmp_path / "sweep.nc", engine="h5netcdf")
     again = sp.open_sweep(tmp_path / "sweep.nc")
     xr.testing.assert_identical(again, runs)
@@ -121,7 +121,7 @@ def test_wrong_lists_are_refused(refusal, values):
         sp.sweep(boundary="stress", left=0.5, dx=0.1)
 
 
-def test_a_pre_stress_may_be_listed_too():
+def test_profiles_of_pre_stress_can_be_listed():
     profiles = [sp.Prestress(0.5, 0.5), sp.Prestress(0.5, 0.5, width=2.0)]
     runs = sp.sweep(boundary="stress", prestress=profiles, dx=[0.1, 0.2], duration=1.0)
     assert runs["width"].values.tolist() == [1.0, 1.0, 2.0, 2.0]
@@ -138,7 +138,7 @@ def test_all_cores_are_used_by_default(monkeypatch):
     assert used == [cores]
 
 
-def test_without_tqdm_progress_says_so_in_one_line_and_goes_on(monkeypatch, capsys):
+def test_without_tqdm_a_sweep_runs_with_one_line_of_advice(monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 1.0, 0.1)
     for run in (
@@ -150,7 +150,7 @@ def test_without_tqdm_progress_says_so_in_one_line_and_goes_on(monkeypatch, caps
         assert shown == "progress: tqdm is not installed, so that no bar is drawn\n"
 
 
-def test_a_damping_ratio_stands_for_beta():
+def test_a_damping_ratio_replaces_beta():
     profile = sp.Prestress(0.6, 0.6)
     scene = sp.Scene("stress", profile, 15.0, dx=0.01, damping_ratio=0.1)
     assert scene == sp.Scene("stress", profile, 15.0, dx=0.01, beta=1e-3)

@@ -6,7 +6,7 @@ import pytest
 
 import slippulse as sp
 
-# A first-order error halves with the spacing, but for a part of second order.
+# A first-order error halves with the spacing, apart from a second-order part.
 FIRST_ORDER = 0.3
 
 
@@ -17,7 +17,7 @@ def measured(boundary: str, prestress: sp.Prestress, duration: float, **values) 
 
 @pytest.mark.parametrize("levels", [(0.6, 0.45), (0.5, -0.5)])
 def test_different_levels_have_the_transition_of_the_exact_rupture(levels):
-    """The lattice tends to it at first order in its spacing."""
+    """The lattice converges to it at first order in its spacing."""
     profile, gamma = sp.Prestress(*levels), 5.0
     exact = sp.theory.Rupture(profile, gamma, 0.1, duration=4.0).transition
     errors = []
@@ -32,7 +32,7 @@ def test_different_levels_have_the_transition_of_the_exact_rupture(levels):
         assert fine == pytest.approx(0.5 * coarse, rel=FIRST_ORDER)
 
 
-def test_two_nucleations_have_no_length_and_say_why():
+def test_two_nucleations_have_no_length_and_a_reason():
     two = sp.Prestress(0.4, 0.4, bumps=((6.0, 0.65, 1.0),))
     numbers = measured("displacement", two, 6.0, dx=0.05, gamma=0.65)
     assert numbers["transition_time"] == numbers["first_stick_time"] > 0.0
@@ -46,10 +46,10 @@ def test_two_nucleations_have_no_length_and_say_why():
         ("no block stuck before the end", "displacement", (0.5, 0.4), {"gamma": 0.65}),
         ("both levels are 0 or negative", "displacement", (-0.2, -0.2), {"gamma": 0.65}),
         ("the left front did not cover 95% of", "stress", (-0.5, 0.0), {}),
-        ("under a stress boundary the paper defines it for", "stress", (0.5, 0.5), {}),
+        ("under a stress boundary the paper defines it only for", "stress", (0.5, 0.5), {}),
     ],
 )
-def test_a_missing_transition_says_why(reason, boundary, levels, values):
+def test_a_missing_transition_has_a_reason(reason, boundary, levels, values):
     numbers = measured(boundary, sp.Prestress(*levels), 1.0, dx=0.05, **values)
     assert math.isnan(numbers["transition_time"]) and math.isnan(numbers["transition_length"])
     assert numbers["transition_reason"].startswith(reason)

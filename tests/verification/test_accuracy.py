@@ -7,7 +7,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measurement.promise import covered
+from slippulse.measurement.promise import covered_numbers
 from slippulse.prediction.comparison import measured_table
 
 SHARE = 0.95
@@ -75,7 +75,7 @@ def test_the_worst_covered_number_keeps_its_promise_and_not_more_than_needed(shi
     sweep = sp.run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (scene, exact), run in zip(cases, made, runs, strict=True):
-        promised = covered(run, SHARE).intersection(exact)
+        promised = covered_numbers(run, SHARE).intersection(exact)
         # The transition of an undamped crack is not covered.
         undamped_crack = scene.beta == 0.0 and "largest_velocity" in exact
         assert promised == ({"largest_velocity"} if undamped_crack else set(exact)), case

@@ -8,7 +8,7 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.measurement.front_paths import arrival, fit_front, position_at
+from slippulse.measurement.front_paths import arrival, fit_front, front_position
 from slippulse.measurement.pulses import leading_pulse
 from slippulse.model.balance import integral
 from slippulse.theory.part import Part
@@ -55,7 +55,7 @@ def test_the_published_figure():
     assert intercept == pytest.approx(0.81, abs=tol.PUBLISHED_INTERCEPT)
     assert run.attrs["first_stick_time"] == pytest.approx(3.93, rel=tol.PUBLISHED_FRONT_SPEED)
     assert run.attrs["first_stick_position"] == 0.0
-    edges = position_at(run, [5.0, 6.0, 7.0, 8.0, 9.0, 10.0], "right", "stick_time")
+    edges = front_position(run, [5.0, 6.0, 7.0, 8.0, 9.0, 10.0], "right", "stick_time")
     assert edges == pytest.approx([3.19, 4.74, 6.03, 7.27, 8.48, 9.64], rel=tol.PUBLISHED_TRAILING)
 
 
@@ -86,7 +86,7 @@ def test_lattices_converge_to_tabulated_transitions(paper_accuracy, tau0, gamma,
     for dx in (0.05, 0.02, 0.01, 0.005):
         run = run_of(tau0, gamma=gamma, dx=dx, duration=1.2 * exact.time, **paper_accuracy)
         time = run.attrs["first_stick_time"]
-        measured.append((time, 2.0 * float(position_at(run, time))))
+        measured.append((time, 2.0 * float(front_position(run, time))))
     _, coarse, middle, fine = np.array(measured) - truth
     first_sticks = [time for time, _ in measured[: len(known)]]
     assert first_sticks == pytest.approx(known, rel=tol.TRANSITION_TABLE)

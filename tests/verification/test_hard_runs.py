@@ -9,11 +9,11 @@ import xarray as xr
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measurement.promise import covered
+from slippulse.measurement.promise import covered_numbers
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
-from slippulse.model.stability import chosen_step
+from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row, pulse_state
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 
 GAMMA, SPEED, END = 0.65, 1.2, 30.0
 
@@ -37,7 +37,7 @@ def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, st
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), END, 0.05, GAMMA)
     data = {name: ("x", array) for name, array in arrays.items()}
     run = xr.Dataset(data, {"x": x}, scene.attributes() | {"end_time": END})
-    pulse = leading_pulse(run, SETTINGS["front_window"])
+    pulse = leading_pulse(run, MEASURE_SETTINGS["front_window"])
     return pulse, pulse_state(run, pulse)
 
 
@@ -47,8 +47,8 @@ def test_a_promise_looks_at_the_prestress_that_fronts_cross():
         barriers = ((distance, -1.096, 0.938), (-distance, -1.096, 0.938))
         profile = sp.Prestress(0.549, 0.549, 1.043, 1.0172, (), barriers)
         scene = sp.Scene("displacement", profile, 12.9, 0.05, 0.515, 0.005, max_step=0.5)
-        row = measured_row(sp.simulate(scene), SETTINGS)
-        assert ("transition_length" in covered(row, 0.95)) == promised
+        row = measured_row(sp.simulate(scene), MEASURE_SETTINGS)
+        assert ("transition_length" in covered_numbers(row, 0.95)) == promised
 
 
 def test_an_undone_first_stick_is_flagged():
@@ -65,7 +65,7 @@ def test_an_undone_first_stick_is_flagged():
 def test_strong_damping_has_a_step_that_its_front_allows():
     """At 0.9 of the stability bound the fronts were 0.8 to 1.4 per cent slow at order 4."""
     for ratio, order in product((2.0, 10.0), (4, 8)):
-        step = chosen_step("localised", order, ratio, 0.0)
+        step = choose_step("localised", order, ratio, 0.0)
         for factor, flags in ((1.0, ""), (1.3, "long_step")):
             how = {"beta": 0.05 * ratio, "order": order, "max_step": factor * step}
             scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 2.0, 0.05, **how)

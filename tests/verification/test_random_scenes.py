@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from reference.lattice_state import sliding, threshold_stress, total_stress
 
 import slippulse as sp
-from slippulse.model.cost import bound_of
+from slippulse.model.cost import bound_cost
 from slippulse.model.release import RELEASES
 from slippulse.model.scene import ORDERS
 from slippulse.model.stability import largest_step
@@ -84,7 +84,7 @@ def random_scenes(draw) -> sp.Scene:
 def check_invariants(scene):
     reach = math.ceil(scene.duration) + 2.0
     samples = sp.Samples(np.linspace(0.0, scene.duration, 25), np.linspace(-reach, reach, 41))
-    run, bound = sp.simulate(scene, samples), bound_of(scene, samples)
+    run, bound = sp.simulate(scene, samples), bound_cost(scene, samples)
     assert run.attrs["block_updates"] < tol.BOUND_FACTOR * bound.block_updates
     assert run.nbytes < bound.bytes
     kinds = {

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.model.cost import HOW_TO_GO_ON
+from slippulse.model.cost import OPTION_TO_ALLOW
 from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep
 from slippulse_paper.configuration.problems import ConfigError
@@ -205,7 +205,7 @@ def test_a_sweep_that_takes_too_much_is_refused(shipped, case):
     config = read_config(shipped, [{"simulations": {name: changes}}])
     bound, chunks = bound_and_chunks(config, name)
     reason = bound.exceeded(chunks)
-    assert words in reason and HOW_TO_GO_ON in reason and "\n" not in reason
+    assert words in reason and OPTION_TO_ALLOW in reason and "\n" not in reason
 
 
 @pytest.mark.parametrize("preset", ["draft", "paper", "reference"])

@@ -10,7 +10,7 @@ import sys
 import pytest
 from pipeline_copy import copy_project, made, refused
 
-from slippulse.model.cost import HOW_TO_GO_ON
+from slippulse.model.cost import OPTION_TO_ALLOW
 
 STEADY = "simulations: {steady_displacement: "
 DRAFT, LONG = "preset: draft\n", STEADY + "{duration: {time: 1.0e+8}}}"
@@ -69,7 +69,7 @@ def test_odd_surroundings_of_the_user_do_not_stop_a_run(folder, tmp_path_factory
 @pytest.mark.slow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
     (folder / "mine.yaml").write_text(LONG, encoding="utf-8")
-    allowed, target = HOW_TO_GO_ON.split()[:2], "results/data/steady_displacement.nc"
+    allowed, target = OPTION_TO_ALLOW.split()[:2], "results/data/steady_displacement.nc"
     made(folder, "--dry-run", *allowed, "--", target, overlay="mine.yaml")
 
 

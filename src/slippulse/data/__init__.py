@@ -1,1 +1,1 @@
-"""Files of data: how they are written and read, and what their variables mean."""
+"""Data files: writing and reading them, and the meaning of their variables."""

@@ -1,17 +1,17 @@
-"""Writing of files, whole or not at all."""
+"""Write files so that each is either complete or absent."""
 
 import os
 from collections.abc import Callable
 from pathlib import Path
 
-# The environment variable in which a job holds the digest of its configuration.
-CONFIGURATION = "SLIPPULSE_CONFIGURATION"
-# Part of the hidden name that a file has until it is complete; no other file has it.
-UNFINISHED = ".slippulse-unfinished-"
+# Environment variable that holds the digest of a job's configuration.
+CONFIGURATION_VARIABLE = "SLIPPULSE_CONFIGURATION"
+# A file has a hidden name with this part until it is complete. No other file has such a name.
+UNFINISHED_MARK = ".slippulse-unfinished-"
 
 
 class UnreadableFile(ValueError):
-    """A file of the pipeline that is cut short, corrupted or edited beyond reading."""
+    """Error about a file that cannot be read, because it is incomplete, damaged or edited."""
 
     def __init__(self, path: str | Path, reason: object) -> None:
         text = " ".join(str(reason).split())[:120]
@@ -19,20 +19,24 @@ class UnreadableFile(ValueError):
 
 
 def configuration() -> str:
-    """Digest of the configuration behind the files of this job; empty outside the workflow."""
-    return os.environ.get(CONFIGURATION, "")
+    """Return the digest of this job's configuration; empty text outside the workflow."""
+    return os.environ.get(CONFIGURATION_VARIABLE, "")
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
-    """Let ``write`` fill a file beside ``path``, and move it there when it is complete."""
+    """Call ``write`` with a temporary path, and rename the file to ``path`` when it is complete.
+
+    If ``write`` fails, the temporary file is deleted and ``path`` stays as it was.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.stem}{UNFINISHED}{os.urandom(4).hex()}{path.suffix}")
+    random_text = os.urandom(4).hex()
+    unfinished = path.with_name(f".{path.stem}{UNFINISHED_MARK}{random_text}{path.suffix}")
     try:
-        write(part)
-        part.replace(path)
+        write(unfinished)
+        unfinished.replace(path)
     finally:
-        part.unlink(missing_ok=True)
+        unfinished.unlink(missing_ok=True)
 
 
 def write_text(text: str, path: str | Path) -> None:

@@ -1,7 +1,7 @@
-"""An index of the runs of a sweep by all of their parameters at once.
+"""An xarray index that selects the runs of a sweep by any of their parameters.
 
-xarray's own indexes hold one coordinate each: two of them over one dimension cannot be selected
-by together, and before xarray 2025 no arithmetic was possible beside them.
+The indexes of xarray itself have one coordinate each. With several of them along one dimension, a
+selection cannot combine them, and before xarray 2025 arithmetic was not possible.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
@@ -15,17 +15,18 @@ from xarray.core.indexing import IndexSelResult
 from ..model.checks import short_repr
 from ..model.scene import ATTRIBUTES
 
-# In this order parameters are tried as names of runs. Those that follow from earlier ones are none.
-ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
-# beta/dx is a quotient: numbers that differ by rounding are the same parameter.
-ROUNDING = 1e-9
+# `independent_parameters` tries the parameters in this order.
+PARAMETER_ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
+# Relative difference up to which two numbers are the same parameter: beta/dx is computed by a
+# division, so that equal ratios can differ by rounding.
+EQUALITY_TOLERANCE = 1e-9
 
 
 class ParameterIndex(xr.Index):
-    """The values of every parameter over ``point``; `sel` takes any of them, in any number.
+    """Index along ``point`` that holds the values of all parameters.
 
-    It is the index of the dimension, too: in tables of pandas the runs are named by the parameters
-    that differ between them.
+    A selection can use any number of parameters. A pandas table of the sweep has the parameters
+    that differ between the runs as its index.
     """
 
     def __init__(self, values: Mapping[Hashable, np.ndarray]) -> None:
@@ -99,12 +100,14 @@ class ParameterIndex(xr.Index):
         for name, label in labels.items():
             chosen &= self._matches(name, label, method == "nearest")
         if not chosen.any():
-            wanted = ", ".join(f"{name} = {short_repr(label)}" for name, label in labels.items())
+            requested = [f"{name} = {short_repr(label)}" for name, label in labels.items()]
             present = {name: np.unique(self.values[name]).tolist() for name in labels}
-            raise KeyError(f"{wanted}: no such run; the runs have {short_repr(present)}")
+            allowed = f"the runs have {short_repr(present)}"
+            raise KeyError(f"{', '.join(requested)}: no such run; {allowed}")
         return IndexSelResult({"point": np.flatnonzero(chosen)})
 
     def _matches(self, name: Hashable, label: Any, nearest: bool) -> np.ndarray:
+        """Return True for each run whose parameter is a value, one of several, or in a slice."""
         values = self.values[name]
         if isinstance(label, slice):
             above = True if label.start is None else values >= label.start
@@ -117,15 +120,18 @@ class ParameterIndex(xr.Index):
                 continue
             if nearest:
                 value = values[np.argmin(np.abs(values - value))]
-            matches |= np.isclose(values, value, rtol=ROUNDING, atol=0.0)
+            matches |= np.isclose(values, value, rtol=EQUALITY_TOLERANCE, atol=0.0)
         return matches
 
 
 def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
-    """Return the parameters that differ between the runs and do not follow from earlier ones."""
+    """Return the parameters that differ between the runs and are not determined by others.
+
+    A parameter is kept if it distinguishes runs that the parameters before it do not.
+    """
     names: list[str] = []
     count = 1
-    for name in filter(values.__contains__, dict.fromkeys(ORDER)):
+    for name in filter(values.__contains__, dict.fromkeys(PARAMETER_ORDER)):
         number = len(combinations(values, [*names, name]))
         if number > count:
             names, count = [*names, name], number
@@ -133,6 +139,9 @@ def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
 
 
 def combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
-    """Return the different combinations of some parameters, by the numbers of their values."""
+    """Return the different combinations of some parameters that occur among the runs.
+
+    Each row is one combination; each value is given by its number among the sorted values.
+    """
     codes = [np.unique(values[name], return_inverse=True)[1] for name in names]
     return np.unique(np.stack(codes, axis=-1), axis=0)

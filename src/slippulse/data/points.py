@@ -1,4 +1,8 @@
-"""The runs of a sweep, read from its Dataset."""
+"""Split the Dataset of a sweep into its runs.
+
+In the Dataset the blocks of all runs follow one another along the dimension "block". The variable
+``row_size`` has the number of blocks of each run.
+"""
 
 from collections.abc import Iterator
 from typing import Any
@@ -8,19 +12,26 @@ import xarray as xr
 
 from ..model.checks import check_that
 
-AXES = ("sample_time", "sample_position")
-DIMENSIONS = {name: (name,) for name in AXES} | {"sample_slip": AXES, "sample_velocity": AXES}
+SAMPLE_AXES = ("sample_time", "sample_position")
+# Dimensions of the samples of a run. All other arrays of a run have the dimension "x".
+DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
+    "sample_slip": SAMPLE_AXES,
+    "sample_velocity": SAMPLE_AXES,
+}
 
 
 class Recorded(dict[str, np.ndarray]):
-    """The arrays of a run by name, and its numbers; made in less time than a Dataset."""
+    """The arrays of a run by name, and its single numbers as ``attrs``.
+
+    It can be used like a Dataset, and is much faster to build.
+    """
 
     def __init__(self, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:
         super().__init__(arrays)
         self.attrs = attrs
 
     def dataset(self) -> xr.Dataset:
-        """Return the run as a Dataset over x, with samples over time and position."""
+        """Return the run as a Dataset: fields as functions of x, samples of time and position."""
         variables = {name: (DIMENSIONS.get(name, "x"), values) for name, values in self.items()}
         return xr.Dataset(variables, attrs=self.attrs)
 
@@ -29,36 +40,37 @@ AnyRun = Recorded | xr.Dataset
 
 
 def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
-    """Yield the runs of a sweep; or ValueError."""
+    """Yield the runs of a sweep, or raise ValueError if its numbers of blocks do not fit."""
     sweep = over_points(sweep)
-    numbers, blocks = _over(sweep, "point"), _over(sweep, "block")
+    run_numbers = _arrays_along(sweep, "point")
+    block_arrays = _arrays_along(sweep, "block")
     samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
-    size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    start = numbers.pop("row_start", None)
-    numbers.pop("point", None)
-    length = blocks.get("x", size[:0]).size
-    if start is None:
-        start = np.cumsum(size) - size
-        fitting = np.all(size >= 0) and np.sum(size) == length
+    sizes = run_numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    starts = run_numbers.pop("row_start", None)
+    run_numbers.pop("point", None)
+    number_of_blocks = block_arrays.get("x", sizes[:0]).size
+    if starts is None:
+        starts = np.cumsum(sizes) - sizes
+        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
     else:
-        # Some of the runs may have been selected.
-        fitting = np.all(size >= 0) and np.all(start + size <= length)
+        # The runs may be a selection, whose blocks are only some of all blocks.
+        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
     allowed = "numbers of blocks whose sum is the length of x"
-    check_that(bool(fitting), "row_size", size.tolist(), allowed)
+    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
-    for index in range(size.size):
-        rows = slice(start[index], start[index] + size[index])
-        arrays = {name: values[rows] for name, values in blocks.items()}
+    for index in range(sizes.size):
+        blocks = slice(starts[index], starts[index] + sizes[index])
+        arrays = {name: values[blocks] for name, values in block_arrays.items()}
         arrays |= {name: values[index] for name, values in samples.items()}
-        # Texts from a file may be objects of Python.
-        attrs = {name: np.asarray(values[index]).item() for name, values in numbers.items()}
+        # A file may have its texts as Python objects, which have no method `item`.
+        attrs = {name: np.asarray(values[index]).item() for name, values in run_numbers.items()}
         yield Recorded(arrays, attrs | versions)
 
 
 def over_points(sweep: xr.Dataset) -> xr.Dataset:
-    """Return a grid of runs, or a single one that was selected, as a sweep over ``point``."""
-    numbers = [name for name in ("row_start", "run_flags") if name in sweep.variables]
-    axes = sweep[numbers[0]].dims if numbers else ("point",)
+    """Convert a grid of runs, or a single selected run, to a sweep along the dimension "point"."""
+    names = [name for name in ("row_start", "run_flags") if name in sweep.variables]
+    axes = sweep[names[0]].dims if names else ("point",)
     if axes == ("point",):
         return sweep
     sweep = sweep.stack(point=axes).reset_index("point") if axes else sweep
@@ -69,12 +81,15 @@ def over_points(sweep: xr.Dataset) -> xr.Dataset:
         elif "block" in variable.dims:
             variables[name] = variable
         else:
-            # Of a single run, or of all runs that were selected.
+            # The variable has one value, which holds for every selected run.
             variables[name] = variable.set_dims({"point": size} | variable.sizes)
     return xr.Dataset(variables, attrs=sweep.attrs)
 
 
-def _over(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
-    """Arrays of the variables over one dimension alone."""
-    variables = sweep.variables.items()
-    return {str(name): one.values for name, one in variables if one.dims == (dimension,)}
+def _arrays_along(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
+    """Return the variables that have only this dimension, as arrays by name."""
+    arrays = {}
+    for name, variable in sweep.variables.items():
+        if variable.dims == (dimension,):
+            arrays[str(name)] = variable.values
+    return arrays

@@ -1,4 +1,4 @@
-"""SI units with the prefixes that a figure or a page writes, such as mm, µs and MPa."""
+"""SI units with prefixes, such as mm, µs and MPa, for the numbers of a figure or a page."""
 
 import math
 from typing import NamedTuple
@@ -17,7 +17,7 @@ PREFIXES = {
     6: "M",
     9: "G",
 }
-# Text of a unit, to which a prefix is added in front; a square takes none.
+# Text of each unit. A prefix can be written in front of it, except in front of a square.
 TEXTS = {unit: unit for unit in UNITS.values()}
 TEXTS |= {"m s-1": "m/s", "m s-2": "m/s\N{SUPERSCRIPT TWO}", "J m-1": "J/m"}
 TEXTS["m2 s-1"] = "m\N{SUPERSCRIPT TWO}/s"
@@ -25,22 +25,24 @@ WITHOUT_PREFIX = ("m2 s-1",)
 
 
 class ReadableUnit(NamedTuple):
-    """A unit as it is written, and its value in SI."""
+    """The text of a unit, and its value in SI."""
 
     text: str
     value: float
 
 
 def readable_unit(quantity: str, numbers: object) -> ReadableUnit:
-    """Return the unit in which the largest of some numbers, in SI, is between 1 and 1000.
+    """Return the unit in which the largest of some numbers is between 1 and 1000.
 
-    It has no prefix if the numbers need a rarer one, or are all 0.
+    numbers : in SI units
+
+    The unit has no prefix if all numbers are 0, or if they would need a prefix that is not listed.
     """
     unit, values = UNITS[quantity], np.abs(np.asarray(numbers, dtype=float))
     largest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
     if unit in WITHOUT_PREFIX or largest == 0.0:
         return ReadableUnit(TEXTS[unit], 1.0)
-    # The largest number is often a round one, which must not fall below 1 by rounding.
+    # A round number such as 1e-3 must not fall below 1 mm by rounding.
     power = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
     if power not in PREFIXES:
         return ReadableUnit(TEXTS[unit], 1.0)

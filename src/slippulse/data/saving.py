@@ -1,4 +1,8 @@
-"""Writing of Datasets as netCDF-4 files, without a time of writing."""
+"""Write Datasets as netCDF-4 files.
+
+The files are written with h5py, in the layout of netCDF-4, and contain no time of writing. Equal
+data therefore give files with equal bytes.
+"""
 
 from io import BytesIO
 from pathlib import Path
@@ -11,26 +15,32 @@ from .files import configuration, write_whole
 
 
 def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a Dataset whose coordinates are dimensions; equal data give equal bytes."""
+    """Write a Dataset as netCDF-4; equal data give equal bytes.
+
+    Each coordinate must have the name of its dimension. In the workflow, the digest of the
+    configuration is added to the attributes.
+    """
     if configuration():
         dataset = dataset.assign_attrs(configuration=configuration())
     content = BytesIO()
     with h5py.File(content, "w", track_order=True) as file:
         file.attrs.update(dataset.attrs)
-        items = {}
+        stored = {}
         for name, variable in dataset.variables.items():
-            text = variable.dtype.kind in "UO"
-            values = variable.values.astype(h5py.string_dtype()) if text else variable.values
-            items[name] = file.create_dataset(name, data=values)
-            items[name].attrs.update(variable.attrs)
+            is_text = variable.dtype.kind in "UO"
+            values = variable.values.astype(h5py.string_dtype()) if is_text else variable.values
+            stored[name] = file.create_dataset(name, data=values)
+            stored[name].attrs.update(variable.attrs)
+        # netCDF-4 stores each dimension as an HDF5 dimension scale: its coordinate variable, or,
+        # without one, an empty array whose scale has the text below as its name.
         for number, (name, size) in enumerate(dataset.sizes.items()):
-            if name not in items:
-                items[name] = file.create_dataset(name, shape=size, dtype="f4")
-            bare = f"This is a netCDF dimension but not a netCDF variable.{size:10d}"
-            items[name].make_scale(name if name in dataset.variables else bare)
-            items[name].attrs["_Netcdf4Dimid"] = np.int32(number)
+            if name not in stored:
+                stored[name] = file.create_dataset(name, shape=size, dtype="f4")
+            no_variable = f"This is a netCDF dimension but not a netCDF variable.{size:10d}"
+            stored[name].make_scale(name if name in dataset.variables else no_variable)
+            stored[name].attrs["_Netcdf4Dimid"] = np.int32(number)
         for name, variable in dataset.variables.items():
             dimensions = () if name in dataset.sizes else variable.dims
             for axis, dimension in enumerate(dimensions):
-                items[name].dims[axis].attach_scale(items[dimension])
-    write_whole(path, lambda part: part.write_bytes(content.getbuffer()))
+                stored[name].dims[axis].attach_scale(stored[dimension])
+    write_whole(path, lambda unfinished: unfinished.write_bytes(content.getbuffer()))

@@ -1,7 +1,7 @@
-"""Reading of Datasets from netCDF-4 files.
+"""Read Datasets from netCDF-4 files.
 
-Each of the fifty variables of a sweep takes five times as long to read by xarray's engine, and
-three times as long by h5py's objects, as by the calls of HDF5 below them.
+The files are read with the low-level functions of h5py. A sweep has about fifty variables, and
+reading them with xarray takes five times as long, with the high-level objects of h5py three times.
 """
 
 from pathlib import Path
@@ -13,25 +13,26 @@ import xarray as xr
 
 from .files import UnreadableFile
 
-# Attributes of HDF5 and of the netCDF-4 library.
-PLUMBING = {"CLASS", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
+# Attributes that HDF5 and netCDF-4 use internally. They are not part of a Dataset.
+INTERNAL_ATTRIBUTES = {"CLASS", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
 
 
 def load_dataset(path: str | Path) -> xr.Dataset:
-    """Read a Dataset into memory. Raises UnreadableFile with the path and the remedy."""
+    """Read a Dataset into memory, or raise UnreadableFile with the path and a remedy."""
     try:
-        # Python opens the file, so that the process sees what is read.
+        # The file is opened by Python, not by HDF5, so that Python's audit hooks record the read.
         with open(path, "rb") as source, h5py.File(source) as file:
             items = {name: h5py.h5d.open(file.id, name.encode()) for name in file}
             attributes = {name: _attributes(item) for name, item in items.items()}
-            # A scale lists the variables and axes that it belongs to; without a list it is its own.
+            # Each dimension scale has a REFERENCE_LIST of the variables and axes that it belongs
+            # to. A variable that is in no such list is a coordinate: its dimension is its own name.
             dimensions = {item: [name] * item.rank for name, item in items.items()}
             for name, attrs in attributes.items():
                 for reference, axis in attrs.pop("REFERENCE_LIST", ()):
                     dimensions[h5py.h5r.dereference(reference, file.id)][axis] = name
             variables = {}
             for name, item in items.items():
-                # A dimension that has no coordinate has a scale of this name.
+                # A dimension without a coordinate variable is marked by a scale with this name.
                 if not attributes[name].pop("NAME", b"").startswith(b"This is a netCDF dimension"):
                     values = _values(item, h5py.h5s.ALL, h5py.h5s.ALL)
                     variables[name] = dimensions[item], values, attributes[name]
@@ -41,14 +42,15 @@ def load_dataset(path: str | Path) -> xr.Dataset:
 
 
 def _attributes(item: h5py.h5d.DatasetID) -> dict[str, Any]:
-    """Attributes of a variable, as builtins."""
+    """Return the attributes of a variable, as builtin Python types."""
     opened = [h5py.h5a.open(item, index=number) for number in range(h5py.h5a.get_num_attrs(item))]
     named = {attribute.name.decode(): attribute for attribute in opened}
-    return {name: _values(named[name]).tolist() for name in named if name not in PLUMBING}
+    names = [name for name in named if name not in INTERNAL_ATTRIBUTES]
+    return {name: _values(named[name]).tolist() for name in names}
 
 
 def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceID) -> np.ndarray:
-    """Values of a variable or of an attribute, text as text."""
+    """Return the values of a variable or an attribute, with bytes decoded to text."""
     values = np.empty(item.shape, item.dtype)
     item.read(*spaces, values)
     if values.dtype.kind == "O":

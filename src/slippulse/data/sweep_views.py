@@ -1,4 +1,8 @@
-"""Sweeps as xarray users expect them: parameters as coordinates, and full products as grids."""
+"""Convert sweeps to the forms that users of xarray expect.
+
+`with_parameters` makes the parameters of the runs coordinates, so that runs can be selected by
+them. `as_grid` makes the parameters the axes of a grid, if there is a run for each combination.
+"""
 
 import math
 from collections.abc import Sequence
@@ -12,16 +16,16 @@ from ..model.scene import ATTRIBUTES
 from .parameter_index import ParameterIndex, combinations, independent_parameters
 from .variables import VARIABLES
 
-# Names of the axes of a full product, in the attributes of a sweep.
-AXES = "sweep_axes"
-FROM_SWEEP = "a Dataset that run_sweep or open_sweep returned"
+# Attribute of a sweep that names the parameters of which `sweep` was given lists.
+AXES_ATTRIBUTE = "sweep_axes"
+ALLOWED_SWEEP = "a Dataset that run_sweep or open_sweep returned"
 
 
 def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
-    """Return a sweep with its parameters as coordinates over ``point``, and the rows of its runs.
+    """Return a sweep with its parameters as coordinates along ``point``.
 
-    ``row_start`` is the first of the ``row_size`` blocks of each run, so that a selection of runs
-    still has its blocks.
+    It also has the coordinate ``row_start``, the number of the first block of each run. With it and
+    ``row_size``, the blocks of a run can be found in a selection of runs, too.
     """
     number = {"units": "1", "long_name": VARIABLES["point"]}
     sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), number))
@@ -29,8 +33,8 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     coordinates = names[1:]
     if "row_size" in sweep:
         size = sweep["row_size"].values
-        about = {"units": "1", "long_name": VARIABLES["row_start"]}
-        sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, about))
+        attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
+        sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, attributes))
         coordinates.append("row_size")
     return sweep.drop_indexes("point").set_coords(coordinates).set_xindex(names, ParameterIndex)
 
@@ -52,7 +56,7 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the file is not that of a sweep.
+        If the file does not contain a sweep.
     FileNotFoundError
         If there is no such file.
 
@@ -69,33 +73,33 @@ def open_sweep(path: str | Path) -> xr.Dataset:
 
 
 def is_sweep(data: object) -> bool:
-    """Return True if a Dataset has the runs of a sweep over ``point``."""
+    """Return True if a Dataset contains runs along the dimension ``point``."""
     if not isinstance(data, xr.Dataset) or "point" not in data.dims:
         return False
     return all(name in data.variables for name in ("boundary", "dx", "duration"))
 
 
 def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
-    """Return a sweep that is a full product of parameters with these as its axes.
+    """Return a sweep as a grid, whose axes are parameters of the runs.
 
     Parameters
     ----------
     sweep : xarray.Dataset
         A sweep of `sweep`, `run_sweep` or `open_sweep`, or a selection of its runs.
     over : sequence of str, optional
-        Parameters that become axes; by default the lists given to `sweep`, else those that differ
-        between runs and do not follow from each other.
+        Parameters that become axes. By default these are the parameters of which `sweep` was given
+        lists, or else all parameters that differ between the runs and do not follow from others.
 
     Returns
     -------
     xarray.Dataset
-        Every number over the axes in place of ``point``. The blocks are as they were: `point`
-        takes a run out by its number, and `measure` takes the grid.
+        Every number of a run, along these axes in place of ``point``. The fields along ``block``
+        are unchanged. `point` takes one run out of the grid, and `measure` measures all of them.
 
     Raises
     ------
     ValueError
-        If some combination of the values of the axes is no run, or several.
+        If there is not exactly one run for each combination of the values of the axes.
 
     Examples
     --------
@@ -104,7 +108,7 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     >>> sp.as_grid(runs)["releases"].sel(left=-0.4, width=2.0).item() > 0
     True
     """
-    check_that(is_sweep(sweep), "sweep", sweep, FROM_SWEEP)
+    check_that(is_sweep(sweep), "sweep", sweep, ALLOWED_SWEEP)
     named = [over] if isinstance(over, str) else over
     axes = _axes_of(sweep) if named is None else list(named)
     known = bool(axes) and all(name in sweep.coords for name in axes)
@@ -119,22 +123,22 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
 
 def _axes_of(sweep: xr.Dataset) -> list[str]:
     """Return the parameters that were listed, or else those that differ between the runs."""
-    listed = [name for name in sweep.attrs.get(AXES, "").split() if name in sweep.coords]
+    listed = [name for name in sweep.attrs.get(AXES_ATTRIBUTE, "").split() if name in sweep.coords]
     return listed or independent_parameters({n: sweep[n].values for n in sweep.coords})
 
 
 def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
+    """Raise ValueError unless there is exactly one run for each combination of parameters."""
     values = {name: sweep[name].values for name in axes}
-    product = math.prod(len(np.unique(one)) for one in values.values())
+    product = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
     runs = sweep.sizes["point"]
-    full = len(combinations(values, axes)) == product == runs
-    check_that(
-        full, "number of runs", runs, f"{product}, one for each combination of {', '.join(axes)}"
-    )
+    is_complete = len(combinations(values, axes)) == product == runs
+    allowed = f"{product}, one for each combination of {', '.join(axes)}"
+    check_that(is_complete, "number of runs", runs, allowed)
 
 
 def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
-    """Return a sweep in which parameters that are the same in all runs are single numbers."""
+    """Return a sweep in which each parameter that all runs share is a single value."""
     parameters = [name for name in ATTRIBUTES.split() if name in sweep.coords and name not in axes]
     constant = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
     return sweep.assign_coords({name: sweep[name].variable[0] for name in constant})

@@ -1,4 +1,8 @@
-"""The runs of a sweep as one Dataset."""
+"""Combine the runs of a sweep into one Dataset.
+
+Numbers of a run lie along the dimension "point". The fields of all runs follow one another along
+the dimension "block" (a contiguous ragged array of the CF conventions).
+"""
 
 from collections.abc import Sequence
 from functools import cache
@@ -10,9 +14,10 @@ import xarray as xr
 from .points import DIMENSIONS, Recorded, runs_in
 
 PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
-FRONTS = ("release_time", "stick_time")
-FIELDS = ("slip", "slip_velocity", "slip_acceleration")
-FILE = {
+# Variables that the groups "fronts" and "fields" of a recorded sweep have.
+FRONT_VARIABLES = ("release_time", "stick_time")
+FIELD_VARIABLES = ("slip", "slip_velocity", "slip_acceleration")
+FILE_ATTRIBUTES = {
     "Conventions": "CF-1.11",
     "title": "Ruptures of the minimal model for the onset of slip pulses",
     "source": "slippulse, simulations",
@@ -22,12 +27,16 @@ FILE = {
 
 @cache
 def versions() -> str:
-    """Names and versions of packages, the same on every machine with the same lock."""
+    """Return the names and versions of the packages on which results depend, as text."""
     return ", ".join(f"{package} {version(package)}" for package in PACKAGES)
 
 
 def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) -> xr.Dataset:
-    """Return a sweep with additional numbers of each run; the same if there are none."""
+    """Return a sweep with additional numbers for each run.
+
+    labels : the numbers by name, one mapping for each run; if empty, the sweep is returned as it is
+    record : the groups that the sweep has recorded
+    """
     if not labels:
         return data
     runs = [*runs_in(data)]
@@ -37,22 +46,40 @@ def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) ->
 
 
 def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
-    """Put the runs of a sweep into one Dataset, with what is to be recorded of each."""
-    attributes = FILE | {"versions": runs[0].attrs["versions"]}
+    """Combine the runs of a sweep into one Dataset.
+
+    record : the groups to keep, of "fronts", "fields" and "samples"
+    """
+    attributes = FILE_ATTRIBUTES | {"versions": runs[0].attrs["versions"]}
     variables: dict[str, tuple] = {}
-    for name in filter("versions".__ne__, runs[0].attrs):
-        variables[name] = "point", np.array([run.attrs[name] for run in runs])
-    fields = [*FRONTS] if "fronts" in record else []
-    fields += FIELDS if "fields" in record else []
+    for name in runs[0].attrs:
+        if name != "versions":
+            variables[name] = "point", np.array([run.attrs[name] for run in runs])
+    fields = [*FRONT_VARIABLES] if "fronts" in record else []
+    fields += FIELD_VARIABLES if "fields" in record else []
     if fields:
-        # Profiles over x, one run after the other: CF's contiguous ragged array.
+        # This is how the CF conventions describe a contiguous ragged array of profiles.
         attributes["featureType"] = "profile"
-        sizes = np.array([run["x"].size for run in runs])
-        variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
-        for name in ("x", "prestress", *fields):
-            variables[name] = "block", np.concatenate([run[name] for run in runs])
-    for name in DIMENSIONS if "samples" in record else ():
-        axes = [dimension.removeprefix("sample_") for dimension in DIMENSIONS[name]]
-        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
-    # A variable that is added to a Dataset is aligned with those that are there: all go in at once.
+        variables |= _block_variables(runs, fields)
+    if "samples" in record:
+        variables |= _sample_variables(runs)
+    # All variables are passed at once. Adding them one by one would align each with the others.
     return xr.Dataset(variables, attrs=attributes)
+
+
+def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[str, tuple]:
+    """Return the fields of all runs along "block", and the number of blocks of each run."""
+    sizes = np.array([run["x"].size for run in runs])
+    variables: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
+    for name in ("x", "prestress", *fields):
+        variables[name] = "block", np.concatenate([run[name] for run in runs])
+    return variables
+
+
+def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
+    """Return the samples of all runs, along "point" and the dimensions "time" and "position"."""
+    variables: dict[str, tuple] = {}
+    for name, dimensions in DIMENSIONS.items():
+        axes = [dimension.removeprefix("sample_") for dimension in dimensions]
+        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
+    return variables

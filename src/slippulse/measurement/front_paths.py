@@ -1,18 +1,41 @@
-"""Positions and speeds of fronts and trailing edges."""
+"""Positions and speeds of fronts and trailing edges.
+
+The release times of the blocks give the path of a front, and their stick times give the path of a
+trailing edge. Each function takes the name of these times as ``edge``.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from ..data.points import AnyRun
 
-# A front pauses where one wait between two blocks takes this fraction of a stretch of its path, and
-# this many times a block's part of it.
-PAUSE, PAUSE_BLOCKS = 0.2, 4.0
+# A front pauses if one wait between two neighbouring blocks takes a large part of the time in which
+# the measured stretch is crossed: more than this fraction, and more than this number of times the
+# mean wait.
+PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS = 0.2, 4.0
+# A straight line is fitted to at least this number of blocks.
+MIN_FITTED_BLOCKS = 4
 
 
-def path(
+class Line(NamedTuple):
+    """Straight line fitted by least squares; each number is NaN if there is no fit."""
+
+    slope: float
+    intercept: float
+    slope_error: float  # standard error
+
+
+NO_LINE = Line(np.nan, np.nan, np.nan)
+
+
+def front_path(
     run: AnyRun, side: str = "right", edge: str = "release_time"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times of an event, and distances from x = 0 in their order, of the blocks that have it."""
+    """Return the event times of the blocks on one side, and the distances of these blocks from 0.
+
+    Both arrays are in the order of distance. Blocks without the event are left out.
+    """
     x, time = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
         x, time = -x[::-1], time[::-1]
@@ -22,46 +45,60 @@ def path(
 
 
 def limit_time(run: AnyRun) -> float:
-    """Time until which an exact solution knows the whole rupture; inf for a lattice, or the end."""
+    """Return the time until which all of the rupture is known.
+
+    An exact solution may know only some blocks after this time. It is infinite for a lattice, and
+    for an exact solution that knows all blocks until the end.
+    """
     limit = run.attrs.get("limit_time", np.nan)
     return np.inf if np.isnan(limit) else float(limit)
 
 
 def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") -> float:
-    """Time until which a front or a trailing edge is known; inf for all of its path."""
+    """Return the time until which a front (or trailing edge) is known; infinite if always."""
     if np.isinf(limit_time(run)) or edge == "stick_time":
         return limit_time(run)
-    times, distances = path(run, side)
+    times, distances = front_path(run, side)
     if not times.size:
         return limit_time(run)
-    # The front outruns all waves unless nothing is known of the block ahead of it.
+    # No wave from the unknown part of the rupture catches up with a supersonic front. The front is
+    # unknown only if nothing is known of the block ahead of it.
     ahead = (1.0 if side == "right" else -1.0) * (distances[-1] + run.attrs["dx"])
-    cone = limit_time(run) + abs(ahead - run.attrs["limit_position"])
+    wave_arrival = limit_time(run) + abs(ahead - run.attrs["limit_position"])
     block = int(np.argmin(np.abs(np.asarray(run["x"]) - ahead)))
-    unknown = np.isnan(run["slip"][block]) if "slip" in run else cone <= run.attrs["end_time"]
-    return float(np.max(times)) if unknown else np.inf
+    if "slip" in run:
+        is_unknown = np.isnan(run["slip"][block])
+    else:
+        is_unknown = wave_arrival <= run.attrs["end_time"]
+    return float(np.max(times)) if is_unknown else np.inf
 
 
-def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
-    """Distance of a front or trailing edge from x = 0 at some times.
+def front_position(
+    run: AnyRun, time, side: str = "right", edge: str = "release_time"
+) -> np.ndarray:
+    """Return the distance of a front (or trailing edge) from x = 0 at one or more times.
 
     It is NaN before the first event, and where an exact solution does not know it.
     """
-    times, distances = path(run, side, edge)
+    times, distances = front_path(run, side, edge)
     time = np.asarray(time, dtype=float)
     if times.size == 0:
         return np.full(time.shape, np.nan)
-    # A block released out of turn does not take the front back.
+    # If a block is released after a block that is farther away, the front does not move back.
     latest = np.maximum.accumulate(times)
-    # np.interp needs increasing times: the farthest of several blocks with one time counts.
-    last = np.concatenate([np.diff(latest) > 0.0, [True]])
-    unknown = (time < latest[0]) | (time > known_until(run, side, edge))
-    return np.where(unknown, np.nan, np.interp(time, latest[last], distances[last]))
+    # np.interp needs increasing times. Of several blocks with the same time, the farthest is kept.
+    is_farthest = np.concatenate([np.diff(latest) > 0.0, [True]])
+    distance = np.interp(time, latest[is_farthest], distances[is_farthest])
+    is_unknown = (time < latest[0]) | (time > known_until(run, side, edge))
+    return np.where(is_unknown, np.nan, distance)
 
 
 def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
-    """Time at which a front reaches a distance, and its longest wait between two blocks; or NaN."""
-    times, distances = path(run, side)
+    """Return when a front reaches a distance, and how long it waited at most between two blocks.
+
+    Both are NaN if the front does not reach the distance.
+    """
+    times, distances = front_path(run, side)
     if times.size == 0 or distances[-1] < distance:
         return np.nan, np.nan
     latest = np.maximum.accumulate(times)
@@ -69,35 +106,39 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
     return float(np.interp(distance, distances, latest)), float(np.max(waits, initial=0.0))
 
 
-def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
-    """`straight_line` through the last fraction of a front's path.
+def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
+    """Fit a straight line, distance as a function of time, to the last part of a front's path.
 
-    NaN with fewer than 4 blocks, and where an exact solution does not know the last fraction.
+    window : length of this part, as a fraction of the largest distance that the front reached
+
+    If the front pauses within this part and is faster than the waves after the pause, only the path
+    after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks, or
+    if an exact solution does not know the whole path.
     """
-    times, distances = path(run, side)
+    times, distances = front_path(run, side)
     chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
-    if chosen.sum() < 4 or np.isfinite(known_until(run, side)):
-        return np.nan, np.nan, np.nan
+    if chosen.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
+        return NO_LINE
     times, distances = times[chosen], distances[chosen]
-    # A front that outruns the waves after a pause is measured after it.
     waits = np.diff(np.maximum.accumulate(times))
-    longest = max(PAUSE, PAUSE_BLOCKS / times.size) * np.sum(waits)
-    start = int(np.max(np.flatnonzero(waits > longest) + 1, initial=0))
-    if 0 < start <= times.size - 4:
-        line = straight_line(times[start:], distances[start:])
-        if line[0] > 1.0:
+    longest_wait = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
+    after_pause = int(np.max(np.flatnonzero(waits > longest_wait) + 1, initial=0))
+    if 0 < after_pause <= times.size - MIN_FITTED_BLOCKS:
+        line = fit_line(times[after_pause:], distances[after_pause:])
+        if line.slope > 1.0:
             return line
-    return straight_line(times, distances)
+    return fit_line(times, distances)
 
 
-def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
-    """Slope, intercept and standard error of the slope by least squares; NaN if all x are equal."""
+def fit_line(x: np.ndarray, y: np.ndarray) -> Line:
+    """Fit a straight line y(x) by least squares; NaN if all x are equal."""
     mean_x, mean_y = x.sum() / x.size, y.sum() / y.size
     centred = x - mean_x
     scatter = float((centred**2).sum())
     if scatter == 0.0:
-        return np.nan, np.nan, np.nan
+        return NO_LINE
     slope = float((centred * (y - mean_y)).sum() / scatter)
     intercept = float(mean_y - slope * mean_x)
-    rest = y - intercept - slope * x
-    return slope, intercept, float(np.sqrt((rest**2).sum() / max(x.size - 2, 1) / scatter))
+    residuals = y - intercept - slope * x
+    variance = (residuals**2).sum() / max(x.size - 2, 1)
+    return Line(slope, intercept, float(np.sqrt(variance / scatter)))

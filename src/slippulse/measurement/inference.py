@@ -1,4 +1,9 @@
-"""The parameters that the readings of the published space-time figure make likely."""
+"""Estimate the parameters of the published space-time figure from what can be read off it.
+
+For each release rule and each of several damping ratios, a study has fitted spacing, pre-stress and
+gamma to the readings. `interpolate_fits` interpolates these fits between the damping ratios, and
+`infer_parameters` finds the best damping ratio and its confidence regions (profile likelihood).
+"""
 
 from typing import Any
 
@@ -7,55 +12,64 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 from scipy.special import chdtri
 
-# The number of points of a curve over the damping ratio.
-FINE = 4001
-CONFIDENCE = (0.68, 0.95)
+# Number of damping ratios at which the fits are interpolated.
+INTERPOLATED_RATIOS = 4001
+CONFIDENCE_LEVELS = (0.68, 0.95)
 
 
-def curve(profile: pd.DataFrame) -> pd.DataFrame:
-    """Best trials of one release rule over the damping ratio, cubic in its logarithm.
+def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
+    """Interpolate the fits of one release rule between damping ratios, cubic in log(beta/dx).
 
-    Columns are dx, tau0, gamma, their errors, chi2, and the pull of each reading,
+    The table has one row for each damping ratio. Its columns are damping_ratio, dx, tau0, gamma,
+    tau0_error, gamma_error, chi2, and the pull of each reading,
     (predicted - drawn)/reading_error.
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     columns = ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
     nodes = pd.concat([pulls, profile.groupby("damping_ratio")[columns].first()], axis=1)
     log_ratio = np.log(nodes.index.to_numpy())
-    fine = np.linspace(log_ratio[0], log_ratio[-1], FINE)
-    out = pd.DataFrame(CubicSpline(log_ratio, nodes.to_numpy())(fine), columns=nodes.columns)
+    log_ratios = np.linspace(log_ratio[0], log_ratio[-1], INTERPOLATED_RATIOS)
+    values = CubicSpline(log_ratio, nodes.to_numpy())(log_ratios)
+    fits = pd.DataFrame(values, columns=nodes.columns)
     fitted = profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    return out.assign(chi2=(out[fitted] ** 2).sum(axis=1), damping_ratio=np.exp(fine))
+    return fits.assign(chi2=(fits[fitted] ** 2).sum(axis=1), damping_ratio=np.exp(log_ratios))
 
 
-def likely(confidence: float, parameters: int = 1) -> float:
-    """The rise of chi-square above its smallest value at the edge of a confidence region."""
+def chi_square_rise(confidence: float, parameters: int = 1) -> float:
+    """Return how far chi-square rises above its minimum at the edge of a confidence region."""
     return float(chdtri(parameters, 1.0 - confidence))
 
 
-def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
-    """The parameters of the published figure, by release rule, and those of the "best" rule.
+def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
+    """Return the fit of each release rule to the published figure, and compare the rules.
 
-    Each has chi2, dof, damping_ratio, dx, tau0, gamma, pulls by reading, and confidence regions of
-    the damping ratio, with NaN for an open end. The part "profile" is without the drawn arrows, the
-    part "arrows" with them. Source: profile likelihood; the readings have independent Gaussian
-    errors.
+    The result has a fit for each release rule by its name, the fit with the smallest chi-square as
+    "best", and the difference of chi-square between the worst and the best rule as "difference". A
+    fit has chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, the pulls by reading,
+    and regions: the confidence region of the damping ratio by confidence level, with NaN for an end
+    that lies outside the studied damping ratios.
+
+    part : "profile" for fits without the drawn arrows, "arrows" for fits with them
+
+    Source: profile likelihood, where the readings have independent Gaussian errors.
     """
     fits: dict[str, Any] = {}
     for release, rows in table[table["part"] == part].groupby("release"):
-        line = curve(rows)
-        best = line.loc[line["chi2"].idxmin()]
+        by_ratio = interpolate_fits(rows)
+        best = by_ratio.loc[by_ratio["chi2"].idxmin()]
         names = ("chi2", "damping_ratio", "dx", "tau0", "gamma")
         fit: dict[str, Any] = {name: float(best[name]) for name in names}
         # Three parameters are fitted: tau_0, gamma and the damping ratio.
         dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
         fit |= {"release": release, "dof": dof, "regions": {}}
-        for confidence in CONFIDENCE:
-            inside = likely(confidence) - (line["chi2"] - line["chi2"].min()) >= 0.0
-            ends = line.loc[inside, "damping_ratio"].iloc[[0, -1]]
-            low, high = ends.where(~ends.index.isin([line.index[0], line.index[-1]]))
+        rise = by_ratio["chi2"] - by_ratio["chi2"].min()
+        for confidence in CONFIDENCE_LEVELS:
+            inside = chi_square_rise(confidence) - rise >= 0.0
+            ends = by_ratio.loc[inside, "damping_ratio"].iloc[[0, -1]]
+            low, high = ends.where(~ends.index.isin([by_ratio.index[0], by_ratio.index[-1]]))
             fit["regions"][confidence] = float(low), float(high)
         fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
         fits[str(release)] = fit
-    order = sorted(fits.values(), key=lambda fit: fit["chi2"])
-    return fits | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
+    from_best = sorted(fits.values(), key=lambda fit: fit["chi2"])
+    difference = from_best[-1]["chi2"] - from_best[0]["chi2"]
+    return fits | {"best": from_best[0], "difference": difference}

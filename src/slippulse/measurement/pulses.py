@@ -1,96 +1,138 @@
-"""The leading pulse of a finished run, on the right, in its own frame."""
+"""The leading pulse of a finished run: the pulse behind the front on the right.
+
+`leading_pulse` measures it. The other functions measure shapes in the frame of the pulse, whose
+coordinate xi = distance - front is 0 at the front and negative behind it.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from ..data.points import AnyRun
-from .front_paths import fit_front, known_until, path
+from .front_paths import fit_front, front_path, known_until
 
-# Blocks slower than this fraction of the leading pulse are remains of the nucleation, not a pulse.
-REMAINS = 0.05
+# A stretch of sliding blocks is a pulse if its peak velocity is at least this fraction of that of
+# the leading pulse. Slower stretches are remains of the nucleation.
+MIN_RELATIVE_PEAK = 0.05
 
 
 class LeadingPulse(NamedTuple):
-    """The pulse behind the right front, at the end of a run; NaN where its part is not known."""
+    """The pulse behind the right front, at the end of a run.
 
-    front: float  # distance from x = 0, between blocks
-    speed: float  # of the front
-    width: float  # distance from the front to the trailing edge; NaN when nothing has stuck
+    All numbers except the front and its speed are NaN if an exact solution does not know slip
+    velocity everywhere on the right.
+    """
+
+    front: float  # distance from x = 0; it can lie between two blocks
+    speed: float  # front speed
+    width: float  # distance from the front to the trailing edge; NaN if no block has stuck
     peak_velocity: float  # largest slip velocity, from a parabola through three blocks
-    peak_distance: float
-    slip: float  # of the blocks that stuck last, in the half of the way next to the trailing edge
-    pulses: int = 1  # their number on the right; 0 where the front has stopped
+    peak_distance: float  # distance of the peak from x = 0
+    slip: float  # mean final slip over half a pulse width behind the trailing edge; NaN without one
+    pulses: int = 1  # number of pulses on the right; 0 if the front has stopped
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
-    """Measure the pulse of a run; its speed is that on the last fraction ``window`` of its path."""
+    """Measure the leading pulse at the end of a run.
+
+    window : the last fraction of the front's path, from which its speed is measured
+    """
     end, dx = run.attrs["end_time"], run.attrs["dx"]
-    speed, _, _ = fit_front(run, window)
+    speed = fit_front(run, window).slope
     start = np.searchsorted(run["x"], 0.0)
-    r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
-    front, stopped = front_at_end(run, r, velocity, speed)
+    distance = np.asarray(run["x"])[start:]
+    velocity, slip = (np.asarray(run[name])[start:] for name in ("slip_velocity", "slip"))
+    front, stopped = front_at_end(run, distance, velocity, speed)
     if np.isnan(velocity).any():
-        return LeadingPulse(front, speed, np.nan, np.nan, np.nan, np.nan)
+        return LeadingPulse(
+            front=front,
+            speed=speed,
+            width=np.nan,
+            peak_velocity=np.nan,
+            peak_distance=np.nan,
+            slip=np.nan,
+        )
     pulses = [] if stopped else sliding_stretches(velocity)
-    leading = np.zeros(r.size)
+    leading_velocity = np.zeros(distance.size)
     for pulse in pulses[-1:]:
-        leading[pulse] = velocity[pulse]
-    peak, peak_distance = parabola_peak(r, leading)
-    stick, stuck = path(run, edge="stick_time")
-    width, final = np.nan, np.nan
-    followed = stuck < peak_distance
-    if np.count_nonzero(followed) >= 4 and pulses:
-        # The trailing edge runs as fast as the front, from the blocks that stuck last.
-        last, late = stuck[followed][-4:], end - stick[followed][-4:]
-        trailing = float(np.mean(last + speed * late))
+        leading_velocity[pulse] = velocity[pulse]
+    peak, peak_distance = parabola_peak(distance, leading_velocity)
+    stick_times, stuck_distances = front_path(run, edge="stick_time")
+    width, final_slip = np.nan, np.nan
+    behind_peak = stuck_distances < peak_distance
+    if np.count_nonzero(behind_peak) >= 4 and pulses:
+        # The trailing edge is extrapolated, at the front speed, from the four blocks that stuck
+        # last.
+        last_distances = stuck_distances[behind_peak][-4:]
+        elapsed = end - stick_times[behind_peak][-4:]
+        trailing = float(np.mean(last_distances + speed * elapsed))
         width = front - trailing
-        settled = (r > 0.5 * trailing) & (r < trailing - 2.0 * dx) & (velocity <= 0.0)
+        in_outer_half = (distance > 0.5 * trailing) & (distance < trailing - 2.0 * dx)
+        settled = in_outer_half & (velocity <= 0.0)
         if settled.any():
-            near = r > r[settled].max() - max(0.5 * width, 4.0 * dx)
-            final = float(np.mean(slip[settled & near]))
-    return LeadingPulse(front, speed, width, peak, peak_distance, final, len(pulses))
+            near = distance > distance[settled].max() - max(0.5 * width, 4.0 * dx)
+            final_slip = float(np.mean(slip[settled & near]))
+    return LeadingPulse(
+        front=front,
+        speed=speed,
+        width=width,
+        peak_velocity=peak,
+        peak_distance=peak_distance,
+        slip=final_slip,
+        pulses=len(pulses),
+    )
 
 
 def front_at_end(
-    run: AnyRun, r: np.ndarray, velocity: np.ndarray, speed: float
+    run: AnyRun, distance: np.ndarray, velocity: np.ndarray, speed: float
 ) -> tuple[float, bool]:
-    """Distance of the right front at the end, and whether it has stopped.
+    """Return the distance of the right front at the end, and True if the front has stopped.
 
-    The distance is NaN without a release, and where an exact solution does not know it.
+    The distance is NaN if no block was released, or if an exact solution does not know it. The
+    arrays have the blocks on the right.
     """
-    release, distance = path(run)
-    if not distance.size or np.isfinite(known_until(run)):
+    release_times, released_distances = front_path(run)
+    if not released_distances.size or np.isfinite(known_until(run)):
         return np.nan, False
-    # The next block is at rest: the front is at most one block beyond the last release.
-    ahead, dx = float(speed * (run.attrs["end_time"] - release[-1])), run.attrs["dx"]
-    at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
+    # The next block has not been released: the front is at most one block beyond the last release.
+    ahead, dx = float(speed * (run.attrs["end_time"] - release_times[-1])), run.attrs["dx"]
+    last_distance = released_distances[-1]
+    at_rest = not velocity[np.searchsorted(distance, last_distance)] > 0.0
     if at_rest and not 0.0 <= ahead <= dx:
-        return float(distance[-1]), True
-    return float(distance[-1]) + min(max(ahead, 0.0), dx), False
+        return float(last_distance), True
+    return float(last_distance) + min(max(ahead, 0.0), dx), False
 
 
 def sliding_stretches(velocity: np.ndarray) -> list[slice]:
-    """Pulses on the right from left to right; the last is the leading one, however slow."""
+    """Return the pulses among neighbouring blocks, in the order of the blocks.
+
+    The last one is the leading pulse, at any velocity. Much slower stretches are left out.
+    """
     edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False))
     stretches = list(map(slice, edges[0::2].tolist(), edges[1::2].tolist()))
-    least = REMAINS * np.max(velocity[stretches[-1]]) if stretches else 0.0
-    return [part for part in stretches if np.max(velocity[part]) >= least]
+    if not stretches:
+        return []
+    least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])
+    return [stretch for stretch in stretches if np.max(velocity[stretch]) >= least_peak]
 
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Largest value of sampled y and its position, by a parabola through the largest samples."""
+    """Return the largest value of sampled y, and its position.
+
+    They are those of the parabola through the largest sample and its two neighbours, or of the
+    sample itself if it is the first or the last.
+    """
     i = int(np.argmax(y))
     if not 0 < i < y.size - 1:
         return float(y[i]), float(x[i])
     left, middle, right = y[i - 1 : i + 2]
-    bend = left - 2.0 * middle + right
-    shift = 0.5 * (left - right) / bend if bend != 0.0 else 0.0
+    curvature = left - 2.0 * middle + right
+    shift = 0.5 * (left - right) / curvature if curvature != 0.0 else 0.0
     return float(middle - 0.25 * (left - right) * shift), float(x[i] + shift * (x[i + 1] - x[i]))
 
 
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
-    """Slip and its first two derivatives in time on the right, over xi = distance - front."""
+    """Return slip, slip velocity and slip acceleration on the right, with "xi" = x - front."""
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
     start = np.searchsorted(run["x"], 0.0)
     fields = {name: np.asarray(run[name])[start:] for name in names}
@@ -98,8 +140,12 @@ def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
 
 
 def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Amplitude of the slip acceleration across a pulse, by projection on a sine of its width."""
-    # The largest value would report the ringing of the undamped lattice behind the front.
+    """Return the amplitude of the slip acceleration across a pulse.
+
+    It is the projection of the acceleration on a half wave of the pulse width. The largest value
+    would be that of the oscillations behind the front of an undamped lattice. NaN if the pulse has
+    fewer than 4 blocks.
+    """
     fields = comoving(run, pulse)
     inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
     shape = np.cos(np.pi * fields["xi"][inside] / pulse.width)
@@ -109,7 +155,11 @@ def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
 
 
 def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Largest relative change of final slip over the last third of the path before the pulse."""
+    """Return the relative variation of the final slip that the pulse has left behind recently.
+
+    It is the range of slip over the last third of the path of the trailing edge, divided by the
+    slip of the pulse; NaN if there is no such path.
+    """
     fields = comoving(run, pulse)
     end = -pulse.width - 4.0 * run.attrs["dx"]
     third = (fields["xi"] < end) & (fields["xi"] > end - (pulse.front - pulse.width) / 3.0)

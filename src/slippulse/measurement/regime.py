@@ -1,9 +1,13 @@
-"""Regime of a run: crack or pulse, one-way or two-way, growing, steady, decaying or arrested."""
+"""Regime of a run: crack or pulse, one-way or two-way, growing, steady, decaying or arrested.
+
+`classify_regime` finds the regime of a run. `is_pulse` is the only definition of a pulse, and
+`pulse_regime` names the regime of one or two pulses; theory uses both as well.
+"""
 
 import numpy as np
 
 from ..data.points import AnyRun
-from .front_paths import position_at
+from .front_paths import front_position
 
 REGIMES = (
     "arrested",
@@ -15,44 +19,45 @@ REGIMES = (
     "pulse, one-way, steady",
     "pulse, one-way, decaying",
 )
-# In place of one of them, where theory does not say which a rupture ends in, or an exact solution
-# does not know all of its end.
+# Regime of a prediction that theory does not decide, and of an exact solution whose end is not
+# completely known.
 UNDECIDED = "undecided"
 
 
-def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
-    """Regime, one of REGIMES, of a run with samples, and the numbers that it is decided by.
+def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
+    """Return the regime of a run with samples (one of REGIMES), and the numbers that decide it.
 
-    A side *runs* if its front keeps up with the waves over the last third, to within the tolerance,
-    or, where neither does, if blocks on it slide at ``still`` or more of the largest velocity now.
-    A crack that runs on one side alone has one front slow if the other front moves on, too.
-    A one-way pulse grows, decays or is steady by the change of its largest velocity over that time.
+    A rupture is two-way if it runs on both sides of x = 0. It runs on a side if the front there is
+    as fast as the waves over the last third of the run, to within ``steady_tolerance``. If neither
+    front is, the rupture runs where, at the end, a block slides at least at ``still`` times the
+    largest velocity. A crack that runs on one side only has "one front slow" if the other front
+    still moves. A rupture is arrested if no block was released in the last tenth of the
+    duration, or if the velocity at the end is at most ``still`` times an earlier one. A one-way
+    pulse grows, decays or is steady according to the change of its largest velocity over the last
+    third of the run.
     """
     times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
-    before = np.max(velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))])
-    change = float(np.max(velocity[-1]) / before) - 1.0 if before > 0.0 else -1.0
-    # Samples may miss a narrow or distant pulse.
-    if "slip_velocity" in run:
-        x, now = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    else:
-        x, now = np.asarray(run["sample_position"]), velocity[-1]
-    largest = float(np.max(now))
-    centre = float(now[int(np.argmin(np.abs(x)))])
+    late_sample = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
+    largest_before = np.max(velocity[late_sample])
+    change = -1.0
+    if largest_before > 0.0:
+        change = float(np.max(velocity[-1]) / largest_before) - 1.0
+    x, final_velocity = _final_velocity(run)
+    largest = float(np.max(final_velocity))
+    centre = float(final_velocity[int(np.argmin(np.abs(x)))])
     speeds = [_late_speed(run, side) for side in ("left", "right")]
-    keeping_up = sum(speed >= 1.0 - steady_tolerance for speed in speeds)
-    sliding = now >= still * largest
-    running = keeping_up or int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
-    latest = float(np.nan_to_num(np.asarray(run["release_time"])).max())
-    ways = "two-way" if running == 2 else "one-way"
-    slow = running == 1 and min(speeds) > steady_tolerance
-    # Arrest is no release in the last tenth of the duration, or rest beside any earlier sample.
-    at_rest = largest <= still * max(largest, float(np.max(velocity)))
-    if np.isnan(now).any() or np.isnan(velocity[-1]).any():
+    fast_sides = sum(speed >= 1.0 - steady_tolerance for speed in speeds)
+    sliding = final_velocity >= still * largest
+    sliding_sides = int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
+    running_sides = fast_sides or sliding_sides
+    ways = "two-way" if running_sides == 2 else "one-way"
+    has_slow_front = running_sides == 1 and min(speeds) > steady_tolerance
+    if np.isnan(final_velocity).any() or np.isnan(velocity[-1]).any():
         regime = UNDECIDED
-    elif at_rest or latest < 0.9 * run.attrs["duration"]:
+    elif _is_arrested(run, largest, still):
         regime = "arrested"
     elif not is_pulse(centre, largest, still):
-        regime = f"crack-like, {'one front slow' if slow else ways}"
+        regime = f"crack-like, {'one front slow' if has_slow_front else ways}"
     else:
         regime = pulse_regime(ways, change, steady_tolerance)
     return {
@@ -64,21 +69,48 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     }
 
 
+def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and slip velocities at the end of a run.
+
+    They are those of all blocks if recorded, else those of the samples, which may miss a narrow or
+    distant pulse.
+    """
+    if "slip_velocity" in run:
+        return np.asarray(run["x"]), np.asarray(run["slip_velocity"])
+    return np.asarray(run["sample_position"]), np.asarray(run["sample_velocity"])[-1]
+
+
+def _is_arrested(run: AnyRun, largest: float, still: float) -> bool:
+    """Return True if the rupture is nearly at rest at the end, or was released last long before."""
+    last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
+    at_rest = largest <= still * max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
+    return at_rest or last_release < 0.9 * run.attrs["duration"]
+
+
 def is_pulse(centre: float, largest: float, still: float) -> bool:
-    """The one definition of a pulse: its nucleation point is at rest, or nearly, while it runs."""
+    """Return True for a pulse: the nucleation point is (nearly) at rest while the rupture runs.
+
+    centre, largest : slip velocity at the nucleation point, and the largest one anywhere
+    still : fraction of the largest velocity below which the nucleation point counts as at rest
+    """
     return centre < still * largest
 
 
 def _late_speed(run: AnyRun, side: str) -> float:
-    """Mean speed of a front over the last third of a run; 0 where it has not begun by then."""
+    """Return the mean front speed over the last third of a run; 0 if the front starts later."""
     window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
-    covered = position_at(run, window, side)
-    known = np.isfinite(covered).all()
-    return float(np.diff(covered)[0] / np.diff(window)[0]) if known else 0.0
+    distances = front_position(run, window, side)
+    if not np.isfinite(distances).all():
+        return 0.0
+    return float(np.diff(distances)[0] / np.diff(window)[0])
 
 
 def pulse_regime(ways: str, change: float, tolerance: float) -> str:
-    """Regime of one or two pulses, by the relative change of the largest velocity."""
+    """Return the regime of one or two pulses.
+
+    ways : "one-way" or "two-way"
+    change : relative change of the largest velocity; a pulse is steady up to the tolerance
+    """
     if ways == "two-way":
         return "pulses, two-way"
     if change > tolerance:

@@ -1,51 +1,66 @@
-"""Time and place at which a crack becomes a pulse, by definitions that converge and the paper's."""
+"""Time and length of the transition from a crack to a pulse.
+
+Under a displacement boundary the transition is the first stick. Under a stress boundary it is the
+moment at which the left front has covered a given fraction of its way to the balance position. Both
+definitions converge as the spacing falls. The numbers by the paper's own definitions are measured
+as well.
+"""
 
 import numpy as np
 
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
-from .front_paths import arrival, known_until, path, position_at
+from .front_paths import arrival, front_path, front_position, known_until
 
-# A left front that spends more than this fraction of T_trans between two blocks is held up by the
-# lattice. The error of T_trans is up to 1.5 times the fraction (five levels, three damping ratios).
-STALL = 0.03
+# A left front is held up by the lattice if it waits longer between two blocks than this fraction of
+# T_trans. The relative error of T_trans is up to 1.5 times the fraction (tested with five levels
+# and three damping ratios).
+STALLED_WAIT_FRACTION = 0.03
 
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
-    """First stick, and the distance between both fronts then."""
-    out = first_stick(run)
-    # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
-    same = run.attrs["left"] == run.attrs["right"]
-    background = run.attrs["left"] if same else np.nan
+    """Return the transition under a displacement boundary, by the first stick and by the slip.
+
+    In the paper the transition occurs when the slip at x = 0 reaches 2 tau/gamma. The names with
+    "background" use the pre-stress of the level for tau (NaN if the two levels differ), the names
+    with "nucleation" use the pre-stress at x = 0.
+    """
+    numbers = first_stick(run)
+    has_one_level = run.attrs["left"] == run.attrs["right"]
+    background = run.attrs["left"] if has_one_level else np.nan
     for name, tau in (("background", background), ("nucleation", run.attrs["peak"])):
-        reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
-        out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
-    return out
+        time = slip_time(run, 2.0 * tau / run.attrs["gamma"])
+        numbers[f"slip_time_{name}"] = time
+        numbers[f"slip_length_{name}"] = between_fronts(run, time)
+    return numbers
 
 
 def first_stick(run: AnyRun) -> dict[str, float]:
-    """Time and position of the first stick, and the distance between both fronts then."""
+    """Return the time and position of the first stick, and the rupture length at that time."""
     time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
     length = between_fronts(run, time)
     return {"transition_time": time, "transition_length": length, "first_stick_position": position}
 
 
 def between_fronts(run: AnyRun, time: float) -> float:
-    """Distance between both fronts at a time; NaN for NaN."""
+    """Return the distance between the two fronts at a time; NaN if the time is NaN."""
     if np.isnan(time):
         return np.nan
-    return float(position_at(run, time, "right") + position_at(run, time, "left"))
+    return float(front_position(run, time, "right") + front_position(run, time, "left"))
 
 
 def slip_time(run: AnyRun, slip: float) -> float:
-    """Time at which sampled slip nearest x = 0 reaches a value; NaN if never or not sampled."""
+    """Return the time at which the sample nearest to x = 0 reaches a slip.
+
+    NaN if it never does, or if the run has no samples.
+    """
     if "sample_slip" not in run:
         return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     history, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
     i = int(np.argmax(history >= slip))
-    # The slip of the first sample is 0.
+    # The slip of the first sample is 0, so that 0 means that the slip is never reached.
     if i == 0:
         return np.nan
     fraction = (slip - history[i - 1]) / (history[i] - history[i - 1])
@@ -53,28 +68,32 @@ def slip_time(run: AnyRun, slip: float) -> float:
 
 
 def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
-    """Time and length at which the left front has covered a fraction of |x_minus|, without springs.
+    """Return the transition under a stress boundary.
 
-    They converge with dx. The arrest (the last release on the left), which the paper draws, does
-    not: the continuum has none. The lattice held up a front that is "stalled".
+    It occurs when the left front has covered a fraction of its way |x_minus| to the balance
+    position. The time and the length converge with dx. The arrest that the paper draws is the last
+    release on the left; it does not converge, because the front of the continuum never stops.
+    The state is "resolved", "stalled" (the lattice held up the front), or "not reached" (the time
+    and the length are NaN).
     """
-    distance = abs(prestress_balance_position(prestress_from(run.attrs)))
-    time, longest_wait = arrival(run, fraction * distance, "left")
-    times, distances = path(run, "left")
-    known = times.size and np.isinf(known_until(run, "left"))
-    arrest, end = (float(np.max(times)), float(distances[-1])) if known else (np.nan, np.nan)
-    waited = longest_wait / time
+    balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
+    time, longest_wait = arrival(run, fraction * balance_distance, "left")
+    release_times, distances = front_path(run, "left")
+    arrest_time, arrest_distance = np.nan, np.nan
+    if release_times.size and np.isinf(known_until(run, "left")):
+        arrest_time, arrest_distance = float(np.max(release_times)), float(distances[-1])
+    wait_fraction = longest_wait / time
     state, right = "not reached", np.nan
     if not np.isnan(time):
-        state = "stalled" if waited > STALL else "resolved"
-        right = float(position_at(run, time, "right"))
+        state = "stalled" if wait_fraction > STALLED_WAIT_FRACTION else "resolved"
+        right = float(front_position(run, time, "right"))
     return {
         "transition_time": time,
-        "transition_longest_wait": waited,
+        "transition_longest_wait": wait_fraction,
         "transition_state": state,
-        "transition_length": fraction * distance + right,
-        "balance_distance": distance,
-        "last_release_time": arrest,
-        "last_release_distance": end,
-        "last_release_length": between_fronts(run, arrest),
+        "transition_length": fraction * balance_distance + right,
+        "balance_distance": balance_distance,
+        "last_release_time": arrest_time,
+        "last_release_distance": arrest_distance,
+        "last_release_length": between_fronts(run, arrest_time),
     }

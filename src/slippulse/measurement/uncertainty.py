@@ -1,4 +1,9 @@
-"""Numerical uncertainty by a grid study: three spacings, observed order, extrapolated value."""
+"""Numerical uncertainty of a measured number, from runs at three spacings (a grid study).
+
+If the error falls with a power of the spacing, three values determine that power (the observed
+order) and the value at spacing 0 (Richardson extrapolation). The uncertainty is the difference
+between this value and the one at the finest spacing.
+"""
 
 import math
 from collections.abc import Sequence
@@ -9,42 +14,58 @@ import pandas as pd
 
 from ..model.roots import root_between
 
-# Observed orders outside this range are not an order: the three values are then only a spread.
-ORDERS = (0.5, 6.0)
+# If the observed order is outside this range, the three values do not follow a power of the
+# spacing.
+ORDER_RANGE = (0.5, 6.0)
+# Three values are equal if their relative spread is at most this.
+EQUALITY_TOLERANCE = 1e-14
 
 
 class GridStudy(NamedTuple):
-    """One number at three spacings."""
+    """Result of a grid study of one number."""
 
-    value: float  # at the finest spacing
-    extrapolated: float  # at spacing 0, by the observed order; the finest value where there is none
-    observed_order: float  # NaN where the three values do not follow a power of the spacing
-    uncertainty: float  # |value - extrapolated|, or of the lowest order where there is none
+    value: float  # value at the finest spacing
+    extrapolated: float  # value at spacing 0; the finest value if there is no observed order
+    observed_order: float  # NaN if the three values do not follow a power of the spacing
+    uncertainty: float  # |value - extrapolated|; without an order, see `grid_study`
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
-    """Richardson's f(h) = f_0 + C h^p through values at dx, c_1 dx, c_2 dx; 1 < c_1 < c_2."""
+    """Extrapolate a number from three spacings to spacing 0 with f(h) = f_0 + C h^p.
+
+    values : the number at the spacings dx, c_1 dx and c_2 dx, where 1 < c_1 < c_2
+    factors : c_1 and c_2
+
+    If no order p within ORDER_RANGE fits, the uncertainty is computed from the spread of the values
+    with the lowest order of this range. It is NaN if a value is missing.
+    """
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
         return GridStudy(finest, finest, np.nan, np.nan)
     spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
-    first, second = middle - finest, coarsest - finest
+    middle_change, coarsest_change = middle - finest, coarsest - finest
 
     def mismatch(order: float) -> float:
-        return second * (factors[0] ** order - 1.0) - first * (factors[1] ** order - 1.0)
+        """Return 0 if the two changes have the ratio that this order implies."""
+        middle_power, coarsest_power = factors[0] ** order - 1.0, factors[1] ** order - 1.0
+        return coarsest_change * middle_power - middle_change * coarsest_power
 
-    low, high = ORDERS
-    alike = spread <= 1e-14 * max(1.0, abs(finest))
-    if alike or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
-        # The spread is taken for that of the lowest order.
-        return GridStudy(finest, finest, np.nan, spread / (factors[1] ** low - 1.0))
-    order = float(root_between(mismatch, low, high))
-    extrapolated = finest - first / (factors[0] ** order - 1.0)
+    lowest, highest = ORDER_RANGE
+    are_equal = spread <= EQUALITY_TOLERANCE * max(1.0, abs(finest))
+    is_monotonic = middle_change * coarsest_change > 0.0
+    if are_equal or not is_monotonic or mismatch(lowest) * mismatch(highest) > 0.0:
+        return GridStudy(finest, finest, np.nan, spread / (factors[1] ** lowest - 1.0))
+    order = float(root_between(mismatch, lowest, highest))
+    extrapolated = finest - middle_change / (factors[0] ** order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
 
 
-def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
-    """Columns of a measured table, as read from its file, that a grid study has: no ``keys``."""
+def studied_columns(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
+    """Return the columns of a measured table that a grid study has.
+
+    These are the columns of floats, except the ``keys`` and the predictions of the paper. The table
+    must have been read from its file.
+    """
     numbers = table.drop(columns=[*keys], errors="ignore").select_dtypes("float").columns
     return [name for name in numbers if not name.startswith("paper_")]
 
@@ -52,12 +73,17 @@ def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
 def grid_tables(
     tables: Sequence[pd.DataFrame], factors: Sequence[float], keys: Sequence[str]
 ) -> pd.DataFrame:
-    """Grid study of each measured number, from tables at three spacings, the finest first."""
+    """Return a grid study of each measured number of each run.
+
+    tables : measured tables at three spacings, the finest first
+
+    The result has one row for each run ("point") and quantity.
+    """
     finest = tables[0]
-    names = quantities(finest, keys)
-    # One row a point and quantity, one column a spacing.
+    names = studied_columns(finest, keys)
+    # This array has one row for each run and quantity, and one column for each spacing.
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
-    numbers = pd.DataFrame([grid_study(three, factors) for three in values])
+    studies = pd.DataFrame([grid_study(three_values, factors) for three_values in values])
     points = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
     points = points.loc[points.index.repeat(len(names))].reset_index(drop=True)
-    return points.assign(quantity=names * len(finest)).join(numbers)
+    return points.assign(quantity=names * len(finest)).join(studies)

@@ -1,4 +1,4 @@
-"""The model: the scene, its pre-stress, what is recorded, and the allowed step.
+"""The model: the scene, its pre-stress and friction, what is recorded, and the stable time step.
 
-This package imports no other.
+This package imports no other package of the project.
 """

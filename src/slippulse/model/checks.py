@@ -1,4 +1,7 @@
-"""One form for every refusal: the key, the value it had, and what is allowed."""
+"""Checks of input values, which raise ValueError with a message of one form.
+
+The message is one line, "key: value; allowed: ...".
+"""
 
 import math
 import operator
@@ -8,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-# Sign of each limit of a number, and the comparison that it stands for.
-LIMITS = {
+# Sign of each kind of limit, and the comparison that it stands for.
+LIMIT_KINDS = {
     "above": (">", operator.gt),
     "at_least": (">=", operator.ge),
     "at_most": ("<=", operator.le),
@@ -18,7 +21,7 @@ LIMITS = {
 
 
 def short_repr(value: object) -> str:
-    """A value as a refusal prints it: on one line, and short."""
+    """Return a value as text for a message: on one line, with at most 60 characters."""
     if isinstance(value, str) and re.fullmatch(r"[\w.:+-]{1,60}", value, re.ASCII):
         return repr(value)
     text = str(value) if isinstance(value, int | float) else repr(value)
@@ -27,26 +30,30 @@ def short_repr(value: object) -> str:
 
 
 def check_that(holds: bool, key: str, value: object, allowed: str) -> None:
-    """Refuse a value unless a condition on it holds."""
+    """Raise ValueError about a value unless a condition holds."""
     if not holds:
         raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
 
 
 def check_number(key: str, value: Any, integer: bool = False, **limits: float) -> None:
-    """Refuse anything but a finite number, or an integer, within some of LIMITS."""
-    kind, word = (Integral, "whole") if integer else (Real, "finite")
+    """Raise ValueError unless a value is a finite number (or an integer) within the limits.
+
+    limits : any of ``above``, ``at_least``, ``at_most`` and ``below``
+    """
+    number_type, word = (Integral, "whole") if integer else (Real, "finite")
     try:
-        known = isinstance(value, kind) and not isinstance(value, bool) and math.isfinite(value)
+        is_number = isinstance(value, number_type) and not isinstance(value, bool)
+        valid = is_number and math.isfinite(value)
     except OverflowError:
-        known = False
-    if known and all(LIMITS[name][1](value, limit) for name, limit in limits.items()):
+        valid = False
+    if valid and all(LIMIT_KINDS[name][1](value, limit) for name, limit in limits.items()):
         return
-    text = "".join(f" and {LIMITS[name][0]} {limit:.10g}" for name, limit in limits.items())
+    text = "".join(f" and {LIMIT_KINDS[name][0]} {limit:.10g}" for name, limit in limits.items())
     raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{text}")
 
 
 def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
-    """An array of finite numbers within the bounds of `check_number`."""
+    """Convert a value to an array of finite numbers within the bounds of `check_number`."""
     if isinstance(value, Real):
         check_number(key, value, **bounds)
         return np.asarray(float(value))
@@ -57,14 +64,14 @@ def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
     check_that(array.dtype.kind in "iuf", key, value, "finite numbers")
     numbers = array.astype(float, copy=False)
     if numbers.size:
-        # All numbers lie between these two; where one is NaN, both are.
+        # All numbers lie between these two. If any number is NaN, both are NaN.
         for extreme in (numbers.min(), numbers.max()):
             check_number(key, float(extreme), **bounds)
     return numbers
 
 
 def as_positions(key: str, value: object) -> np.ndarray:
-    """An array of floats, of which any may be infinite or NaN."""
+    """Convert a value to an array of floats, which may be infinite or NaN."""
     try:
         return np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
@@ -72,11 +79,12 @@ def as_positions(key: str, value: object) -> np.ndarray:
 
 
 def check_kind(key: str, value: object, kind: type) -> None:
-    """Refuse anything that is not of a class."""
+    """Raise ValueError unless a value is an instance of a class."""
     check_that(isinstance(value, kind), key, value, f"a {kind.__name__}")
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
-    """Refuse anything that is not one of ``choices``."""
-    plain = isinstance(value, str | Real) and not isinstance(value, bool)
-    check_that(plain and value in choices, key, value, ", ".join(map(str, choices)))
+    """Raise ValueError unless a value is one of ``choices``."""
+    is_text_or_number = isinstance(value, str | Real) and not isinstance(value, bool)
+    is_choice = is_text_or_number and value in choices
+    check_that(is_choice, key, value, ", ".join(map(str, choices)))

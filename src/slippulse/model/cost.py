@@ -1,9 +1,10 @@
-"""Upper bound on what a run costs.
+"""Upper bounds on the computing time and the memory of a run.
 
-A front goes at most at the speed that the highest level of the pre-stress drives it at, and the
-blocks that it has passed slide at most until the end. So the work of a run is at most its steps
-times the blocks that its fronts can reach. The shipped sweeps take at most 0.43 of that. Undamped
-blocks that slip again and again may take twice as much.
+A front is at most as fast as the highest level of the pre-stress drives it, and the blocks that it
+has passed slide at most until the end of the run. The number of block updates is therefore at most
+the number of time steps times the number of blocks that the fronts can reach. The shipped sweeps
+need at most 0.43 of this estimate. Undamped blocks that slip many times may need up to twice the
+estimate.
 """
 
 import math
@@ -16,68 +17,84 @@ from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 
-# One job may take so much without a second question: runs, block updates (days on one core), bytes
-# (a small machine). A sweep in chunks may take this number of times as much in total.
-LIMITS = 20_000, 4e13, 4e9
-MOST_CHUNKS = 50
-HOW_TO_GO_ON = "--config allow_large=true"
-# Bytes of a block: seven recorded numbers; two arrays an order and sixteen others while it runs.
-RECORDED, ARRAYS = 56.0, 16.0
-# Bytes of a point of a table: two numbers, and the text that a data file has.
-POINT = 400.0
-# Block updates that take as long as a run that does nothing, and as a block of the exact solution.
-START, EXACT_BLOCK = 1e5, 3e4
-# A front that crosses a table where it reaches 1 is taken to be this fast.
-HIGHEST_LEVEL = 1.0 - 1e-9
+# A job that exceeds one of these limits is refused unless the user allows it. The block updates
+# take days on one core, and the bytes are the memory of a small machine.
+JOB_LIMITS = {"runs": 20_000, "block_updates": 4e13, "bytes": 4e9}
+# All jobs of a sweep together may need at most this number of times the limits of one job.
+SWEEP_LIMIT_IN_JOBS = 50
+OPTION_TO_ALLOW = "--config allow_large=true"
+# Bytes of a block: its recorded numbers, and the arrays of the solver for each order of the Taylor
+# step and for sixteen other quantities.
+RECORDED_BYTES_PER_BLOCK, SOLVER_BYTES_PER_BLOCK = 56.0, 16.0
+# Bytes of a point of a table: two numbers, and their text in a data file.
+BYTES_PER_TABLE_POINT = 400.0
+# The time to start a run, and the time to solve one block of the exact solution, as numbers of
+# block updates that take equally long.
+UPDATES_PER_START, UPDATES_PER_EXACT_BLOCK = 1e5, 3e4
+# Where a table reaches 1 the front speed is taken at this level, since it is infinite at 1.
+MAX_LEVEL = 1.0 - 1e-9
 # A step ends early after this number of events.
-EVENTS_OF_A_STEP = 64
-# Seconds of a block update at the highest order on a slow machine, and the number of block updates
-# from which a second thread pays.
-UPDATE_SECONDS, LONG_SWEEP = 2e-8, 1e11
-# Minutes to start a job, and MB of the interpreter with its libraries.
+MAX_EVENTS_PER_STEP = 64
+# Seconds for one block update at the highest order on a slow machine.
+SECONDS_PER_UPDATE = 2e-8
+# Number of block updates above which a second thread makes a job faster.
+UPDATES_FOR_TWO_THREADS = 1e11
+# Time to start a job, and memory of the interpreter with its libraries.
 START_MINUTES, START_MEGABYTES = 10, 1000
 
 
 class Bound(NamedTuple):
-    """Upper bound on what a list of runs takes."""
+    """Upper bound on the cost of one or more runs."""
 
     runs: float
     block_updates: float
     bytes: float
 
-    def exceeded(self, chunks: int = 1, remedy: str = f"with more chunks or {HOW_TO_GO_ON}") -> str:
-        """The limit that one job, or all jobs together, exceed, in words; empty if none is."""
-        fraction = min(1.0, MOST_CHUNKS / chunks)
-        shared = f" in each of {chunks} chunks" if chunks > 1 else ""
-        for name, value, limit in zip(self._fields, self, LIMITS, strict=True):
-            allowed = fraction * limit
+    def exceeded(
+        self, chunks: int = 1, remedy: str = f"with more chunks or {OPTION_TO_ALLOW}"
+    ) -> str:
+        """Describe the first limit that is exceeded; an empty string if there is none.
+
+        The bound is that of one of several equal jobs (``chunks``). Each job has a limit, and so
+        have all jobs in total.
+        """
+        fraction = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
+        where = f" in each of {chunks} chunks" if chunks > 1 else ""
+        for name, limit in JOB_LIMITS.items():
+            value, allowed = getattr(self, name), fraction * limit
             if not value <= allowed:
-                takes = f"up to {value:.3g} {name.replace('_', ' ')}{shared}"
-                return f"cost: {takes}; allowed: {allowed:.3g}, {remedy}"
+                cost = f"up to {value:.3g} {name.replace('_', ' ')}{where}"
+                return f"cost: {cost}; allowed: {allowed:.3g}, {remedy}"
         return ""
 
     @property
     def threads(self) -> int:
-        """Threads of the job; short sweeps run side by side instead, and start faster."""
-        return 2 if self.block_updates > LONG_SWEEP else 1
+        """Number of threads for the job: 2 if it is long, else 1.
+
+        Several short jobs run at the same time instead, each in one thread.
+        """
+        return 2 if self.block_updates > UPDATES_FOR_TWO_THREADS else 1
 
     @property
     def minutes(self) -> int:
-        """Time limit of the job on a cluster."""
-        return START_MINUTES + math.ceil(UPDATE_SECONDS * self.block_updates / 60.0 / self.threads)
+        """Time limit of the job on a cluster, in minutes."""
+        seconds = SECONDS_PER_UPDATE * self.block_updates
+        return START_MINUTES + math.ceil(seconds / 60.0 / self.threads)
 
     @property
     def megabytes(self) -> int:
-        """Memory limit of the job on a cluster."""
+        """Memory limit of the job on a cluster, in MB."""
         return START_MEGABYTES + math.ceil(2.0 * self.bytes / 1e6)
 
 
-def reach_of(
+def bound_front_reach(
     profile: Prestress, start: float, duration: float, speeds_at: Callable[[np.ndarray], np.ndarray]
 ) -> float:
-    """Largest distance from x = 0 of fronts that begin at a distance ``start`` on both sides.
+    """Return the largest distance from x = 0 that a front can reach, on either side.
 
-    ``speeds_at`` returns speeds at levels of pre-stress; an interval has its higher level.
+    The fronts begin at the distance ``start`` from x = 0. ``speeds_at`` returns the front speeds at
+    an array of pre-stress levels. Within an interval of the background the speed is taken at its
+    higher end.
     """
     intervals = profile.interval_table
     speeds = speeds_at(intervals[:, 2:].max(axis=1))
@@ -87,39 +104,47 @@ def reach_of(
 
 
 def _distance(ends: np.ndarray, speeds: np.ndarray, start: float, duration: float) -> float:
-    """Distance of a front that crosses intervals with these ends at these speeds."""
+    """Return the distance that a front reaches which crosses intervals at given speeds.
+
+    ``ends`` are the far ends of the intervals, in the order in which the front crosses them.
+    """
     ahead = ends > start
     ends, speeds = ends[ahead], speeds[ahead]
     times = np.cumsum(np.diff(ends, prepend=start) / speeds)
     last = int(np.searchsorted(times, duration))
-    begin, began = (ends[last - 1], times[last - 1]) if last else (start, 0.0)
-    return float(begin + (duration - began) * speeds[last])
+    entry, entry_time = (ends[last - 1], times[last - 1]) if last else (start, 0.0)
+    return float(entry + (duration - entry_time) * speeds[last])
 
 
-def _upper_bound_of_reach(scene: Scene) -> float:
-    """Upper bound on the distance from x = 0 that a front reaches on either side."""
+def _bound_scene_reach(scene: Scene) -> float:
+    """Return an upper bound on the distance from x = 0 that a front reaches on either side."""
     profile = scene.prestress
     bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
     width = profile.width or 0.0
     start = max(bumps, profile.nucleation_reach) + 5.0 * width
 
-    def fastest(levels: np.ndarray) -> np.ndarray:
-        # This is above the exact speed at any damping, under either release rule.
-        level = np.clip(levels if profile.points else np.max(levels), 0.0, HIGHEST_LEVEL)
+    def bound_speeds(levels: np.ndarray) -> np.ndarray:
+        # The bound is larger than the exact speed at any damping and under both release rules.
+        level = np.clip(levels if profile.points else np.max(levels), 0.0, MAX_LEVEL)
         speed = 1.3 / np.sqrt((1.0 - level) * (1.0 + level))
         if scene.release == "total":
             speed = speed + 1.3 * scene.damping_ratio * level / (1.0 - level)
         return np.broadcast_to(speed, levels.shape)
 
-    return reach_of(profile, start, scene.duration, fastest)
+    return bound_front_reach(profile, start, scene.duration, bound_speeds)
 
 
-def bound_of(scene: Scene, samples: Samples | None = None) -> Bound:
-    """Upper bound on what one run takes."""
-    reach = _upper_bound_of_reach(scene)
+def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
+    """Return an upper bound on the cost of one run."""
+    reach = _bound_scene_reach(scene)
     blocks = (1.0 if scene.symmetric else 2.0) * (reach / scene.dx + 16.0)
-    steps = scene.duration / (scene.max_step * scene.dx) + 2.0 * blocks / EVENTS_OF_A_STEP
-    updates = EXACT_BLOCK * blocks if scene.scheme == "continuum" else steps * blocks
-    recorded = 0.0 if samples is None else 16.0 * samples.times.size * samples.positions.size
-    recorded += POINT * len(scene.prestress.points)
-    return Bound(1, START + updates, (RECORDED + ARRAYS * (scene.order + 16)) * blocks + recorded)
+    steps = scene.duration / (scene.max_step * scene.dx) + 2.0 * blocks / MAX_EVENTS_PER_STEP
+    is_lattice = scene.scheme != "continuum"
+    updates = steps * blocks if is_lattice else UPDATES_PER_EXACT_BLOCK * blocks
+    sample_bytes = 0.0
+    if samples is not None:
+        sample_bytes = 16.0 * samples.times.size * samples.positions.size
+    table_bytes = BYTES_PER_TABLE_POINT * len(scene.prestress.points)
+    block_bytes = RECORDED_BYTES_PER_BLOCK + SOLVER_BYTES_PER_BLOCK * (scene.order + 16)
+    total_bytes = block_bytes * blocks + (sample_bytes + table_bytes)
+    return Bound(runs=1, block_updates=UPDATES_PER_START + updates, bytes=total_bytes)

@@ -1,4 +1,4 @@
-"""The laws of friction by name, and the law that a mapping or a data file names."""
+"""The friction laws by name, and the construction of a law from its name and parameters."""
 
 from collections.abc import Mapping
 from dataclasses import fields
@@ -9,7 +9,7 @@ from .friction_laws.law import Coulomb, Friction
 from .friction_laws.rate import BoundedRate, LinearRate, RateWeakening
 from .friction_laws.weakening import ExponentialWeakening, SlipWeakening
 
-# A new law is one more line here.
+# To add a law, append its class to this tuple.
 LAWS: tuple[type[Friction], ...] = (
     Coulomb,
     LinearRate,
@@ -18,23 +18,24 @@ LAWS: tuple[type[Friction], ...] = (
     SlipWeakening,
     ExponentialWeakening,
 )
-NAMES = tuple(law.law for law in LAWS)
+LAW_NAMES = tuple(law.law for law in LAWS)
 COULOMB = Coulomb()
 
 
 def friction(law: str, **parameters: float) -> Friction:
-    """A law of friction with its parameters, for `Scene`.
+    """Make a friction law with its parameters, for `Scene`.
 
     Parameters
     ----------
     law : {"coulomb", "linear_rate", "bounded_rate", "rate_weakening", "slip_weakening", \
 "exponential_weakening"}
-        0 (the paper's); alpha v; F v/(v + v_0); -min(a v, F); 1 - slip/d_c, but not below 0;
-        exp(-slip/d_c). Friction is in units of the stress drop, above the kinetic one.
+        In this order, the friction is: 0 (the law of the paper); alpha v; F v/(v + v_0);
+        -min(a v, F); max(0, 1 - slip/d_c); exp(-slip/d_c). Friction is measured from kinetic
+        friction, in units of the stress drop.
     **parameters : float
-        "linear_rate": alpha. "bounded_rate": limit (F) and v_0. "rate_weakening": slope (a) and
-        limit (F). The two last: d_c, in units of U, and nucleation, the half-length around x = 0,
-        in units of H, where friction is 0.
+        "linear_rate" has alpha. "bounded_rate" has limit (F) and v_0. "rate_weakening" has
+        slope (a) and limit (F). "slip_weakening" and "exponential_weakening" have d_c, in units of
+        U, and nucleation, in units of H: friction is 0 within this distance from x = 0.
 
     Returns
     -------
@@ -43,28 +44,34 @@ def friction(law: str, **parameters: float) -> Friction:
     Raises
     ------
     ValueError
-        One line that names the key, the value and what is allowed.
+        If the law or a parameter is not allowed. The message names the key, the value and what is
+        allowed.
 
     Notes
     -----
-    Source: an addition of this project; the paper has the first law, sections II A and IV.
+    Source: the paper uses the first law, sections II A and IV. The others are an addition of this
+    project.
 
     Examples
     --------
     >>> sp.friction("slip_weakening", d_c=0.1, nucleation=2.0).mapping()
     {'law': 'slip_weakening', 'd_c': 0.1, 'nucleation': 2.0}
     """
-    check_choice("law", law, NAMES)
-    kind = LAWS[NAMES.index(law)]
-    needed = [field.name for field in fields(kind)]
+    check_choice("law", law, LAW_NAMES)
+    law_class = LAWS[LAW_NAMES.index(law)]
+    needed = [field.name for field in fields(law_class)]
     for name in {*needed} ^ {*parameters}:
-        value = f"{name}: {short_repr(parameters[name]) if name in parameters else 'missing'}"
-        raise ValueError(f"{value}; allowed: law {law!r} with {', '.join(needed) or 'nothing'}")
-    return kind(**parameters)
+        value = short_repr(parameters[name]) if name in parameters else "missing"
+        allowed = f"law {law!r} with {', '.join(needed) or 'nothing'}"
+        raise ValueError(f"{name}: {value}; allowed: {allowed}")
+    return law_class(**parameters)
 
 
 def friction_from(mapping: Mapping[str, Any]) -> Friction:
-    """The law of a mapping as `Friction.mapping` returns it, or ValueError."""
+    """Make a friction law from a mapping in the form that `Friction.mapping` returns.
+
+    Raises ValueError if the mapping does not name a law or has the wrong parameters.
+    """
     if "law" not in mapping:
-        raise ValueError(f"law: missing; allowed: {', '.join(NAMES)}")
+        raise ValueError(f"law: missing; allowed: {', '.join(LAW_NAMES)}")
     return friction(**mapping)

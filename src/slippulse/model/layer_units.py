@@ -1,4 +1,8 @@
-"""The layer of the model in physical units: its scales, its scenes, and its runs in SI units."""
+"""An elastic layer in SI units, and conversions between SI units and the units of the model.
+
+`Layer` has the material parameters. It computes the units of the model, builds scenes and samples
+from numbers in SI units, and converts runs and measured numbers to SI units and back.
+"""
 
 import json
 import math
@@ -21,8 +25,8 @@ from .si_stress_file import read_in_si
 
 # Boundary condition of a scene for each condition at the top of a layer.
 BOUNDARY_OF_TOP = {"held": "displacement", "stress": "stress"}
-# Bounds of the numbers, for `check_number`.
-BOUNDS: dict[str, dict[str, Any]] = {
+# Allowed ranges, in the form that `check_number` takes.
+NUMBER_RANGES: dict[str, dict[str, Any]] = {
     "thickness": {"above": 0.0},
     "shear_modulus": {"above": 0.0},
     "density": {"above": 0.0},
@@ -30,14 +34,18 @@ BOUNDS: dict[str, dict[str, Any]] = {
     "kinetic_friction": {"at_least": 0.0},
     "normal_stress": {"above": 0.0},
 }
-# Parameters of a scene that follow from the layer, and are not given beside it.
-DERIVED = ("boundary", "gamma", "friction_ratio", "prestress", "duration", "dx")
-# Largest relative difference between the elasticity ratio of a run and that of the layer.
-SAME_GAMMA = 1e-9
+# Parameters of a scene that follow from the layer and from numbers in SI units. `Layer.scene`
+# refuses them as arguments.
+DERIVED_PARAMETERS = ("boundary", "gamma", "friction_ratio", "prestress", "duration", "dx")
+# A run belongs to a layer if their elasticity ratios differ by at most this relative amount.
+GAMMA_TOLERANCE = 1e-9
 
 
 class Scales(NamedTuple):
-    """SI values of the units of the model: a non-dimensional number times its scale is in SI."""
+    """The units of the model, in SI units.
+
+    A non-dimensional number multiplied by the scale of its quantity is in SI units.
+    """
 
     length: float
     time: float
@@ -113,7 +121,7 @@ class Layer:
     top: str = "held"
 
     def __post_init__(self) -> None:
-        for name, bounds in BOUNDS.items():
+        for name, bounds in NUMBER_RANGES.items():
             check_number(name, getattr(self, name), **bounds)
             object.__setattr__(self, name, float(getattr(self, name)))
         allowed = f"a number above kinetic_friction = {self.kinetic_friction:g}"
@@ -182,12 +190,12 @@ class Layer:
 
     @property
     def friction_ratio(self) -> float:
-        """The ratio mu_k/(mu_s - mu_k), which sets the stress at which slip reverses."""
+        """Ratio mu_k/(mu_s - mu_k), on which the stress for backward slip depends."""
         return self.kinetic_friction / (self.static_friction - self.kinetic_friction)
 
     @property
     def scales(self) -> Scales:
-        """Units of the model in SI; that of energy is per metre of width of the interface."""
+        """Units of the model in SI units; energy is per metre of interface width."""
         factor = 2.0 if self.top == "held" else 1.0
         time, speed = self.thickness / self.wave_speed, self.wave_speed
         slip = factor * self.thickness * self.strength_drop / self.longitudinal_modulus
@@ -205,7 +213,7 @@ class Layer:
 
     @property
     def units_in_words(self) -> str:
-        """The units of the model, for a refusal that is in these."""
+        """Text with the units of the model, for messages about non-dimensional numbers."""
         length, time = f"{self.scales.length:.4g} m", f"{self.scales.time:.4g} s"
         stresses = f"{self.kinetic_strength:.6g} and 1 at {self.static_strength:.6g} Pa"
         return f"in units of the layer: {length}, {time}; stress is 0 at {stresses}"
@@ -245,12 +253,13 @@ class Layer:
         if quantity != "stress":
             return values / self._scale(quantity)
         tau = (values - self.kinetic_strength) / self.strength_drop
-        # Static friction is released at 1, not a rounding error below it.
+        # Rounding must not move static friction below 1, since blocks are released at 1.
         rounding = 8.0 * sys.float_info.epsilon * (1.0 + self.friction_ratio)
         tau = np.where(np.abs(tau - 1.0) <= rounding, 1.0, tau)
         return tau if np.ndim(values) else float(tau)
 
     def _scale(self, quantity: str) -> float:
+        """Return the unit of a quantity in SI units."""
         check_choice("quantity", quantity, tuple(UNITS))
         return getattr(self.scales, "stress" if quantity == "stress_difference" else quantity)
 
@@ -304,7 +313,7 @@ class Layer:
         >>> x, stress = [-0.1, -0.02, 0.0, 0.02, 0.1], [2.7e6, 2.7e6, 3.0e6, 2.7e6, 2.7e6]
         >>> scene = block.scene((x, stress), 60e-6, 2e-4, damping_ratio=0.1)
         """
-        for name in DERIVED:
+        for name in DERIVED_PARAMETERS:
             allowed = "nothing: it follows from the layer or from the three arguments in SI units"
             check_that(name not in parameters, name, parameters.get(name), allowed)
         check_number("dx_in_metres", dx_in_metres, above=0.0)
@@ -361,7 +370,7 @@ class Layer:
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
         if isinstance(prestress_in_pascal, Real) and not isinstance(prestress_in_pascal, bool):
             (level,) = self.table_from_pascal("prestress_in_pascal", [prestress_in_pascal]).tolist()
-            return Prestress(level, level, width, peak)
+            return Prestress(left=level, right=level, width=width, peak=peak)
         if isinstance(prestress_in_pascal, str | PathLike):
             key, table = str(prestress_in_pascal), read_in_si(Path(prestress_in_pascal))
         else:
@@ -369,17 +378,20 @@ class Layer:
         x, stress = table
         tau = self.table_from_pascal(key, stress)
         try:
-            return Prestress.through(self.convert_from_si(x, "length"), tau, width, peak)
+            x = self.convert_from_si(x, "length")
+            return Prestress.through(x, tau, width=width, peak=peak)
         except ValueError as error:
             raise ValueError(f"{error} ({self.units_in_words})") from None
 
     def stress_from_pascal(self, key: str, stress: Any) -> np.ndarray:
-        """Convert stresses (Pa) to non-dimensional ones, and refuse those that slide backwards.
+        """Convert stresses (Pa) to non-dimensional ones.
+
+        Stresses at which the interface would slide backwards are refused.
 
         Parameters
         ----------
         key : str
-            What a refusal names.
+            Name of the argument, for the message of a refusal.
         stress : float or array
 
         Returns
@@ -398,7 +410,8 @@ class Layer:
         Parameters
         ----------
         key : str
-            What a refusal names; a "peak" alone may reach static friction.
+            Name of the argument, for the message of a refusal. Only a "peak" may reach static
+            friction.
         stress : float
 
         Returns
@@ -414,13 +427,13 @@ class Layer:
     def table_from_pascal(self, key: str, stress: Any) -> np.ndarray:
         """Convert the stresses of a table to non-dimensional ones.
 
-        They are refused if they are at static friction everywhere, or at an end, beyond which the
-        stress is constant.
+        They are refused if they reach static friction everywhere, or at the first or last point,
+        beyond which the stress is constant.
 
         Parameters
         ----------
         key : str
-            What a refusal names.
+            Name of the argument, for the message of a refusal.
         stress : array
 
         Returns
@@ -440,7 +453,7 @@ class Layer:
         return tau
 
     def _check_that_something_moves(self, profile: Prestress, dx: float) -> None:
-        """Refuse an initial stress that reaches static friction at no block."""
+        """Raise ValueError if the initial stress reaches static friction at no block."""
         x = np.array([0.0, *(x for x, _ in profile.points)])
         blocks = np.concatenate([np.floor(x / dx), np.ceil(x / dx)]) * dx
         largest = float(profile(blocks).max())
@@ -488,7 +501,8 @@ class Layer:
         Raises
         ------
         ValueError
-            If `run` is no such Dataset, or a run of another boundary condition or elasticity ratio.
+            If `run` is not such a Dataset, or its boundary condition or elasticity ratio is not
+            that of the layer.
         """
         _check_run(run)
         if "layer" in run.attrs:
@@ -509,7 +523,7 @@ class Layer:
         Parameters
         ----------
         run : xarray.Dataset
-            What `to_si` of this layer returned.
+            A run that the method `to_si` of this layer returned.
 
         Returns
         -------
@@ -518,7 +532,7 @@ class Layer:
         Raises
         ------
         ValueError
-            If `run` is no such Dataset, or was converted by another layer.
+            If `run` is not such a Dataset, or was converted by another layer.
         """
         _check_run(run)
         recorded = layer_of(run.attrs)
@@ -541,7 +555,7 @@ class Layer:
         Parameters
         ----------
         numbers : mapping
-            Numbers by their names in docs/columns.md; what has no unit stays as it is.
+            Numbers by their names in docs/columns.md. Numbers without a unit are not changed.
 
         Returns
         -------
@@ -562,8 +576,8 @@ class Layer:
         boundary, gamma = attributes["boundary"], attributes["gamma"]
         check_that(boundary == self.boundary, "run: boundary", boundary, repr(self.boundary))
         expected = self.gamma if self.top == "held" else 0.0
-        same = math.isclose(gamma, expected, rel_tol=SAME_GAMMA)
-        check_that(same, "run: gamma", gamma, f"{expected!r}, which is that of the layer")
+        is_equal = math.isclose(gamma, expected, rel_tol=GAMMA_TOLERANCE)
+        check_that(is_equal, "run: gamma", gamma, f"{expected!r}, as in the layer")
 
 
 def layer_of(attributes: Mapping) -> Layer | None:
@@ -572,15 +586,15 @@ def layer_of(attributes: Mapping) -> Layer | None:
 
 
 def _check_run(run: Any) -> None:
-    """Refuse anything but one run over x."""
-    known = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
-    known = known and set(run.variables) <= set(VARIABLES)
+    """Raise ValueError unless the argument is the Dataset of one run."""
+    is_run = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
+    is_run = is_run and set(run.variables) <= set(VARIABLES)
     allowed = "a Dataset that simulate returned; point takes one run out of a sweep"
-    check_that(known, "run", type(run).__name__, allowed)
+    check_that(is_run, "run", type(run).__name__, allowed)
 
 
 def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and stresses of a pair of sequences."""
+    """Convert a pair of sequences, positions (m) and stresses (Pa), to arrays."""
     try:
         x, stress = given
     except (TypeError, ValueError):
@@ -588,9 +602,10 @@ def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
         raise ValueError(f"prestress_in_pascal: {short_repr(given)}; allowed: {allowed}") from None
     positions = as_numbers("prestress_in_pascal positions", x)
     stresses = as_numbers("prestress_in_pascal stresses", stress)
-    alike = positions.ndim == 1 and positions.shape == stresses.shape and positions.size >= 2
+    have_equal_shapes = positions.ndim == 1 and positions.shape == stresses.shape
     allowed = "two or more positions, and as many stresses"
-    check_that(alike, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
+    are_valid = have_equal_shapes and positions.size >= 2
+    check_that(are_valid, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
     for row in (np.flatnonzero(np.diff(positions) < 0.0) + 1)[:1]:
         allowed = f">= {positions[row - 1]:.10g} m, the position in the row before"
         given = f"position {positions[row]:.10g} m in row {row + 1}"

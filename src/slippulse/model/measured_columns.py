@@ -1,4 +1,8 @@
-"""The columns of a measured table, each with what a sweep must record for it."""
+"""The columns of a measured table, and the group of records that each one needs.
+
+A sweep records release and stick times ("fronts"), fields at the end ("fields") and samples in time
+("samples"). `RECORD_FOR` maps the name of a column to one of these groups.
+"""
 
 FROM_FRONTS = """
     front_speed_right front_speed_left front_intercept_right front_intercept_left

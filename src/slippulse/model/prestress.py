@@ -1,6 +1,8 @@
-"""The pre-stress profile: a Gaussian peak on a background, with optional bumps.
+"""The pre-stress profile: a background, a Gaussian peak at x = 0, and optional further Gaussians.
 
-The background is two side levels with optional steps, or piecewise linear through given points.
+The background is constant on each side of x = 0, with optional steps, or it is linear between given
+points. `attributes_of` and `prestress_from` convert a profile to the attributes of a data file and
+back.
 """
 
 import json
@@ -17,21 +19,22 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from .checks import as_positions, check_number, check_that, short_repr
-from .removed import AnswersRemoved
+from .removed import ExplainsRemovedNames
 
-# Bounds, for `check_number`. A level at the threshold would release block after block at t = 0,
-# without end.
-LEVEL: dict[str, Any] = {"below": 1.0}
-NUMBERS = {"left": LEVEL, "right": LEVEL, "width": {"above": 0.0}, "peak": {}}
-PARTS: dict[str, dict[str, dict[str, Any]]] = {
-    "steps": {"position": {}, "level": LEVEL},
+# Allowed ranges, in the form that `check_number` takes. A side level of 1 would release infinitely
+# many blocks at t = 0.
+LEVEL_RANGE: dict[str, Any] = {"below": 1.0}
+NUMBER_RANGES = {"left": LEVEL_RANGE, "right": LEVEL_RANGE, "width": {"above": 0.0}, "peak": {}}
+PART_RANGES: dict[str, dict[str, dict[str, Any]]] = {
+    "steps": {"position": {}, "level": LEVEL_RANGE},
     "bumps": {"centre": {}, "amplitude": {}, "width": {"above": 0.0}},
 }
-# A table of more points takes more memory than the lattice that it is for.
-MOST_POINTS = 100_000
-# A value this close to the threshold, which the profile meets but for rounding, counts as 1: with
-# bumps, and with a table, between whose points positions are rounded, too.
-ROUNDING, ROUNDING_OF_TABLE = 4.0 * sys.float_info.epsilon, 1e-12
+# A table of more points would take more memory than the lattice itself.
+MAX_TABLE_POINTS = 100_000
+# A value that differs from the threshold 1 by at most this much is set to 1, because the difference
+# is due to rounding. A table has a larger tolerance, since positions between its points are rounded
+# as well.
+THRESHOLD_TOLERANCE, TABLE_THRESHOLD_TOLERANCE = 4.0 * sys.float_info.epsilon, 1e-12
 
 
 class Interval(NamedTuple):
@@ -44,13 +47,14 @@ class Interval(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Prestress(AnswersRemoved):
-    """Non-dimensional pre-stress tau(x), with nucleation at x = 0 or wherever a table reaches 1.
+class Prestress(ExplainsRemovedNames):
+    """Non-dimensional pre-stress tau(x) along the interface.
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background
-    ``level`` is ``left`` for x < 0 and ``right`` for x >= 0 until a step replaces it, or linear
-    between ``points`` (see `through`). A block is released where the profile reaches 1. Source:
-    section III of the paper; steps, bumps and points are an addition of this project.
+    ``level`` is ``left`` for x < 0 and ``right`` for x >= 0, until a step replaces it. With
+    ``points``, it is linear between them instead (see `through`). The rupture nucleates where the
+    profile reaches 1: at x = 0, or wherever a table does. Source: section III of the paper; steps,
+    bumps and points are an addition of this project.
 
     Parameters
     ----------
@@ -59,14 +63,16 @@ class Prestress(AnswersRemoved):
     width : float, units of H, or None
         Standard deviation W of the Gaussian, > 0. None if there is no Gaussian at x = 0.
     peak : float, units of the stress drop
-        Value at x = 0. At 1 the block there is released at t = 0; below 1 nothing moves.
+        Value at x = 0. If it is 1, the block there is released at t = 0. If it is less, nothing
+        moves.
     steps : sequence of (position, level)
-        From the position on, away from x = 0, the level of its side becomes this.
+        A step sets the background to its level from its position on, away from x = 0.
     bumps : sequence of (centre, amplitude, width)
-        Gaussians added: a barrier (amplitude < 0), an asperity, or a second nucleation.
+        Gaussians that are added to the profile: a barrier (amplitude < 0), an asperity, or a second
+        nucleation.
     points : sequence of (x, tau)
-        Points of a background that is linear between them, from left to right. Its first and last
-        values are ``left`` and ``right``. Two points at one x are a jump.
+        Points, from left to right, between which the background is linear. The first and the last
+        tau must equal ``left`` and ``right``. Two points at the same x are a jump.
 
     Raises
     ------
@@ -90,25 +96,26 @@ class Prestress(AnswersRemoved):
     points: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        for name, bounds in NUMBERS.items():
+        for name, bounds in NUMBER_RANGES.items():
             if name == "width" and self.width is None:
                 continue
             check_number(f"prestress.{name}", getattr(self, name), **bounds)
             object.__setattr__(self, name, float(getattr(self, name)))
-        for name, parts in PARTS.items():
+        for name, parts in PART_RANGES.items():
             rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
             object.__setattr__(self, name, rows)
         object.__setattr__(self, "points", _points(self.points))
         positions = [position for position, _ in self.steps]
-        different = 0.0 not in positions and len({*positions}) == len(positions)
+        are_distinct = 0.0 not in positions and len({*positions}) == len(positions)
         allowed = "different positions, none of them 0 (see left, right)"
-        check_that(different, "prestress.steps", positions, allowed)
-        without_peak = self.width is not None or self.peak == 1.0
-        check_that(without_peak, "prestress.peak", self.peak, "nothing without a width")
+        check_that(are_distinct, "prestress.steps", positions, allowed)
+        peak_has_width = self.width is not None or self.peak == 1.0
+        check_that(peak_has_width, "prestress.peak", self.peak, "nothing without a width")
         if self.points:
             self._check_points()
 
     def _check_points(self) -> None:
+        """Raise ValueError if the points are not in order, or do not fit the other arguments."""
         check_that(not self.steps, "prestress.steps", self.steps, "none with points")
         x, tau = self._table
         _check_table(x)
@@ -126,18 +133,19 @@ class Prestress(AnswersRemoved):
         peak: float = 1.0,
         bumps: tuple[tuple[float, float, float], ...] = (),
     ) -> Self:
-        """A pre-stress that is linear between points, and constant before and after them.
+        """Make a pre-stress that is linear between points, and constant before and after them.
 
         Parameters
         ----------
         x : sequence of float, units of H
-            Positions from left to right, at least two. The same position twice is a jump; at the
-            jump itself the value farther from x = 0 holds, and at x = 0 the larger one.
+            Positions from left to right, at least two. The same position twice is a jump. The value
+            at the jump itself is the one on the side away from x = 0, or, for a jump at x = 0, the
+            larger one.
         tau : sequence of float, units of the stress drop
-            Value at each position. The first and the last are < 1.
+            Value at each position. The first and the last must be < 1.
         width, peak, bumps
-            Gaussian at x = 0 and further Gaussians, as in `Prestress`. Without a width there is
-            none at x = 0: the rupture starts wherever the table is 1 or more.
+            Gaussian at x = 0 and further Gaussians, as in `Prestress`. Without a width there is no
+            Gaussian at x = 0, and the rupture starts wherever the table is 1 or more.
 
         Returns
         -------
@@ -146,7 +154,8 @@ class Prestress(AnswersRemoved):
         Raises
         ------
         ValueError
-            In one line that names the row, the value and what is allowed.
+            If the points are not finite numbers in order, or another argument is not allowed. The
+            message names the row, the value and what is allowed.
 
         Examples
         --------
@@ -156,9 +165,16 @@ class Prestress(AnswersRemoved):
         """
         positions, values = _column("x", x), _column("tau", tau)
         size = len(positions)
-        check_that(size == len(values), "prestress.points", len(values), f"{size} values, as of x")
-        points = tuple(zip(positions, values, strict=True))
-        return cls(values[0], values[-1], width, peak, bumps=bumps, points=points)
+        allowed = f"{size} values, as many as of x"
+        check_that(size == len(values), "prestress.points", len(values), allowed)
+        return cls(
+            left=values[0],
+            right=values[-1],
+            width=width,
+            peak=peak,
+            bumps=bumps,
+            points=tuple(zip(positions, values, strict=True)),
+        )
 
     @classmethod
     def from_file(
@@ -170,17 +186,18 @@ class Prestress(AnswersRemoved):
         peak: float = 1.0,
         bumps: tuple[tuple[float, float, float], ...] = (),
     ) -> Self:
-        """A pre-stress through the points of a CSV or netCDF file, as by `through`.
+        """Read points from a CSV or netCDF file, and make a pre-stress as `through` does.
 
         Parameters
         ----------
         path : str or Path
-            A CSV file has the names of its columns in the first row, and their units in the second
-            if it gives any: H and S (the stress drop), or 1 or -. Rows that begin with # are
-            comments.
+            A CSV file has the names of its columns in the first row. The second row may have their
+            units: H for positions and S (the stress drop) for values, or 1 or - for both. Rows that
+            begin with # are comments.
         x, prestress : str, optional
-            Names of the two columns, or variables; by default those named x, position or distance,
-            and tau, prestress, shear_stress or stress.
+            Names of the two columns (or netCDF variables). By default, the column of positions is
+            named x, position or distance, and the column of values tau, prestress, shear_stress or
+            stress.
         width, peak, bumps
             As in `through`.
 
@@ -191,7 +208,8 @@ class Prestress(AnswersRemoved):
         Raises
         ------
         ValueError
-            In one line that names the file, the row and what is allowed.
+            If the file cannot be read, or its contents are not allowed. The message names the file,
+            the row and what is allowed.
 
         Examples
         --------
@@ -201,7 +219,7 @@ class Prestress(AnswersRemoved):
 
         table = read_dimensionless(path, x, prestress)
         try:
-            return cls.through(table.x, table.prestress, width, peak, bumps)
+            return cls.through(table.x, table.prestress, width=width, peak=peak, bumps=bumps)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
 
@@ -216,17 +234,17 @@ class Prestress(AnswersRemoved):
         peak: float = 1.0,
         bumps: tuple[tuple[float, float, float], ...] = (),
     ) -> Self:
-        """A pre-stress through samples of a function, as by `through`.
+        """Sample a function, and make a pre-stress from the samples as `through` does.
 
         Parameters
         ----------
         function : callable
-            Pre-stress (units of the stress drop) at a position (units of H).
+            Returns the pre-stress (units of the stress drop) at a position (units of H).
         start, stop : float, units of H
-            First and last position; the pre-stress is constant before and after them.
+            First and last position. The pre-stress is constant before and after them.
         tolerance : float, units of the stress drop
-            Largest deviation of the lines between samples from the function. Features narrower than
-            1/256 of the range may be missed.
+            Largest allowed error of linear interpolation between the samples. Features narrower
+            than 1/256 of the range may be missed.
         width, peak, bumps
             As in `through`.
 
@@ -246,10 +264,10 @@ class Prestress(AnswersRemoved):
         from .sampled_function import sample_function
 
         x, tau = sample_function(function, start, stop, tolerance)
-        return cls.through(x, tau, width, peak, bumps)
+        return cls.through(x, tau, width=width, peak=peak, bumps=bumps)
 
     def __repr__(self) -> str:
-        """The arguments that differ from the defaults; a long table by its size."""
+        """Show the arguments that differ from the defaults; of a long table only its length."""
         given = []
         for entry in fields(self):
             value = getattr(self, entry.name)
@@ -271,32 +289,32 @@ class Prestress(AnswersRemoved):
 
     @cached_property
     def nucleation_reach(self) -> float:
-        """Distance from x = 0 within which bumps lie, and every position where a table is >= 1."""
+        """Distance from x = 0 within which all bumps lie, and all points at which tau can be 1."""
         reach = max((abs(centre) + 4.0 * width for centre, _, width in self.bumps), default=0.0)
-        # Bumps add to a table.
-        least = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
-        return max([reach, *(abs(x) for x, tau in self.points if tau >= least)])
+        # Together with the bumps, a smaller value of the table can reach 1 as well.
+        threshold = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
+        return max([reach, *(abs(x) for x, tau in self.points if tau >= threshold)])
 
     @property
     def symmetric(self) -> bool:
-        """True where tau(-x) = tau(x), so that half the lattice is enough."""
+        """True if tau(-x) = tau(x), so that it is enough to simulate half of the lattice."""
         parts = {*self.steps, *self.bumps}
         mirrored = {(-position, *rest) for position, *rest in parts}
         return self.left == self.right and parts == mirrored and self._symmetric_table
 
     @cached_property
     def _symmetric_table(self) -> bool:
-        # Order counts: at a jump the two values change places.
+        # The order of the points matters: at a jump the two values change places.
         return self.points == tuple((-x, tau) for x, tau in reversed(self.points))
 
     @cached_property
     def _table(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and values of the points."""
+        """Positions and values of the points, as two arrays."""
         x, tau = np.array(self.points).T
         return np.ascontiguousarray(x), np.ascontiguousarray(tau)
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
-        """Background at positions x (units of H): levels with steps, or the linear table."""
+        """Return the background at positions x (units of H), without peak and bumps."""
         x = as_positions("x", x)
         if self.points:
             return self._linear(x)
@@ -306,7 +324,11 @@ class Prestress(AnswersRemoved):
         return level
 
     def _linear(self, x: np.ndarray) -> np.ndarray:
-        """The table at positions x, computed outwards so that it can be mirrored to the bit."""
+        """Interpolate the table at positions x.
+
+        Each side is computed from x = 0 outwards, so that a mirrored table gives mirrored values to
+        the last bit.
+        """
         positions, values = self._table
         right = np.interp(np.maximum(x, 0.0), positions, values)
         left = np.interp(np.maximum(-x, 0.0), -positions[::-1], values[::-1])
@@ -314,10 +336,14 @@ class Prestress(AnswersRemoved):
 
     @cached_property
     def intervals(self) -> tuple[Interval, ...]:
-        """Intervals of a linear background from left to right; the outermost are constant."""
+        """Intervals on which the background is linear, from left to right.
+
+        The first and the last interval are infinite, and the background is constant on them.
+        """
         if self.points:
             knots = [(-math.inf, self.left), *self.points, (math.inf, self.right)]
             linear = (Interval(a, b, low, high) for (a, low), (b, high) in pairwise(knots))
+            # A jump of the table is an interval of length 0, which is left out.
             return tuple(interval for interval in linear if interval.left < interval.right)
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
@@ -328,73 +354,92 @@ class Prestress(AnswersRemoved):
 
     @cached_property
     def interval_table(self) -> np.ndarray:
-        """The intervals as rows of an array, which takes as long as the run on a long table."""
+        """Array with one row for each interval, and the fields of `Interval` as columns.
+
+        It is kept, because building it from a long table takes as long as a run.
+        """
         return np.array(self.intervals)
 
     @cached_property
     def parts_as_json(self) -> str:
-        """Steps, bumps and points, as a data file has them; 10,000 points take 10 ms."""
+        """Steps, bumps and points as JSON, for a data file.
+
+        It is kept, because 10,000 points take 10 ms.
+        """
         parts = {"steps": self.steps, "bumps": self.bumps}
         return json.dumps(parts | {"points": self.points} if self.points else parts)
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
-        """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 without bumps."""
+        """Return the pre-stress at positions x (units of H).
+
+        At x = 0 it is exactly ``peak`` if there are no bumps.
+        """
         x = as_positions("x", x)
         tau = self.level(x)
         if self.width is not None:
-            # Written with 1 - exp, nothing cancels near x = 0, where the threshold is met.
+            # This form loses no digits near x = 0, where the pre-stress is close to the threshold.
             tau = self.peak + (tau - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps and not self.points:
             return tau
-        # Bumps at equal distances are first added to each other, so that a mirrored profile is
-        # mirrored to the last bit.
+        # Equal bumps on both sides of x = 0 are added to each other first. A mirrored profile then
+        # has mirrored values to the last bit.
         bumps = sorted((abs(centre), *shape, centre) for centre, *shape in self.bumps)
-        for (_, size, width), equal in groupby(bumps, key=itemgetter(0, 1, 2)):
-            tau = tau + sum(size * np.exp(-0.5 * ((x - bump[3]) / width) ** 2) for bump in equal)
-        # The tail of a distant bump leaves the peak within rounding of the threshold, which it is
-        # meant to meet.
-        rounding = ROUNDING_OF_TABLE if self.points else ROUNDING
-        return np.where(np.abs(tau - 1.0) <= rounding, 1.0, tau)
+        for (_, amplitude, width), equal_bumps in groupby(bumps, key=itemgetter(0, 1, 2)):
+            centres = [bump[3] for bump in equal_bumps]
+            shapes = (np.exp(-0.5 * ((x - centre) / width) ** 2) for centre in centres)
+            tau = tau + sum(amplitude * shape for shape in shapes)
+        # The tail of a distant bump can move the peak away from the threshold by rounding.
+        tolerance = TABLE_THRESHOLD_TOLERANCE if self.points else THRESHOLD_TOLERANCE
+        return np.where(np.abs(tau - 1.0) <= tolerance, 1.0, tau)
 
 
 def attributes_of(prestress: Prestress) -> dict[str, float | str]:
-    """The attributes of a data file; the width is NaN if there is no Gaussian at x = 0."""
-    width = math.nan if prestress.width is None else prestress.width
-    numbers = {name: getattr(prestress, name) for name in NUMBERS} | {"width": width}
-    return {**numbers, "steps_and_bumps": prestress.parts_as_json}
+    """Return the attributes that describe a pre-stress in a data file.
+
+    The width is NaN if there is no Gaussian at x = 0.
+    """
+    attributes = {name: getattr(prestress, name) for name in NUMBER_RANGES}
+    attributes["width"] = math.nan if prestress.width is None else prestress.width
+    attributes["steps_and_bumps"] = prestress.parts_as_json
+    return attributes
 
 
 def prestress_from(attributes: Mapping) -> Prestress:
-    """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
-    left, right, width, peak = (attributes[name] for name in NUMBERS)
+    """Make the pre-stress that the attributes of a data file describe.
+
+    Raises KeyError if an attribute is missing, and ValueError if its value is not allowed.
+    """
+    left, right, width, peak = (attributes[name] for name in NUMBER_RANGES)
     text = attributes["steps_and_bumps"]
     if isinstance(width, float) and math.isnan(width):
         width = None
-    # Lists and the like, which are refused, are no keys of a cache.
-    plain = all(isinstance(value, Hashable) for value in (text, left, right, width, peak))
-    read = _cached_from_text if plain else _from_text
+    # A value that cannot be a key of the cache, such as a list, is refused by `_from_text`.
+    is_hashable = all(isinstance(value, Hashable) for value in (text, left, right, width, peak))
+    read = _cached_from_text if is_hashable else _from_text
     return read(text, left, right, width, peak)
 
 
 def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
+    """Make a pre-stress from four numbers, and from its steps, bumps and points as JSON."""
     try:
         given = {"points": ()} | json.loads(text)
-        parts = {name: given[name] for name in (*PARTS, "points")}
+        parts = {name: given[name] for name in (*PART_RANGES, "points")}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps, and points of a table"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
-    digest = isinstance(parts["points"], str)
+    # A measured table replaces the points of a long table by a digest, which is text.
+    is_digest = isinstance(parts["points"], str)
     allowed = "the points themselves, which the data file of the run has"
-    check_that(not digest, "steps_and_bumps points", parts["points"], allowed)
-    return Prestress(left, right, width, peak, **parts)
+    check_that(not is_digest, "steps_and_bumps points", parts["points"], allowed)
+    return Prestress(left=left, right=right, width=width, peak=peak, **parts)
 
 
-# The numbers of one run are measured one after the other, and each starts from the pre-stress.
+# Each measurement of a run starts from its pre-stress, which is therefore kept for a few runs.
 _cached_from_text = lru_cache(maxsize=8, typed=True)(_from_text)
 
 
 def _points(rows: Any) -> tuple[tuple[float, float], ...]:
-    """Points of a table as numbers; no points are no table."""
+    """Convert the points of a table to pairs of numbers; an empty tuple if there are none."""
     try:
         pairs = [(x, tau) for x, tau in rows]
     except (TypeError, ValueError):
@@ -407,14 +452,14 @@ def _points(rows: Any) -> tuple[tuple[float, float], ...]:
 
 
 def _column(name: str, values: Any) -> list[float]:
-    """One column of a table as numbers; ValueError names the first row that is not one."""
+    """Convert one column of a table to numbers; ValueError names the first row that fails."""
     key, listed = f"prestress.points {name}", values
     try:
         listed = np.asarray(values).tolist() if hasattr(values, "__array__") else [*values]
         size = len(listed)
     except TypeError:
         size = 0
-    check_that(2 <= size <= MOST_POINTS, key, size, f"2 to {MOST_POINTS} numbers")
+    check_that(2 <= size <= MAX_TABLE_POINTS, key, size, f"2 to {MAX_TABLE_POINTS} numbers")
     if all(type(value) is float for value in listed) and np.all(np.isfinite(listed)):
         return listed
     for row, value in enumerate(listed, start=1):
@@ -423,7 +468,7 @@ def _column(name: str, values: Any) -> list[float]:
 
 
 def _check_table(x: np.ndarray) -> None:
-    """Refuse positions that are not in order."""
+    """Raise ValueError if positions decrease, or if more than two points have the same position."""
     for row in (np.flatnonzero(np.diff(x) < 0.0) + 2)[:1].tolist():
         allowed = f">= {x[row - 2]:.10g}, the x of the row before"
         check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
@@ -433,6 +478,7 @@ def _check_table(x: np.ndarray) -> None:
 
 
 def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:
+    """Convert rows of numbers to tuples, and check each column against its range in ``parts``."""
     allowed = f"a list of [{', '.join(parts)}]"
     try:
         named = [dict(zip(parts, row, strict=True)) for row in rows]

@@ -1,4 +1,5 @@
-"""The rules of release."""
+"""The two rules by which a block is released."""
 
-# The stress that is compared with 1 has the damping force in it, or not.
+# A block is released when its stress reaches 1. This stress includes the damping force under
+# "total" and excludes it under "elastic".
 RELEASES = ("total", "elastic")

@@ -1,11 +1,11 @@
-"""Names that earlier versions had: each answers with what to write instead.
+"""Names that earlier versions had, and error messages that name their replacements.
 
-The answers are kept for one version after the name is gone. CHANGELOG.md lists them.
+A message is kept for one version after its name was removed. CHANGELOG.md lists the names.
 """
 
 from typing import TYPE_CHECKING
 
-# Owner, removed name, and the new way.
+# For each class or module, the removed names and their replacements.
 REMOVED = {
     "Scene": {"rate_strengthening": 'friction=sp.friction("linear_rate", alpha=...)'},
     "Prestress": {
@@ -28,25 +28,25 @@ REMOVED = {
 }
 
 
-def new_way(owner: str, name: str) -> str:
-    """Return one line with the new way of a removed name; empty if the name is none."""
-    instead = REMOVED.get(owner, {}).get(name, "")
-    return f"{owner}: {name} was removed; write {instead}" if instead else ""
+def describe_removal(owner: str, name: str) -> str:
+    """Return a line with the replacement of a removed name; empty text for any other name."""
+    replacement = REMOVED.get(owner, {}).get(name, "")
+    return f"{owner}: {name} was removed; write {replacement}" if replacement else ""
 
 
-def answer_removed(owner: str, name: str) -> None:
-    """Raise TypeError with the new way if an argument was removed."""
-    if answer := new_way(owner, name):
-        raise TypeError(answer)
+def refuse_removed_argument(owner: str, name: str) -> None:
+    """Raise TypeError with the replacement if an argument was removed."""
+    if message := describe_removal(owner, name):
+        raise TypeError(message)
 
 
-class AnswersRemoved:
-    """A class whose removed attributes answer with the new way."""
+class ExplainsRemovedNames:
+    """Base of classes whose removed attributes raise an error that names the replacement."""
 
     if not TYPE_CHECKING:
 
         def __getattr__(self, name):
-            """Raise AttributeError; only called for an attribute that there is not."""
+            """Raise AttributeError. Python calls this only for an attribute that does not exist."""
             owner = type(self).__name__
             default = f"{owner!r} object has no attribute {name!r}"
-            raise AttributeError(new_way(owner, name) or default, name=name, obj=self)
+            raise AttributeError(describe_removal(owner, name) or default, name=name, obj=self)

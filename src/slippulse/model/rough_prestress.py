@@ -1,18 +1,19 @@
-"""A rough pre-stress: a Gaussian random field along the interface."""
+"""Rough pre-stress: a Gaussian random field along the interface."""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from .checks import check_number
-from .prestress import MOST_POINTS
+from .prestress import MAX_TABLE_POINTS
 
-# Larger values are cut to this.
-HIGHEST = 0.95
+# Larger values of the field are replaced by this one. A rupture would start wherever the pre-stress
+# is 1.
+MAX_PRESTRESS = 0.95
 
 
 class Background(NamedTuple):
-    """Positions and values of a background, as `Prestress.through` takes them."""
+    """Positions and values of a background, in the form that `Prestress.through` takes."""
 
     x: np.ndarray
     tau: np.ndarray
@@ -30,24 +31,25 @@ def rough(
 ) -> Background:
     """Make a rough background for `Prestress.through`: a Gaussian random field.
 
-    The amplitude of a wave number k is (1 + (k correlation_length)^2)^(-(hurst + 1/2)/2): a power
-    law at lengths below the correlation length. A seed gives the same field on every machine.
-    Values above 0.95 are replaced by it, since a rupture would start where the pre-stress is 1.
+    The amplitude at wave number k is (1 + (k correlation_length)^2)^(-(hurst + 1/2)/2), which is a
+    power law at lengths below the correlation length. The same seed gives the same field on every
+    machine. Values above 0.95 are set to 0.95, since a rupture would start where the pre-stress
+    is 1.
 
     Parameters
     ----------
     level : float, units of the stress drop
-        Mean of all fields, < 1.
+        Mean over the fields of all seeds, < 1.
     deviation : float, units of the stress drop
-        Standard deviation over all fields, >= 0.
+        Standard deviation over the fields of all seeds, >= 0.
     correlation_length : float, units of H
         Length above which the field is uncorrelated, > 0.
     hurst : float
         Roughness at short lengths, from 0 (rougher) to 1 (smoother).
     start, stop, spacing : float, units of H
-        Positions: from start, at distances of spacing > 0, up to stop.
+        The positions begin at start, have a distance of spacing > 0, and end at or before stop.
     seed : int
-        Which field, >= 0.
+        Seed of the random numbers, >= 0.
 
     Returns
     -------
@@ -61,8 +63,9 @@ def rough(
 
     Notes
     -----
-    Source: an addition of this project. The field is made by a Fourier transform of white noise
-    over twice the length, so that its two ends are independent of each other.
+    Source: an addition of this project. The field is white noise that is filtered by a Fourier
+    transform, which makes it periodic. It is therefore computed over twice the length, and its
+    first half is returned, so that the two ends of the returned field are independent.
 
     Examples
     --------
@@ -77,8 +80,8 @@ def rough(
     check_number("stop", stop, above=start)
     check_number("spacing", spacing, above=0.0, at_most=stop - start)
     check_number("seed", seed, integer=True, at_least=0)
-    check_number("points", (stop - start) / spacing + 1.0, at_most=MOST_POINTS)
-    # A whole number of spacings may be a little less by rounding.
+    check_number("points", (stop - start) / spacing + 1.0, at_most=MAX_TABLE_POINTS)
+    # Rounding can make a whole number of spacings slightly smaller than a whole number.
     size = int((stop - start) / spacing + 1e-9) + 1
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal(2 * size)
     wave_number = 2.0 * np.pi * np.fft.fftfreq(2 * size, spacing)
@@ -86,4 +89,4 @@ def rough(
     amplitude *= deviation / np.sqrt(np.mean(amplitude**2))
     field = np.fft.ifft(np.fft.fft(noise) * amplitude).real[:size]
     x = np.round(start + spacing * np.arange(size), 12)
-    return Background(x, np.minimum(level + field, HIGHEST))
+    return Background(x, np.minimum(level + field, MAX_PRESTRESS))

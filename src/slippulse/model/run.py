@@ -1,4 +1,4 @@
-"""The physics of one run, which is all that theory needs of it."""
+"""The physical parameters of one run, which are all that theory needs to know of it."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from .prestress import Prestress
 
 
 class Run(NamedTuple):
-    """One run of a simulation; a `Scene` has its duration and its numerical method, too."""
+    """Physical parameters of one run; a `Scene` adds the duration and the numerical method."""
 
     boundary: str
     prestress: Prestress
@@ -15,9 +15,9 @@ class Run(NamedTuple):
     dx: float
     beta: float
     release: str
-    friction: Mapping  # law of friction, and its parameters by name
+    friction: Mapping  # name of the friction law ("law") and its parameters
 
     @property
     def damping_ratio(self) -> float:
-        """The ratio beta/dx, which selects the front speed."""
+        """Ratio beta/dx, on which the front speed depends."""
         return self.beta / self.dx

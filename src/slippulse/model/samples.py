@@ -1,4 +1,4 @@
-"""Times and positions of the samples of a simulation."""
+"""Times and positions at which a simulation is sampled."""
 
 from dataclasses import dataclass
 
@@ -6,25 +6,28 @@ import numpy as np
 
 from .checks import as_numbers
 
-# Groups that a sweep may keep: release and stick times, fields at the end, samples on the way.
-RECORDS = ("fronts", "fields", "samples")
+# Groups of results that a sweep may record: release and stick times ("fronts"), slip and its time
+# derivatives at the end ("fields"), and slip and slip velocity during the run ("samples").
+RECORD_GROUPS = ("fronts", "fields", "samples")
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Times and positions at which slip and slip velocity are recorded; it keeps copies of them.
+    """Times and positions at which slip and slip velocity are recorded.
+
+    The arrays are copied and cannot be changed afterwards.
 
     Parameters
     ----------
     times : array of shape (T,), units of H / wave speed
-        Increasing, from 0 or later to the duration of the scene at most.
+        Increasing times between 0 and the duration of the scene.
     positions : array of shape (P,), units of H
-        On the lattice the nearest block is recorded; beyond its ends slip is 0.
+        A lattice records the nearest block. Beyond its ends slip is 0.
 
     Raises
     ------
     ValueError
-        If an array is not one-dimensional or has other numbers than these.
+        If an array is not one-dimensional, or its numbers are not as described above.
 
     Examples
     --------
@@ -37,9 +40,9 @@ class Samples:
 
     def __post_init__(self) -> None:
         for name in ("times", "positions"):
-            kept = as_numbers(f"samples.{name}", getattr(self, name)).copy()
-            kept.setflags(write=False)
-            object.__setattr__(self, name, kept)
+            copy = as_numbers(f"samples.{name}", getattr(self, name)).copy()
+            copy.setflags(write=False)
+            object.__setattr__(self, name, copy)
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):

@@ -1,4 +1,4 @@
-"""One scene, its parameters, and the values that are refused."""
+"""The scene of one rupture: all its parameters, and the checks of their values."""
 
 import inspect
 import json
@@ -13,29 +13,31 @@ from typing import TYPE_CHECKING, Any, Self
 from .checks import check_choice, check_kind, check_number, check_that, short_repr
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, attributes_of, prestress_from
-from .recorded_law import law_of
+from .recorded_law import read_recorded_law
 from .release import RELEASES
-from .removed import answer_removed
+from .removed import refuse_removed_argument
 from .runaway import check_runaway
 from .stability import largest_step
 from .table_resolution import check_resolved
 
 BOUNDARIES = ("displacement", "stress")
-# The lattice in two ways, and the exact solution of its continuum limit.
+# Two ways to solve the lattice, and the exact solution of its continuum limit.
 SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
-# A lattice holds every bump and each released part of a table from the start, at 200 bytes a block.
-FARTHEST_BUMP = 10**6
-# After this number of steps, one more no longer moves the time.
-MOST_STEPS = 2.0**52
-# The attributes of each simulation in a data file.
+# The lattice contains all bumps and all released parts of a table from the start, with 200 bytes
+# for each block. Their distance from x = 0 may be at most this number of blocks.
+MAX_REACH_IN_BLOCKS = 10**6
+# After this number of steps, adding one more step does not change the time, by rounding.
+MAX_STEPS = 2.0**52
+# Names of the attributes that describe a simulation in a data file.
 ATTRIBUTES = """
     boundary gamma beta damping_ratio left right width peak steps_and_bumps duration dx release
     scheme max_step order half_lattice friction_ratio resolved_blocks friction
 """
 CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "order": ORDERS}
-# Bounds of the numbers, for `check_number`. The square of the least spacing is still a number.
-NUMBERS: dict[str, dict[str, Any]] = {
+# Allowed ranges, in the form that `check_number` takes. The square of the smallest and of the
+# largest spacing can still be represented.
+NUMBER_RANGES: dict[str, dict[str, Any]] = {
     "duration": {"above": 0.0},
     "dx": {"above": 0.0, "at_least": 1e-100, "at_most": 1e40},
     "beta": {"at_least": 0.0},
@@ -48,25 +50,25 @@ NUMBERS: dict[str, dict[str, Any]] = {
 
 
 def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
-    """Let the class of scenes be called with ``damping_ratio`` in place of ``beta``."""
-    by_fields = scene.__init__
-    signature = inspect.signature(by_fields)
+    """Add the argument ``damping_ratio`` to the class `Scene`, as an alternative to ``beta``."""
+    initialise_fields = scene.__init__
+    signature = inspect.signature(initialise_fields)
 
-    @wraps(by_fields)
+    @wraps(initialise_fields)
     def initialise(
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
         for name in values.keys() - signature.parameters:
-            answer_removed("Scene", name)
+            refuse_removed_argument("Scene", name)
         arguments = signature.bind_partial(self, *given, **values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             spacing = arguments.get("dx")
-            check_number("dx", spacing, **NUMBERS["dx"])
+            check_number("dx", spacing, **NUMBER_RANGES["dx"])
             arguments["beta"] = damping_ratio * float(spacing)  # type: ignore[arg-type]
-        by_fields(**arguments)
+        initialise_fields(**arguments)
 
     added = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)
     shown = signature.replace(parameters=[*signature.parameters.values(), added])
@@ -78,15 +80,15 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
 @takes_damping_ratio
 @dataclass(frozen=True)
 class Scene:
-    """One rupture: the equation's parameters, the pre-stress, the lattice and the scheme.
+    """One rupture: the parameters of the equation, the pre-stress, the lattice and the scheme.
 
     The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
 
         dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i
                   + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2 - f_i.
 
-    A block is released when its stress reaches 1 and sticks when its velocity reaches 0. The
-    friction f_i is what a law makes of v_i and of the slip since the release; it is 0 in the paper.
+    A block is released when its stress reaches 1, and sticks when its velocity reaches 0. The
+    friction f_i is a function of v_i and of the slip since the release; it is 0 in the paper.
 
     Source: equation (5) of the paper with the sign of its damping corrected, section II A and
     appendix B. Other laws of friction are an addition of this project.
@@ -109,24 +111,27 @@ class Scene:
         beta/dx, given by its name in place of beta. A scene keeps beta: `dataclasses.replace` with
         another dx leaves beta as it is.
     release : {"total", "elastic"}
-        The stress compared with 1 includes the damping force ("total") or not.
+        The stress that is compared with 1 includes the damping force ("total"), or excludes it
+        ("elastic").
     scheme : {"localised", "fixed_step", "continuum"}
-        Taylor steps with each release and stick at its instant; symplectic Euler with events
-        checked once a step; or the exact solution of the continuum limit.
+        "localised": Taylor steps, with each release and stick at its exact time. "fixed_step":
+        symplectic Euler, with releases and sticks checked once in each step. "continuum": the exact
+        solution of the continuum limit.
     max_step : float, units of dx / wave speed
-        Largest time step, the step itself under "fixed_step"; not used by "continuum".
+        Largest time step. Under "fixed_step" every step has this length; "continuum" ignores it.
     order : int
-        Order of the Taylor step, 3 to 8; used by "localised" alone.
+        Order of the Taylor step, 3 to 8; used only by "localised".
     half_lattice : bool
-        Simulate only x >= 0 when the pre-stress is symmetric.
+        If True, only x >= 0 is simulated when the pre-stress is symmetric.
     friction_ratio : float
-        mu_k/(mu_s - mu_k), >= 0. Reverse sliding begins at the stress -(1 + 2 friction_ratio).
+        mu_k/(mu_s - mu_k), >= 0. A block slides backwards if its stress is below
+        -(1 + 2 friction_ratio).
     resolved_blocks : int
-        A pulse of fewer sliding blocks is flagged: its width errs by about a block.
+        A pulse with fewer sliding blocks is flagged, since the error of its width is about a block.
     friction : Friction
-        Law of friction of a sliding block, which `friction` makes. "fixed_step" takes any;
-        "continuum" takes "coulomb" and "linear_rate"; "localised" takes "rate_weakening" and
-        "slip_weakening", too.
+        Friction law of a sliding block, from the function `friction`. "fixed_step" takes any law,
+        "continuum" only "coulomb" and "linear_rate", and "localised" these two, "rate_weakening"
+        and "slip_weakening".
 
     Raises
     ------
@@ -176,23 +181,26 @@ class Scene:
         check_kind("prestress", self.prestress, Prestress)
         check_kind("friction", self.friction, Friction)
         self._check_physics()
-        for name, bounds in NUMBERS.items():
+        for name, bounds in NUMBER_RANGES.items():
             check_number(name, getattr(self, name), **bounds)
-            # Numbers of other types would be computed with as such, and compiled for.
-            kind = int if "integer" in bounds else float
-            object.__setattr__(self, name, kind(getattr(self, name)))
-        width, allowed = self.prestress.width, f">= dx = {self.dx:g}, which must see the peak"
+            # A number of another type would make numba compile the kernels a second time, or would
+            # be less precise.
+            number_type = int if "integer" in bounds else float
+            object.__setattr__(self, name, number_type(getattr(self, name)))
+        width, allowed = self.prestress.width, f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
+        max_reach = MAX_REACH_IN_BLOCKS * self.dx
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)
             reach = self.prestress.nucleation_reach
-            check_number("prestress.points reach", reach, at_most=FARTHEST_BUMP * self.dx)
+            check_number("prestress.points reach", reach, at_most=max_reach)
         for centre, _, width in self.prestress.bumps:
             reach = abs(centre) + 4.0 * width
-            check_number("prestress.bumps reach", reach, at_most=FARTHEST_BUMP * self.dx)
+            check_number("prestress.bumps reach", reach, at_most=max_reach)
         self._check_step()
 
     def _check_physics(self) -> None:
+        """Raise ValueError if gamma or the friction law does not fit the other parameters."""
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
         else:
@@ -205,16 +213,19 @@ class Scene:
         check_that(self.scheme in schemes, "scheme", self.scheme, allowed)
 
     def _check_step(self) -> None:
+        """Raise ValueError if the time step is unstable, or too small for the duration."""
         bound = self.largest_stable_step
         damping_ratio, stiffness, _ = self.ratios
         ratios = f"beta/dx = {damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
-        # An overflow above makes the step of a preset 0, and is then what must be named.
+        # This check comes after the one above. An overflow there makes the step of a preset 0, and
+        # the message must then name its cause.
         check_number("max_step", self.max_step, above=0.0)
         if self.scheme != "continuum":
-            check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
+            longest = MAX_STEPS * self.max_step * self.dx
+            check_number("duration", self.duration, at_most=longest)
         if self.max_step > bound:
             if self.friction != COULOMB:
                 ratios += f", friction {json.dumps(self.friction.mapping())}"
@@ -224,12 +235,12 @@ class Scene:
 
     @property
     def damping_ratio(self) -> float:
-        """The ratio beta/dx, which selects the front speed."""
+        """Ratio beta/dx, on which the front speed depends."""
         return self.beta / self.dx
 
     @property
     def symmetric(self) -> bool:
-        """True where half the lattice is simulated."""
+        """True if only half of the lattice is simulated."""
         return self.half_lattice and self.prestress.symmetric
 
     @property
@@ -245,36 +256,43 @@ class Scene:
 
     @property
     def ratios(self) -> tuple[float, float, float]:
-        """The numbers that a stable step follows from, for `slippulse.model.stability`."""
+        """Ratios beta/dx, gamma dx^2 and alpha dx, on which the stable step depends.
+
+        Here alpha is the largest derivative of friction by slip rate.
+        """
         traits = self.friction.traits
-        return self.damping_ratio, self.gamma * self.dx**2, traits.steepest * self.dx
+        return self.damping_ratio, self.gamma * self.dx**2, traits.max_rate_slope * self.dx
 
     def attributes(self) -> dict:
-        """Every parameter as a plain number or text, for a data file; see `from_attributes`."""
+        """Return all parameters as plain numbers and texts, as a data file has them.
+
+        `from_attributes` makes the scene again.
+        """
         values = vars(self) | attributes_of(self.prestress)
         values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
         values["friction"] = json.dumps(self.friction.mapping())
         return {name: values[name] for name in ATTRIBUTES.split()}
 
     def _repr_html_(self) -> str:
-        """The parameters as a table, for a notebook."""
+        """Return the parameters as an HTML table, which a notebook shows."""
         cells = ((name, escape(str(value))) for name, value in self.attributes().items())
         rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in cells)
         return f"<table>{rows}</table>"
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Self:
-        """The scene of a simulation's attributes, or of its row in a measured table.
+        """Make the scene that is described by the attributes of a file, or by a measured row.
 
-        The attributes are as `attributes` writes them; older files have rate_strengthening, or no
-        friction.
+        The attributes have the names that `attributes` returns. Older files have
+        ``rate_strengthening`` in place of ``friction``, or neither. Raises ValueError if an
+        attribute is missing or not allowed.
         """
-        given = hasattr(attributes, "keys")
-        check_that(given, "attributes", attributes, "a mapping of names to values")
+        is_mapping = hasattr(attributes, "keys")
+        check_that(is_mapping, "attributes", attributes, "a mapping of names to values")
         try:
-            # A netCDF file returns numbers of numpy's types.
+            # Numbers from a netCDF file have types of numpy; `item` converts them.
             values = {name: getattr(v, "item", lambda v=v: v)() for name, v in attributes.items()}
-            values |= {"friction": friction_from(law_of(values))}
+            values["friction"] = friction_from(read_recorded_law(values))
             values["prestress"] = prestress_from(values)
             check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
             values["half_lattice"] = bool(values["half_lattice"])
@@ -284,13 +302,13 @@ class Scene:
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
 
 
-# Numbers of a run that everything that reads it computes with.
-COUNTED = ("end_time", "releases", "re_releases", "half_lattice_used", "first_stick_time")
+# Results in the attributes of a run that measurements and figures need.
+REQUIRED_RESULTS = ("end_time", "releases", "re_releases", "half_lattice_used", "first_stick_time")
 
 
 def check_run_attributes(attributes: Mapping) -> None:
-    """Refuse attributes of a run, such as those of a file, that are not of their kind."""
+    """Raise ValueError if attributes of a run are missing or not allowed."""
     Scene.from_attributes(attributes)
-    for name in COUNTED:
+    for name in REQUIRED_RESULTS:
         value = attributes.get(name)
         check_that(isinstance(value, Real), name, value, "a number, as simulate returns it")

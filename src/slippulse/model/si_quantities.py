@@ -4,8 +4,9 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-# SI unit of each quantity, as UDUNITS and the CF conventions write it. A stress is counted from 0,
-# a stress difference from the kinetic friction; energies are those of one metre of width.
+# SI unit of each quantity, as UDUNITS and the CF conventions write it. In SI units a stress is
+# counted from 0; in the model it is counted from kinetic friction. A difference of two stresses is
+# the same in both. Energies are per metre of interface width.
 UNITS = {
     "length": "m",
     "time": "s",
@@ -22,8 +23,11 @@ UNITS = {
 VARIABLES = {
     "x": ("length", "position"),
     "prestress": ("stress", "initial shear stress"),
-    "release_time": ("time", "time of the first release, NaN where never"),
-    "stick_time": ("time", "time of the last stick, NaN where never or sliding at the end"),
+    "release_time": ("time", "time of the first release; NaN if there is none"),
+    "stick_time": (
+        "time",
+        "time of the last stick; NaN if there is none, or if the block slides at the end",
+    ),
     "slip": ("slip", "slip at the end"),
     "slip_velocity": ("slip_velocity", "slip velocity at the end"),
     "slip_acceleration": ("slip_acceleration", "slip acceleration at the end"),
@@ -32,7 +36,7 @@ VARIABLES = {
     "sample_slip": ("slip", "slip at the sampled times and positions"),
     "sample_velocity": ("slip_velocity", "slip velocity at the sampled times and positions"),
 }
-# Names of attributes and of measured numbers, by quantity; those that are not listed have no unit.
+# Names of attributes and measured numbers, by quantity. A number that is not listed has no unit.
 _NAMES = {
     "length": """
         x position width dx first_stick_position limit_position front_intercept_right
@@ -67,18 +71,18 @@ _NAMES = {
 QUANTITIES = {name: quantity for name, (quantity, _) in VARIABLES.items()}
 for _quantity, _names in _NAMES.items():
     QUANTITIES |= dict.fromkeys(_names.split(), _quantity)
-# The profile as JSON: quantities of the numbers of each row.
+# Quantities of the numbers in each row of a profile's parts, which a data file has as JSON.
 PROFILE_QUANTITIES = {
     "steps": ("length", "stress"),
     "bumps": ("length", "stress_difference", "length"),
     "points": ("length", "stress"),
 }
-# Converts one value, or an array, of a quantity.
+# A function that converts a value, or an array, of the quantity that its second argument names.
 Converter = Callable[[Any, str], Any]
 
 
 def converted_run(run: Any, convert: Converter) -> Any:
-    """Return a Dataset over x with all variables and attributes converted."""
+    """Return the Dataset of a run with all variables and attributes converted."""
     variables = {
         name: (variable.dims, convert(variable.values, VARIABLES[name][0]), variable.attrs)
         for name, variable in run.variables.items()
@@ -90,7 +94,7 @@ def converted_run(run: Any, convert: Converter) -> Any:
 
 
 def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[str, Any]:
-    """Return numbers by name, converted where they have a unit."""
+    """Return numbers by name, and convert those that have a unit."""
     converted = dict(numbers)
     for name in QUANTITIES.keys() & converted.keys():
         if converted[name] is not None:
@@ -99,7 +103,7 @@ def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[st
         parts = json.loads(converted["steps_and_bumps"])
         for part, rows in parts.items():
             if not isinstance(rows, list):
-                # A measured table has a summary of the points.
+                # A measured table has a digest in place of the points.
                 continue
             quantities = PROFILE_QUANTITIES[part]
             parts[part] = [[*map(convert, row, quantities)] for row in rows]

@@ -1,4 +1,4 @@
-"""Reading of an initial shear stress in SI units from a CSV or netCDF file."""
+"""Read an initial shear stress from a CSV or netCDF file, and convert it to SI units."""
 
 from pathlib import Path
 
@@ -7,25 +7,26 @@ import numpy as np
 from .checks import short_repr
 from .stress_file import StressFileError, read_stress_file
 
-# Values of the units that a file may have, in m and Pa. A file without units is in m and Pa.
-MICRO = {"um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "\N{GREEK SMALL LETTER MU}m": 1e-6}
-LENGTHS = {"": 1.0, "m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3} | MICRO
-STRESSES = {"": 1.0, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5}
+# Units that a file may have, in metres and in pascal. A file without units is in m and Pa.
+MICROMETRES = {"um": 1e-6, "\N{MICRO SIGN}m": 1e-6, "\N{GREEK SMALL LETTER MU}m": 1e-6}
+LENGTH_UNITS = {"": 1.0, "m": 1.0, "km": 1e3, "cm": 1e-2, "mm": 1e-3} | MICROMETRES
+STRESS_UNITS = {"": 1.0, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5}
 
 
 def read_in_si(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Read positions (m) and stresses (Pa). ValueError names the file, the row and what is allowed.
+    """Read positions (m) and stresses (Pa) from the columns that `Prestress.from_file` would read.
 
-    The columns are found as by `Prestress.from_file`.
+    Raises StressFileError, which names the file, the row and what is allowed.
     """
     table = read_stress_file(path)
-    x = np.array(table.x) * _value(path, "x", table.x_unit, LENGTHS)
-    stress = np.array(table.prestress) * _value(path, "stress", table.prestress_unit, STRESSES)
-    return x, stress
+    x_unit = _unit_value(path, "x", table.x_unit, LENGTH_UNITS)
+    stress_unit = _unit_value(path, "stress", table.prestress_unit, STRESS_UNITS)
+    return np.array(table.x) * x_unit, np.array(table.prestress) * stress_unit
 
 
-def _value(path: str | Path, column: str, unit: str, known: dict[str, float]) -> float:
-    if unit not in known:
-        allowed = ", ".join(filter(None, known))
+def _unit_value(path: str | Path, column: str, unit: str, unit_values: dict[str, float]) -> float:
+    """Return the value of a unit in SI, or raise StressFileError if the unit is unknown."""
+    if unit not in unit_values:
+        allowed = ", ".join(filter(None, unit_values))
         raise StressFileError(f"{path}: unit {short_repr(unit)} of {column}; allowed: {allowed}")
-    return known[unit]
+    return unit_values[unit]

@@ -1,4 +1,8 @@
-"""Reading of a table of pre-stress from a CSV or netCDF file."""
+"""Read a table of pre-stress from a CSV or netCDF file.
+
+`read_stress_file` returns the numbers as they are in the file, with their units.
+`read_dimensionless` also checks that these units are those of the model.
+"""
 
 import math
 import re
@@ -10,31 +14,31 @@ if TYPE_CHECKING:
     import xarray as xr
 
 from .checks import short_repr
-from .prestress import MOST_POINTS
+from .prestress import MAX_TABLE_POINTS
 
-# Names of the columns that are looked for, in any case, if none is given.
-POSITIONS = ("x", "position", "distance")
-STRESSES = ("tau", "prestress", "pre_stress", "shear_stress", "stress", "initial_stress")
-# Units in which a table needs no conversion.
-DIMENSIONLESS = {"x": ("", "1", "-", "H"), "prestress": ("", "1", "-", "S")}
-# A table of the most points, written with far more digits than a number has, is smaller.
-LARGEST_FILE = 20_000_000
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
-# Signs that may divide the cells of a row; spaces do if the first row has none of them.
+# Default names of the columns, in upper or lower case.
+POSITION_NAMES = ("x", "position", "distance")
+STRESS_NAMES = ("tau", "prestress", "pre_stress", "shear_stress", "stress", "initial_stress")
+# Names of the units of the model. A table in these units needs no conversion.
+DIMENSIONLESS_UNITS = {"x": ("", "1", "-", "H"), "prestress": ("", "1", "-", "S")}
+# No sensible file is larger: MAX_TABLE_POINTS rows of very many digits still fit.
+MAX_FILE_BYTES = 20_000_000
+NUMBER_PATTERN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
+# Characters that may separate the cells of a row. If the first row has none of them, spaces do.
 DELIMITERS = ",;\t"
 NETCDF_BEGINNINGS = (b"CDF", b"\x89HDF")
 NETCDF_SUFFIXES = (".nc", ".nc4", ".cdf", ".h5")
 
 
 class Row(NamedTuple):
-    """The number of a line in its file, and its cells."""
+    """The cells of a line, and the number of the line in its file (from 1)."""
 
     number: int
     cells: list[str]
 
 
 class StressTable(NamedTuple):
-    """Two columns of a file, and their units (empty if there are none)."""
+    """Positions and pre-stress of a file, and their units (empty text if there are none)."""
 
     x: list[float]
     prestress: list[float]
@@ -43,29 +47,31 @@ class StressTable(NamedTuple):
 
 
 class StressFileError(ValueError):
-    """Refusal of a file, in one line with its path."""
+    """Error in a file, described in one line that begins with the path of the file."""
 
 
 def read_stress_file(
     path: str | Path, x: str | None = None, prestress: str | None = None
 ) -> StressTable:
-    """Read two columns of a file. ValueError names the file, the row and what is allowed.
+    """Read the columns of positions and pre-stress from a file.
 
-    The columns are found by the given names, or by POSITIONS and STRESSES. In a CSV file the first
-    row has the names, and the row below may have units. A row that begins with # is a comment.
+    x, prestress : the names of the two columns; by default POSITION_NAMES and STRESS_NAMES
+
+    In a CSV file the first row has the names, and the second may have units. A row that begins with
+    # is a comment. Raises StressFileError, which names the file, the row and what is allowed.
     """
     path = Path(path)
     try:
         if path.exists() and not path.is_file():
             raise StressFileError("not a regular file; allowed: a CSV or netCDF file")
         with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
+            content = file.read(MAX_FILE_BYTES + 1)
+        if len(content) > MAX_FILE_BYTES:
             raise StressFileError(
-                f"more than {LARGEST_FILE} bytes; allowed: at most {MOST_POINTS} rows"
+                f"more than {MAX_FILE_BYTES} bytes; allowed: at most {MAX_TABLE_POINTS} rows"
             )
-        netcdf = content.startswith(NETCDF_BEGINNINGS) or path.suffix in NETCDF_SUFFIXES
-        read = _read_netcdf if netcdf else _read_csv
+        is_netcdf = content.startswith(NETCDF_BEGINNINGS) or path.suffix in NETCDF_SUFFIXES
+        read = _read_netcdf if is_netcdf else _read_csv
         return read(content, x, prestress)
     except OSError as error:
         reason = f"{error.strerror or error}; allowed: a CSV or netCDF file that can be read"
@@ -77,38 +83,45 @@ def read_stress_file(
 
 
 def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -> StressTable:
-    """Read a file in units of H and of the stress drop, which are written 1, - or nothing, too."""
+    """Read a file whose positions are in units of H and whose pre-stress is in stress drops.
+
+    Raises StressFileError if the file names another unit, or if the first or last value, which
+    holds everywhere beyond the table, is not < 1.
+    """
     table = read_stress_file(path, x, prestress)
     units = {"x": table.x_unit, "prestress": table.prestress_unit}
     for name, unit in units.items():
-        if unit not in DIMENSIONLESS[name]:
-            words = ", ".join(filter(None, DIMENSIONLESS[name]))
-            raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {words}")
-    for place, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
+        if unit not in DIMENSIONLESS_UNITS[name]:
+            allowed = ", ".join(filter(None, DIMENSIONLESS_UNITS[name]))
+            raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {allowed}")
+    for end, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
         if not value < 1.0:
             allowed = "< 1, since it holds beyond the table"
-            raise StressFileError(f"{path}: {place} prestress {value:.10g}; allowed: {allowed}")
+            raise StressFileError(f"{path}: {end} prestress {value:.10g}; allowed: {allowed}")
     return table
 
 
 def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTable:
-    (_, names), *body = _csv_rows(content)
-    x_column = _column(names, "x", x, POSITIONS)
-    tau_column = _column(names, "prestress", prestress, STRESSES)
-    units = "", ""
+    """Read the two columns of a CSV file, given as bytes."""
+    header, *body = _csv_rows(content)
+    names = header.cells
+    x_column = _find_column(names, "x", x, POSITION_NAMES)
+    tau_column = _find_column(names, "prestress", prestress, STRESS_NAMES)
+    x_unit, tau_unit = "", ""
     if body:
-        cells = _cell(body[0], x_column), _cell(body[0], tau_column)
+        x_cell, tau_cell = _cell(body[0], x_column), _cell(body[0], tau_column)
         # The row below the names has units if neither of its values is a number.
-        if not any(map(_is_number, cells)):
-            units, body = cells, body[1:]
+        if not (_is_number(x_cell) or _is_number(tau_cell)):
+            x_unit, tau_unit = x_cell, tau_cell
+            body = body[1:]
     positions = [_number(row, names, x_column) for row in body]
     values = [_number(row, names, tau_column) for row in body]
     _check_rows([row.number for row in body], positions, values)
-    return StressTable(positions, values, *units)
+    return StressTable(positions, values, x_unit, tau_unit)
 
 
 def _csv_rows(content: bytes) -> list[Row]:
-    """The rows that are neither blank nor comments, with the numbers of their lines."""
+    """Split a CSV file into rows, without blank lines and comments."""
     lines = content.decode("utf-8-sig").splitlines()
     numbered = [
         (number, line)
@@ -117,28 +130,36 @@ def _csv_rows(content: bytes) -> list[Row]:
     ]
     if not numbered:
         raise StressFileError("empty; allowed: a row of names, and rows of numbers below")
-    # The names and the units take a row each.
-    if len(numbered) > MOST_POINTS + 2:
-        number = numbered[MOST_POINTS + 2][0]
-        raise StressFileError(f"row {number}: one too many; allowed: at most {MOST_POINTS} rows")
-    delimiter = next((sign for sign in DELIMITERS if sign in numbered[0][1]), None)
+    # Names and units are two rows in addition to the rows of numbers.
+    if len(numbered) > MAX_TABLE_POINTS + 2:
+        number = numbered[MAX_TABLE_POINTS + 2][0]
+        raise StressFileError(
+            f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
+        )
+    first_line = numbered[0][1]
+    delimiter = next((sign for sign in DELIMITERS if sign in first_line), None)
     return [Row(number, _cells(line, delimiter)) for number, line in numbered]
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:
-    """The cells of a line; spaces divide them if no other sign does."""
+    """Split a line into cells, at spaces if the delimiter is None."""
     return [cell.strip().strip('"') for cell in line.split(delimiter)]
 
 
-def _column(header: Sequence[str], key: str, given: str | None, known: Sequence[str]) -> int:
-    """Number of the column that has the given name, or the first of the known ones."""
-    names = known if given is None else (given,)
-    lower = [cell.lower() for cell in header]
+def _find_column(
+    header: Sequence[str], key: str, given: str | None, default_names: Sequence[str]
+) -> int:
+    """Return the index of the column with the given name, or with the first default name found.
+
+    key : argument of the caller that has the given name, for the message of StressFileError
+    """
+    names = default_names if given is None else (given,)
+    lower_case = [cell.lower() for cell in header]
     for name in names:
         if name in header:
             return header.index(name)
-        if name.lower() in lower:
-            return lower.index(name.lower())
+        if name.lower() in lower_case:
+            return lower_case.index(name.lower())
     present = ", ".join(short_repr(cell) for cell in header[:8])
     allowed = f"a column of that name, or {key} = the name of a column"
     raise StressFileError(
@@ -155,6 +176,7 @@ def _is_number(text: str) -> bool:
 
 
 def _cell(row: Row, column: int) -> str:
+    """Return the cell of a row in a column, or raise StressFileError if the row is too short."""
     if column >= len(row.cells):
         allowed = "a value in each column"
         raise StressFileError(f"row {row.number}: {len(row.cells)} values; allowed: {allowed}")
@@ -162,9 +184,9 @@ def _cell(row: Row, column: int) -> str:
 
 
 def _number(row: Row, names: Sequence[str], column: int) -> float:
+    """Return the number in a cell, or raise StressFileError if it is not a finite number."""
     text = _cell(row, column)
-    plain = NUMBER.fullmatch(text)
-    value = float(text) if plain else math.nan
+    value = float(text) if NUMBER_PATTERN.fullmatch(text) else math.nan
     if not math.isfinite(value):
         given = short_repr(text) if text else "nothing"
         allowed = "a finite number"
@@ -173,7 +195,7 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
 
 
 def _check_rows(rows: Sequence[int], x: Sequence[float], prestress: Sequence[float]) -> None:
-    """Refuse fewer than two rows, and positions that are not in order."""
+    """Raise StressFileError if there are fewer than two rows, or positions are not in order."""
     if len(rows) < 2:
         count = "one row" if rows else "no row"
         raise StressFileError(f"{count} of numbers; allowed: at least 2, from left to right")
@@ -188,6 +210,7 @@ def _check_rows(rows: Sequence[int], x: Sequence[float], prestress: Sequence[flo
 
 
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:
+    """Read two one-dimensional variables of a netCDF file, given as bytes."""
     from io import BytesIO
 
     import xarray as xr
@@ -196,12 +219,12 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
     try:
         data = xr.load_dataset(BytesIO(content), engine=engine, decode_times=False)
     except Exception as error:
-        # The libraries raise errors of many kinds on a damaged file.
+        # On a damaged file the libraries raise many different types of errors.
         reason = " ".join(str(error).split())[:80]
         raise StressFileError(f"not netCDF ({reason}); allowed: netCDF-3 or netCDF-4") from None
     header = [str(name) for name in data.variables if data[name].ndim == 1]
-    x_name = header[_column(header, "x", x, POSITIONS)]
-    tau_name = header[_column(header, "prestress", prestress, STRESSES)]
+    x_name = header[_find_column(header, "x", x, POSITION_NAMES)]
+    tau_name = header[_find_column(header, "prestress", prestress, STRESS_NAMES)]
     positions, values = _netcdf_numbers(data, x_name), _netcdf_numbers(data, tau_name)
     if len(positions) != len(values):
         allowed = "equally many"
@@ -212,12 +235,14 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
 
 
 def _netcdf_numbers(data: "xr.Dataset", name: str) -> list[float]:
-    """The values of a variable, or StressFileError."""
+    """Return the values of a variable, or raise StressFileError if they are not finite numbers."""
     values = data[name].values
     if values.dtype.kind not in "iuf":
         raise StressFileError(f"{name}: not numbers; allowed: numbers")
-    if values.size > MOST_POINTS:
-        raise StressFileError(f"{values.size} values of {name}; allowed: at most {MOST_POINTS}")
+    if values.size > MAX_TABLE_POINTS:
+        raise StressFileError(
+            f"{values.size} values of {name}; allowed: at most {MAX_TABLE_POINTS}"
+        )
     numbers = values.astype(float).tolist()
     for row, number in enumerate(numbers, start=1):
         if not math.isfinite(number):

@@ -1,33 +1,37 @@
-"""Refusal of a table of pre-stress that a lattice does not resolve."""
+"""Check that a lattice resolves a pre-stress that is given as a table of points."""
 
 import numpy as np
 
 from .checks import check_that
 from .prestress import Prestress
 
-# A table is refused if its points lie outside of what the blocks beside them see, in the root mean
-# square, by this much of the stress drop and by this fraction of the variation of the table. Points
-# of a ramp or a jump lie between the blocks beside them. An ensemble of rough profiles passes on a
-# lattice of twice the spacing of its points; noise without correlation does not.
-LARGEST_LOSS, LARGEST_FRACTION = 0.02, 0.4
+# The loss of a point is the amount by which its value lies outside the range of the pre-stress at
+# the neighbouring blocks. It is 0 for the points of a ramp or a jump. A table is refused if its
+# root-mean-square loss exceeds both of these limits: the first is in units of the stress drop, the
+# second in units of the table's standard deviation. Rough profiles pass if the block spacing is at
+# most twice the spacing of their points; uncorrelated noise does not pass.
+MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
-    """Refuse a table whose variation lies between the blocks, or that reaches 1 only there."""
+    """Raise ValueError if the blocks miss variations of the table, or a point that reaches 1."""
     x, tau = np.array(prestress.points).T
     block = x / dx
-    beside = dx * np.array([np.ceil(block) - 1.0, np.round(block), np.floor(block) + 1.0])
-    released = np.any(prestress(beside) >= 1.0, axis=0)
+    # For each point: the block on its left, the nearest one, and the block on its right.
+    neighbours = dx * np.array([np.ceil(block) - 1.0, np.round(block), np.floor(block) + 1.0])
+    released = np.any(prestress(neighbours) >= 1.0, axis=0)
     for row in np.flatnonzero((tau >= 1.0) & ~released)[:1].tolist():
-        allowed = f"a value >= 1 at a block too, which are at multiples of dx = {dx:g}"
+        allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
         check_that(False, f"prestress.points {tau[row]:g} at x", float(x[row]), allowed)
-    seen = prestress.level(beside)
-    lost = np.maximum(tau - seen.max(axis=0), 0.0) + np.maximum(seen.min(axis=0) - tau, 0.0)
-    loss = float(np.sqrt(np.mean(lost**2)))
-    if loss > max(LARGEST_LOSS, LARGEST_FRACTION * float(np.std(tau))):
-        worst = int(np.argmax(lost))
+    at_blocks = prestress.level(neighbours)
+    above = np.maximum(tau - at_blocks.max(axis=0), 0.0)
+    below = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
+    losses = above + below
+    rms_loss = float(np.sqrt(np.mean(losses**2)))
+    if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
+        worst = int(np.argmax(losses))
         key = f"prestress.points {tau[worst]:g} between blocks at x"
         allowed = (
-            f"a table that blocks at a distance dx = {dx:g} resolve: a smaller dx or fewer points"
+            f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
         )
         check_that(False, key, float(x[worst]), allowed)

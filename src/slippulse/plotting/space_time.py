@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from ..model.prestress import prestress_from
-from ..model.recorded_law import law_of
+from ..model.recorded_law import read_recorded_law
 from .selection import spaced_indices
 from .si_tables import with_unit
 from .style import BLACK, GREY, HALO, SMALL, Look, conditions
@@ -29,7 +29,7 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
     points = prestress_from(run.attrs).points
     if points:
         rows.append({"role": "table", "series": f"pre-stress through {len(points)} points"})
-    law = law_of(run.attrs)["law"]
+    law = read_recorded_law(run.attrs)["law"]
     if law != "coulomb":
         rows.append({"role": "friction", "series": law.replace("_", " ")})
     if run.attrs["run_flags"]:

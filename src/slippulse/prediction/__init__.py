@@ -1,1 +1,6 @@
-"""Predictions of the paper's formulas and of the exact theory for each run."""
+"""Predictions for each run, by the formulas of the paper and by the exact theory.
+
+Each module ``predicted_*`` has a function `predictions`, which returns one row for each run, and
+`LAWS`, the friction laws for which these rows hold. `comparison` and `measured_run` combine
+measurements with the theory that belongs to them.
+"""

@@ -1,4 +1,4 @@
-"""Numbers from which every prediction starts, and numbers that theory may lack."""
+"""Functions that all predictions share: inputs of the theory, and a value where it has none."""
 
 import math
 from collections.abc import Callable
@@ -7,27 +7,35 @@ from typing import TypeVar
 from ..model.run import Run
 
 Result = TypeVar("Result")
-SIDES = {"left": -1e300, "right": 1e300}
+# A position far from the nucleation point on each side.
+FAR_POSITIONS = {"left": -1e300, "right": 1e300}
 
 
-def level(run: Run, side: str) -> float:
-    """Pre-stress far from the nucleation point on one of SIDES."""
-    return float(run.prestress.level(SIDES[side]))
+def far_level(run: Run, side: str) -> float:
+    """Return the pre-stress far from the nucleation point, on the side "left" or "right"."""
+    return float(run.prestress.level(FAR_POSITIONS[side]))
 
 
-def ratio(run: Run) -> float:
-    """beta/dx, rounded so that runs of one ratio have one number, whatever their dx."""
+def rounded_damping_ratio(run: Run) -> float:
+    """Return beta/dx with 12 digits.
+
+    Without rounding, runs with the same ratio but different dx would have slightly different
+    numbers, and cached results would not be found.
+    """
     return float(f"{run.damping_ratio:.12g}")
 
 
-def known(find: Callable[[], Result], missing: Result) -> Result:
-    """Result of the theory, or another outside of its domain or where its numbers overflow."""
+def value_or(compute: Callable[[], Result], missing: Result) -> Result:
+    """Return a result of the theory, or ``missing`` if it cannot be computed.
+
+    The theory raises ValueError outside its domain, and ArithmeticError if numbers overflow.
+    """
     try:
-        return find()
+        return compute()
     except (ValueError, ArithmeticError):
         return missing
 
 
-def or_nan(find: Callable[[], float]) -> float:
-    """Number of the theory, or NaN outside of its domain."""
-    return float(known(find, math.nan))
+def value_or_nan(compute: Callable[[], float]) -> float:
+    """Return a number of the theory, or NaN if it cannot be computed."""
+    return float(value_or(compute, math.nan))

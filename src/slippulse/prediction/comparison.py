@@ -1,4 +1,9 @@
-"""All numbers of every run of a sweep, with those that need theory: one row a run."""
+"""The measured table of a sweep, which has one row for each run.
+
+A row has the numbers that `measure_run` measures, and numbers that compare the run with theory: the
+state of the leading pulse, its deviation from the paper's shape, and the paper's T_trans and
+L_trans.
+"""
 
 import math
 from collections.abc import Mapping
@@ -9,11 +14,11 @@ import pandas as pd
 import xarray as xr
 
 from ..data.points import AnyRun, runs_in
-from ..measurement.front_paths import path
+from ..measurement.front_paths import front_path
 from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
 from ..model.prestress import prestress_from
-from ..model.recorded_law import law_of
+from ..model.recorded_law import read_recorded_law
 from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
@@ -21,22 +26,28 @@ from ..theory.closed_pulse import (
     pulse_at_speed,
 )
 
-# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed by
-# more than CHANGE of it, the damped layer and WIDTH_BLOCKS blocks (the front is that wide), or if
-# the slip behind it varies by more than CHANGE.
-CHANGE, WIDTH_BLOCKS = 0.05, 3.0
-# Largest thickness of the damped layer at the front over the width of the pulse. The front speed is
-# computed without leaf springs; its error grows as the square of this, and is one per cent here.
-THICKEST_LAYER = 0.125
+# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed, or
+# if the slip behind it varies. The allowed relative change is the same for both. The width may
+# differ by the thickness of the damped layer and by this number of blocks in addition, because the
+# front has this width.
+MAX_RELATIVE_CHANGE = 0.05
+FRONT_WIDTH_IN_BLOCKS = 3.0
+# Largest thickness of the damped layer at the front, divided by the pulse width. The front speed is
+# computed without leaf springs. The error of this approximation grows with the square of the ratio,
+# and is one per cent at this value.
+MAX_LAYER_TO_PULSE_WIDTH = 0.125
 
 
 def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
-    """Table of the `measured_row` of every run of a sweep."""
+    """Return the measured table of a sweep, with one `measured_row` for each run."""
     return pd.DataFrame([measured_row(run, settings) for run in runs_in(sweep)])
 
 
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
-    """Numbers of `measure_run`, the leading pulse's state, and the paper's T_trans and L_trans."""
+    """Return the measured numbers of a run by name, and those that compare it with theory.
+
+    settings : see `measure_run`
+    """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
         row["pulse_state"] = pulse_state(run, pulse)
@@ -46,7 +57,7 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
             left, right = run.attrs["left"], run.attrs["right"]
             paper = paper_transition_displacement(left, run.attrs["gamma"])
             if left != right:
-                # The time does not depend on the level, the length does.
+                # In the paper's formulas the length depends on the level, but the time does not.
                 paper = paper[0], math.nan
         else:
             paper = paper_transition_stress(prestress_from(run.attrs))
@@ -55,19 +66,23 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
-    """State of the leading pulse, by its flags in config/README.md; "none" without a known pulse.
+    """Return the state of the leading pulse, by the names that config/README.md explains.
 
-    A steady one has the width of beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 and uniform slip.
+    A steady pulse has uniform slip, and the width of the exact pulse, which solves
+    beta v U''' + (v^2 - 1) U'' + gamma U = tau_0. The state is "none" if there is no pulse to
+    judge, or if no exact pulse is known: under a stress boundary, or with another friction law than
+    "coulomb".
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
     if np.isfinite(pulse.front) and pulse.pulses != 1:
         return "several" if pulse.pulses else "stopped"
-    coulomb = law_of(run.attrs)["law"] == "coulomb"
-    if not np.isfinite([pulse.width, pulse.speed]).all() or not coulomb:
+    is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
+    if not np.isfinite([pulse.width, pulse.speed]).all() or not is_coulomb:
         return "none"
-    ahead = np.argmin(np.abs(np.asarray(run["x"]) - path(run)[1][-1]))
-    tau = float(np.asarray(run["prestress"])[ahead])
+    _, distances = front_path(run)
+    block_at_front = np.argmin(np.abs(np.asarray(run["x"]) - distances[-1]))
+    tau = float(np.asarray(run["prestress"])[block_at_front])
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:
@@ -75,29 +90,34 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
     layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
-    if layer > THICKEST_LAYER * steady.width:
+    if layer > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"
-    allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
-    # A young pulse, which has left no slip behind yet, is judged by its width alone.
-    changes = abs(pulse.width - steady.width) > allowed or slip_variation(run, pulse) > CHANGE
-    return "unsteady" if changes else "steady"
+    allowed = MAX_RELATIVE_CHANGE * steady.width + layer + FRONT_WIDTH_IN_BLOCKS * dx
+    has_other_width = abs(pulse.width - steady.width) > allowed
+    # The variation is NaN for a young pulse, which has left no slip behind yet. It is then not
+    # larger than the limit, and the width alone decides.
+    has_other_slip = slip_variation(run, pulse) > MAX_RELATIVE_CHANGE
+    return "unsteady" if has_other_width or has_other_slip else "steady"
 
 
 def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None = None) -> float:
-    """Largest deviation of slip velocity from the paper's cosine, (9) and (C10), over its peak.
+    """Return the largest deviation of slip velocity from the paper's pulse, relative to its peak.
 
-    level_ahead : the level in front of the pulse, if it is not that on the right of the profile
+    The paper's pulse is a cosine, equations (9) and (C10). NaN under a stress boundary, if there is
+    no pulse, or if the pulse has too few blocks.
+
+    level_ahead : pre-stress in front of the pulse; by default the level on the right of the profile
     """
     tau = level_ahead if level_ahead is not None else run.attrs["right"]
-    held = run.attrs["boundary"] == "displacement"
-    if not held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
+    is_held = run.attrs["boundary"] == "displacement"
+    if not is_held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
-    distance = fields["xi"] - (pulse.peak_distance - pulse.front)
-    # The lattice rounds the corners of the cosine.
-    inside = np.abs(distance) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
+    from_peak = fields["xi"] - (pulse.peak_distance - pulse.front)
+    # The two outermost blocks are left out, because the lattice rounds the corners of the cosine.
+    inside = np.abs(from_peak) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(inside) < 4:
         return np.nan
-    _, cosine, _ = paper.profile(distance[inside] + paper.peak_position)
+    _, cosine, _ = paper.profile(from_peak[inside] + paper.peak_position)
     return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)

@@ -1,4 +1,4 @@
-"""The public way from a run to its numbers."""
+"""Measure a run, or all runs of a sweep: the public function `measure`."""
 
 import math
 from collections.abc import Mapping
@@ -18,8 +18,9 @@ from ..model.scene import check_run_attributes
 from ..theory.prestress_pieces import nucleations
 from .comparison import measured_row
 
-# The settings of `measure` in the shipped configuration, which is not part of the package.
-SETTINGS: dict[str, Any] = {
+# The settings under ``measure`` in the shipped configuration. They are repeated here, because that
+# file is not part of the library.
+MEASURE_SETTINGS: dict[str, Any] = {
     "share": 0.95,
     "front_window": 0.3,
     "steady_tolerance": 0.02,
@@ -29,40 +30,43 @@ SETTINGS: dict[str, Any] = {
 
 
 # Numbers that are distances between the two fronts of one rupture.
-LENGTHS = ("transition_length", "slip_length_background", "slip_length_nucleation")
+RUPTURE_LENGTHS = ("transition_length", "slip_length_background", "slip_length_nucleation")
 
 
 def measure(run: xr.Dataset) -> Any:
-    """Measure a run, or every run of a sweep: T_trans, L_trans, speeds, the pulse and flags.
+    """Measure a run, or every run of a sweep: T_trans, L_trans, front speeds, pulse and flags.
 
-    The numbers are those of `results/measurements`, by the settings of the shipped configuration.
-    In addition they have T_trans and L_trans of displacement boundaries with different levels.
+    The numbers are the same as in `results/measurements`, with the settings of the shipped
+    configuration. In addition, T_trans and L_trans are measured under a displacement boundary with
+    different levels.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A run of a lattice or of the exact solution, which `simulate` returned or `point` took out
-        of a sweep, or which `Layer.to_si` converted; or a sweep, a selection of its runs or a grid
-        of them, with "fronts" recorded. With `Samples` at two positions or more the regime is
-        classified as well.
+        A run from `simulate` (of a lattice or of the exact solution), `point` or `Layer.to_si`. Or
+        a sweep that has "fronts" recorded, a selection of its runs, or a grid from `as_grid`. The
+        regime is classified if the run has `Samples` at two or more positions.
 
     Returns
     -------
     dict of str to float or str, or pandas.DataFrame
-        Of a sweep, a table with one row for each run. Numbers by the names in docs/columns.md, in
-        units of H and of H over the wave speed, or in SI units if the run is (then without
-        ``trailing_edge_*``, whose names have times), among them ``transition_time`` and
-        ``transition_length`` (T_trans and L_trans; if one is NaN, ``transition_reason`` says why),
-        ``front_speed_left`` and ``front_speed_right``,
-        ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the leading pulse on the
-        right at the end, ``pulse_state`` (steady, or several, stopped, ... : what was measured),
-        ``run_flags`` ("" or a comma-separated list), and the parameters of the scene. A number
-        whose data were not recorded is not in it.
+        The numbers of a run by name, or for a sweep a table with one row for each run.
+        docs/columns.md explains all names. Units are H and H divided by the wave speed, or SI units
+        if the run is in SI units (then without ``trailing_edge_*``, whose names contain times).
+        A number whose data were not recorded is left out. The main numbers are
+
+        - ``transition_time`` and ``transition_length``: T_trans and L_trans; if one is NaN,
+          ``transition_reason`` says why;
+        - ``front_speed_left`` and ``front_speed_right``;
+        - ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the leading pulse on the
+          right at the end, and its ``pulse_state`` (steady, unsteady, several, stopped, ...);
+        - ``run_flags``: empty text, or a comma-separated list;
+        - the parameters of the scene.
 
     Raises
     ------
     ValueError
-        If `run` is not such a Dataset, or has not all of its blocks.
+        If `run` is not such a Dataset, or if some of its blocks are missing.
 
     Notes
     -----
@@ -85,17 +89,18 @@ def measure(run: xr.Dataset) -> Any:
     if "point" in run.dims or "run_flags" in run.variables:
         run = over_points(run)
         check_that(is_sweep(run), "run", run, "a run, or a sweep with its parameters")
-        known = {"release_time", "stick_time"} <= set(run)
-        check_that(known, "run", run, "a sweep that was recorded with 'fronts'")
-        rows = [_measured(one.dataset()) for one in runs_in(run)]
-        numbers = run["point"].values if "point" in run.variables else None
-        return pd.DataFrame(rows, index=numbers).rename_axis("point")
-    return _measured(run)
+        has_fronts = {"release_time", "stick_time"} <= set(run)
+        check_that(has_fronts, "run", run, "a sweep that was recorded with 'fronts'")
+        rows = [_measure_run(recorded.dataset()) for recorded in runs_in(run)]
+        run_numbers = run["point"].values if "point" in run.variables else None
+        return pd.DataFrame(rows, index=run_numbers).rename_axis("point")
+    return _measure_run(run)
 
 
-def _measured(run: xr.Dataset) -> dict[str, Any]:
-    known = {"release_time", "stick_time"} <= set(run) and "point" not in run.dims
-    check_that(known, "run", run, "a Dataset that simulate returned")
+def _measure_run(run: xr.Dataset) -> dict[str, Any]:
+    """Return the measured numbers of one run, in SI units if the run is in SI units."""
+    is_run = {"release_time", "stick_time"} <= set(run) and "point" not in run.dims
+    check_that(is_run, "run", run, "a Dataset that simulate returned")
     layer = layer_of(run.attrs)
     if layer is not None:
         return layer.numbers_to_si(_numbers(layer.from_si(run), {"trailing_times": []}))
@@ -103,47 +108,56 @@ def _measured(run: xr.Dataset) -> dict[str, Any]:
 
 
 def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
-    """Return the measured numbers of a run in the units of the model."""
+    """Return the measured numbers of a run that is in the units of the model.
+
+    settings : settings that replace MEASURE_SETTINGS
+    """
     check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
-    check_that(_whole(run), "run", run, allowed)
-    unknown = dict.fromkeys(("transition_time", "transition_length"), math.nan)
-    row = unknown | measured_row(run, SETTINGS | settings)
+    check_that(_has_all_blocks(run), "run", run, allowed)
+    no_transition = dict.fromkeys(("transition_time", "transition_length"), math.nan)
+    row = no_transition | measured_row(run, MEASURE_SETTINGS | settings)
     profile = prestress_from(run.attrs)
-    held = run.attrs["boundary"] == "displacement"
-    if held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
+    is_held = run.attrs["boundary"] == "displacement"
+    if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
         row |= first_stick(run)
-    if several := len(nucleations(profile)) > 1:
-        row |= {name: math.nan for name in LENGTHS if name in row}
-    return row | {"transition_reason": _reason(row, several)}
+    has_several_nucleations = len(nucleations(profile)) > 1
+    if has_several_nucleations:
+        row |= {name: math.nan for name in RUPTURE_LENGTHS if name in row}
+    reason = _explain_missing_transition(row, has_several_nucleations)
+    return row | {"transition_reason": reason}
 
 
-def _reason(row: Mapping[str, Any], several: bool) -> str:
-    """Return why T_trans or L_trans is NaN; empty if both are numbers."""
+def _explain_missing_transition(row: Mapping[str, Any], has_several_nucleations: bool) -> str:
+    """Return the reason why T_trans or L_trans is NaN; empty text if both are numbers."""
     time, length = row["transition_time"], row["transition_length"]
     if math.isfinite(time) and math.isfinite(length):
         return ""
     if row["boundary"] == "stress":
         if "transition_state" not in row:
-            return "under a stress boundary the paper defines it for left < 0 and right = 0 alone"
+            return "under a stress boundary the paper defines it only for left < 0 and right = 0"
         if math.isnan(time):
-            return f"the left front did not cover {SETTINGS['share']:.0%} of |x_minus|"
+            return f"the left front did not cover {MEASURE_SETTINGS['share']:.0%} of |x_minus|"
     elif max(row["left"], row["right"]) <= 0.0:
-        return "both levels are 0 or negative, where no pulse runs on"
+        return "both levels are 0 or negative, and no pulse continues to run there"
     elif math.isnan(time):
         return "no block stuck before the end"
-    if several:
-        return "several nucleations: no two fronts bound one rupture"
+    if has_several_nucleations:
+        return "several nucleations: the two outermost fronts do not belong to one rupture"
     return "the fronts are not known at that time"
 
 
-def _whole(run: xr.Dataset) -> bool:
-    """True if the blocks stand at equal spacing, all released ones between two at rest."""
+def _has_all_blocks(run: xr.Dataset) -> bool:
+    """Return True if no block of a run is missing.
+
+    The blocks must have equal distances, the first and the last must never have been released, and
+    the number of released blocks must be that of the simulation.
+    """
     x, released = run["x"].values, np.isfinite(run["release_time"].values)
     if x.size < 2 or released[0] or released[-1]:
         return False
-    # A mirrored lattice counts releases on one side.
-    side = x >= 0.0 if run.attrs["half_lattice_used"] else True
+    # If half of the lattice was simulated, the numbers of releases are those of that half.
+    counted_side = x >= 0.0 if run.attrs["half_lattice_used"] else True
     first_releases = run.attrs["releases"] - run.attrs["re_releases"]
-    equal = np.allclose(np.diff(x), run.attrs["dx"], rtol=1e-6, atol=0.0)
-    return equal and np.count_nonzero(released & side) == first_releases
+    has_equal_spacing = np.allclose(np.diff(x), run.attrs["dx"], rtol=1e-6, atol=0.0)
+    return has_equal_spacing and np.count_nonzero(released & counted_side) == first_releases

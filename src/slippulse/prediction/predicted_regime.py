@@ -1,4 +1,4 @@
-"""Regime in which a rupture ends, however long that takes, from the exact solution."""
+"""Predicted regime: the one in which a rupture ends after a long time, by the exact solution."""
 
 import numpy as np
 import pandas as pd
@@ -6,49 +6,61 @@ import pandas as pd
 from ..measurement.regime import UNDECIDED, pulse_regime
 from ..model.run import Run
 from ..theory.front_speeds import front_speed
-from .common import level, ratio
+from .common import far_level, rounded_damping_ratio
 
-# Laws of friction that these numbers hold for.
+# Friction laws for which these numbers hold.
 LAWS = ("coulomb",)
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
-    """Column exact_regime."""
+    """Return the final regime of each run, in the column exact_regime."""
     return pd.DataFrame({"exact_regime": [_regime(run, settings["still"]) for run in runs]})
 
 
 def _regime(run: Run, still: float) -> str:
+    """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table."""
     profile = run.prestress
     if profile.bumps or profile.points:
         return UNDECIDED
     if profile.steps:
-        # A pulse that formed where the pre-stress is 0 meets another level, and grows by half the
-        # integral of tau.
-        forms = run.boundary == "stress" and profile.left < 0.0 == profile.right
-        ahead = all(position > 0.0 for position, _ in profile.steps)
-        return pulse_regime("one-way", level(run, "right"), 0.0) if forms and ahead else UNDECIDED
-    physics = run.gamma, ratio(run), run.release
-    return final_regime(profile.left, profile.right, *physics, still)
+        # A pulse that has formed in pre-stress 0 reaches the steps, which lie ahead of it. Its
+        # velocity then grows by half the integral of the pre-stress that it crosses.
+        pulse_forms = run.boundary == "stress" and profile.left < 0.0 == profile.right
+        steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
+        if not (pulse_forms and steps_are_ahead):
+            return UNDECIDED
+        return pulse_regime("one-way", change=far_level(run, "right"), tolerance=0.0)
+    return final_regime(
+        profile.left,
+        profile.right,
+        gamma=run.gamma,
+        damping_ratio=rounded_damping_ratio(run),
+        release=run.release,
+        still=still,
+    )
 
 
 def final_regime(
     left: float, right: float, gamma: float, damping_ratio: float, release: str, still: float
 ) -> str:
-    """Regime in the continuum limit between two levels on both sides of a nucleation point.
+    """Return the final regime in the continuum limit, for one pre-stress level on each side.
 
     With leaf springs, a front into a negative level stops. A front into a positive level stays
-    supersonic, the nucleation point sticks (`theory.trailing_edge`), and a pulse forgets its past
-    in a finite distance. Into a level 0 a pulse narrows like 1/t and decays. UNDECIDED: a level 0
-    without a negative one on the other side.
+    supersonic; the nucleation point sticks (`theory.trailing_edge`), and the pulse becomes steady
+    within a finite distance. A pulse into a level 0 narrows like 1/t and decays. If one level is 0
+    and the other is not negative, the regime is UNDECIDED.
 
-    Without leaf springs, du/dt at a point is half the integral of tau between the two points where
-    its characteristics enter the rupture. With both levels >= 0 it never falls: a crack. With both
-    < 0 the integral over all blocks that slipped vanishes at a finite size: arrest. Between -n and
-    p >= 0 the front into -n moves so that the integral of tau over the rupture vanishes
-    (`theory.arrest`): the point x = (p/n) e behind the other front, at e. It runs for ever, at a
-    speed that tends to 1/(1 + (n/p)(1 + 1/v)), slower than the waves. For long times du/dt at the
-    nucleation point, over its largest value, tends to r/(1 + 1/v + 2 r), where r = p/n and v is
-    the front speed into p.
+    Without leaf springs, du/dt at a point is half the integral of tau between the two positions at
+    which the characteristics through this point enter the rupture. If both levels are >= 0, du/dt
+    never falls, and the rupture is a crack. If both are < 0, the rupture is arrested when the
+    integral of tau over it vanishes, which happens at a finite size.
+
+    There remains a level -n < 0 on one side and p >= 0 on the other. The front into -n moves such
+    that the integral of tau over the rupture vanishes (`theory.arrest`): when the front into p is
+    at a distance e, it is at the distance (p/n) e. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where
+    v is the front speed into p: it never stops, but is slower than the waves. After a long time,
+    du/dt at the nucleation point divided by its largest value in the rupture tends to
+    r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less than ``still``.
     """
     low, high = sorted((left, right))
     if high < 0.0:
@@ -63,10 +75,16 @@ def final_regime(
         return "crack-like, two-way"
     if high == 0.0:
         return "pulse, one-way, steady"
-    pulse = high / -low < float(largest_pulse_ratio(high, damping_ratio, release, still))
-    return "pulse, one-way, growing" if pulse else "crack-like, one front slow"
+    largest_ratio = float(
+        largest_pulse_ratio(level=high, damping_ratio=damping_ratio, release=release, still=still)
+    )
+    becomes_pulse = high / -low < largest_ratio
+    return "pulse, one-way, growing" if becomes_pulse else "crack-like, one front slow"
 
 
 def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:
-    """Ratio p/n of `final_regime` below which the nucleation point comes to rest; level is p."""
+    """Return the ratio p/n of levels below which a rupture without leaf springs becomes a pulse.
+
+    level : the positive level p; the ratio and the other arguments are those of `final_regime`
+    """
     return still * (1.0 + 1.0 / front_speed(level, damping_ratio, release)) / (1.0 - 2.0 * still)

@@ -1,4 +1,8 @@
-"""T_trans and L_trans of each run: at the first stick, or at the arrest of the left front."""
+"""Predicted T_trans and L_trans of each run, by the exact theory.
+
+Under a displacement boundary the transition is the first stick. Under a stress boundary the left
+front has then covered a given fraction of its way to the balance position.
+"""
 
 import math
 from functools import cache, partial
@@ -11,40 +15,50 @@ from ..model.roots import root_between
 from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from .common import known, level, or_nan, ratio
+from .common import far_level, rounded_damping_ratio, value_or, value_or_nan
 
-# Laws of friction that these numbers hold for.
+# Friction laws for which these numbers hold.
 LAWS = ("coulomb",)
-UNKNOWN = dict.fromkeys(("exact_transition_time", "exact_transition_length"), math.nan)
+NO_TRANSITION = dict.fromkeys(("exact_transition_time", "exact_transition_length"), math.nan)
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
-    """Columns exact_NUMBER of a transition and its first stick, or its balance and far pulse."""
+    """Return the numbers of the transition, one row for each run; NaN if theory has none.
+
+    The columns are exact_transition_time and exact_transition_length. Under a displacement boundary
+    there is also exact_first_stick_time. Under a stress boundary there are also
+    exact_balance_distance and, for the pulse far from the nucleation, exact_largest_velocity and
+    exact_half_width.
+    """
     return pd.DataFrame([_row(run, settings["share"]) for run in runs])
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    row = {**UNKNOWN}
-    profile = run.prestress
-    # Except for the balance, theory needs one Gaussian.
-    parts = profile.steps or profile.bumps or profile.points
-    width = profile.width if profile.peak == 1.0 and not parts else None
+    """Return one row of `predictions`."""
+    row = {**NO_TRANSITION}
+    profile, ratio = run.prestress, rounded_damping_ratio(run)
+    # The theory needs a profile of a single Gaussian. The balance position needs none.
+    has_parts = profile.steps or profile.bumps or profile.points
+    width = profile.width if profile.peak == 1.0 and not has_parts else None
     if run.boundary == "displacement":
         if width and profile.left == profile.right > 0.0:
-            physics = run.gamma, ratio(run), run.release
-            row |= known(lambda: _first_stick(profile, *physics), UNKNOWN)
+            arguments = profile, run.gamma, ratio, run.release
+            row |= value_or(lambda: _first_stick(*arguments), NO_TRANSITION)
         return row
-    if level(run, "left") < 0.0 == level(run, "right"):
-        row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
+    if far_level(run, "left") < 0.0 == far_level(run, "right"):
+        balance_position = value_or_nan(partial(prestress_balance_position, profile))
+        row["exact_balance_distance"] = -balance_position
     if width and profile.left < 0.0 == profile.right:
-        unit = known(lambda: _arrest(profile.left, ratio(run), run.release, fraction), UNKNOWN)
-        # All lengths and times are proportional to the width.
-        row |= {name: value * width for name, value in unit.items()}
+        find_arrest = partial(_arrest, profile.left, ratio, run.release, fraction)
+        for_unit_width = value_or(find_arrest, NO_TRANSITION)
+        # All lengths and times, and the velocity, are proportional to the width.
+        row |= {name: value * width for name, value in for_unit_width.items()}
     return row
 
 
 @cache
 def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -> dict[str, float]:
+    """Return the transition under a displacement boundary, which is the first stick."""
     exact = exact_transition_displacement(profile, gamma, ratio, release)
     times = dict.fromkeys(("exact_transition_time", "exact_first_stick_time"), exact.time)
     return times | {"exact_transition_length": exact.length}
@@ -52,20 +66,25 @@ def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -
 
 @cache
 def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[str, float]:
-    """Numbers of the left front and of the far pulse behind a Gaussian of width 1."""
+    """Return the transition under a stress boundary, and numbers of the pulse, for width 1."""
     crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
-    # Very near x_minus the front is held by forces that the theory leaves out.
-    time, length = known(lambda: crack.transition(fraction), (math.nan, math.nan))
+    # Very close to the balance position, forces that the theory neglects hold the front, and the
+    # theory refuses to give a time.
+    time, length = value_or(lambda: crack.transition(fraction), (math.nan, math.nan))
     return {
         "exact_largest_velocity": crack.peak_velocity,
-        "exact_half_width": or_nan(lambda: _half_width(crack)),
+        "exact_half_width": value_or_nan(lambda: _half_width(crack)),
         "exact_transition_time": time,
         "exact_transition_length": length,
     }
 
 
 def _half_width(crack: ArrestingCrack) -> float:
-    """Width of the far pulse at half of its peak, which is once on each side of the zero of tau."""
+    """Return the full width, at half of its peak velocity, of the pulse far from the nucleation.
+
+    In the pulse, slip velocity at the characteristic from x is half the integral of tau from x to
+    the end. It is half of its peak once on each side of the zero of tau.
+    """
 
     def above_half(x: float) -> float:
         return integral(crack.prestress, x, crack.end) - crack.peak_velocity

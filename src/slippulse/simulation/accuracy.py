@@ -17,7 +17,7 @@ from ..model.checks import check_choice, check_kind, check_number, check_that
 from ..model.prestress import Prestress
 from ..model.release import RELEASES
 from ..model.scene import Scene
-from ..model.stability import chosen_step
+from ..model.stability import choose_step
 from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
 
@@ -138,7 +138,7 @@ def settings_for(
     else:
         spacings = _spacings_without_springs(demand, prestress)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    step = min(STEP, chosen_step("localised", ORDER, damping_ratio, gamma * dx**2))
+    step = min(STEP, choose_step("localised", ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
     settings["order"] = ORDER
     # The scene refuses a wrong boundary, and a gamma that does not go with it.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.sweep_views import AXES
+from ..data.sweep_views import AXES_ATTRIBUTE
 from ..model.checks import check_that
 from ..model.prestress import Prestress
 from ..model.samples import Samples
@@ -74,7 +74,7 @@ def sweep(
     axes = [name for name, values in lists.items() if len(values) > 1]
     # A listed pre-stress is no coordinate, but its levels and width are.
     known = bool(axes) and all(name in data.coords for name in axes)
-    return data.assign_attrs({AXES: " ".join(axes)}) if known else data
+    return data.assign_attrs({AXES_ATTRIBUTE: " ".join(axes)}) if known else data
 
 
 _NAMES = (*SCENE, *PROFILE, *OTHER_PARTS)

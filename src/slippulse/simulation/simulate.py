@@ -8,8 +8,8 @@ import xarray as xr
 from ..data.sweep_views import with_parameters
 from ..data.variables import described
 from ..model.checks import check_kind, check_number, check_that
-from ..model.cost import bound_of
-from ..model.samples import RECORDS, Samples
+from ..model.cost import bound_cost
+from ..model.samples import RECORD_GROUPS, Samples
 from ..model.scene import Scene
 from ..solver.compile_notice import announced_compilation
 from ..solver.fixed_step import solve_by_scheme
@@ -67,7 +67,7 @@ def simulate(
     check_that(known, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
     _check_within(samples, scene.duration)
-    exceeded = bound_of(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
+    exceeded = bound_cost(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
     # The exact solution refuses what it cannot solve, by the key that is too large.
     if exceeded and scene.scheme != "continuum":
         raise ValueError(exceeded)
@@ -181,8 +181,8 @@ def _check_within(samples: Samples | None, duration: float) -> None:
 
 def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:
     listed = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
-    known = listed and all(isinstance(word, str) and word in RECORDS for word in record)
-    check_that(known, "record", record, f"a list of {', '.join(RECORDS)}")
+    known = listed and all(isinstance(word, str) and word in RECORD_GROUPS for word in record)
+    check_that(known, "record", record, f"a list of {', '.join(RECORD_GROUPS)}")
     if "samples" not in record:
         return
     given = [item for item in samples if item is not None]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.friction_laws.law import Bend
+from ..model.friction_laws.law import LawKink
 
 # At order 8, the highest, an event reaches this far on either side: one block for each derivative
 # from the third on.
@@ -66,7 +66,7 @@ class Medium(NamedTuple):
     law: int  # number of another law of friction, 0: none
     first: float  # its parameters
     second: float
-    bend: Bend | None  # friction that is piecewise linear, in the Taylor step
+    bend: LawKink | None  # friction that is piecewise linear, in the Taylor step
     mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
     total: bool  # the stress that is compared with 1 includes the damping force
 

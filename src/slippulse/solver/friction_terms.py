@@ -6,18 +6,18 @@ Kernels are compiled anew for it: where ``bend`` is None, its functions are empt
 """
 
 from ..model.friction import LAWS
-from ..model.friction_laws.law import Bend, Friction
+from ..model.friction_laws.law import Friction, LawKink
 from .jit import inner
 from .stencils import blocks
 
 
 def constants_of(
     friction: Friction, localised: bool
-) -> tuple[float, int, float, float, Bend | None]:
+) -> tuple[float, int, float, float, LawKink | None]:
     """The constants alpha, law, first, second and bend of `Medium`."""
     if localised or "continuum" in friction.schemes:
-        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.bend
-    return 0.0, LAWS.index(type(friction)), *friction.constants, None
+        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.law_kink
+    return 0.0, LAWS.index(type(friction)), *friction.kernel_parameters, None
 
 
 @inner()

@@ -89,7 +89,7 @@ class Lattice:
             values[..., inside] = kept
         traits = self.scene.friction.traits
         away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
-        self.motion.resists[:] = away >= traits.zone
+        self.motion.resists[:] = away >= traits.nucleation_half_length
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
@@ -98,7 +98,7 @@ class Lattice:
         # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
         weakening = max(-traits.linear_rate, 0.0) * self.scene.duration
         growth = float(np.exp(min(weakening, 600.0)))
-        self.largest_force = growth * (float(np.abs(self.motion.tau).max()) + traits.drive)
+        self.largest_force = growth * (float(np.abs(self.motion.tau).max()) + traits.max_drive)
         release, stick = np.full((2, size), np.nan)
         release[inside], stick[inside] = self.history.release_time, self.history.stick_time
         self.history = arrays.History(release, stick, self.tally)

@@ -5,13 +5,13 @@ They know nothing of the lattice code, so that an agreement of the two means som
 
 import lazy_loader
 
-from ..model.removed import new_way
+from ..model.removed import describe_removal
 
 _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
     """Load a public name when it is first used; a removed one answers with the new way."""
-    if answer := new_way("theory", name):
+    if answer := describe_removal("theory", name):
         raise AttributeError(answer)
     return _load(name)

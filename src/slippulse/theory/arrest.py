@@ -7,7 +7,7 @@ import numpy as np
 from ..model.balance import integral, prestress_balance_position
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from ..model.removed import AnswersRemoved
+from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
@@ -15,7 +15,7 @@ from .two_fronts import ExactTransition, fast_fronts
 SAMPLES = 400
 
 
-class ArrestingCrack(AnswersRemoved):
+class ArrestingCrack(ExplainsRemovedNames):
     """The crack whose left front slows for ever, without leaf springs.
 
     du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,

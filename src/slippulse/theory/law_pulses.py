@@ -199,8 +199,8 @@ def rate_pulse(
     from scipy.integrate import solve_ivp
 
     check_domains(tau0=tau0, gamma=gamma)
-    constants = friction.constants
-    if friction.friction(0.0, 0.0, *constants) != 0.0:
+    parameters = friction.kernel_parameters
+    if friction.friction(0.0, 0.0, *parameters) != 0.0:
         allowed = "laws that depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
@@ -214,7 +214,7 @@ def rate_pulse(
             place = f"{gamma!r}, where the pulse is not found in {MOST_EVALUATIONS} evaluations"
             raise ValueError(f"gamma: {place}; allowed: larger numbers, or weaker friction")
         slip, strain = state
-        resistance = friction.friction(slip, v * strain, *constants)
+        resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]
 
     def strain(distance: float, state: np.ndarray) -> float:

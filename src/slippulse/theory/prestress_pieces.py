@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.prestress import ROUNDING_OF_TABLE, Interval, Prestress
+from ..model.prestress import TABLE_THRESHOLD_TOLERANCE, Interval, Prestress
 from ..model.roots import root_between
 
 # A Gaussian is its level to rounding beyond this many widths.
@@ -88,7 +88,7 @@ def _changes(
 
     differences = analytic(prestress, background, x) - value
     # The far tail of a bump leaves a difference of rounding where there is none.
-    rounding = ROUNDING_OF_TABLE if prestress.points else ROUNDING
+    rounding = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING
     differences[np.abs(differences) <= rounding] = 0.0
     above = differences >= 0.0
     changes = []

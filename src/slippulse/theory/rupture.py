@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
-from ..model.removed import AnswersRemoved
+from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .curve import SAME
 from .domains import broadcast_numbers, check_domains
@@ -48,7 +48,7 @@ class FrontEnd(Limit):
     """The last point of a front: where it stops, or at the end of the time asked for."""
 
 
-class Rupture(AnswersRemoved):
+class Rupture(ExplainsRemovedNames):
     """The exact rupture of a pre-stress in the continuum limit.
 
     Parameters

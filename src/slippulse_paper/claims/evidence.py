@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from slippulse.measurement.front_paths import straight_line
+from slippulse.measurement.front_paths import fit_line
 from slippulse.measurement.regime import UNDECIDED
 from slippulse.measurement.uncertainty import grid_study
 
@@ -60,7 +60,7 @@ def studied(tables: Lattices, values: Sequence[float]) -> Uncertain:
 def _slope(logs: np.ndarray) -> float:
     """Slope of log measured over log predicted, [predicted and measured, run]; NaN below 3 runs."""
     x, y = logs[:, np.isfinite(logs).all(axis=0)]
-    return straight_line(x, y)[0] if x.size > 2 else NAN
+    return fit_line(x, y).slope if x.size > 2 else NAN
 
 
 def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-from slippulse.measurement.inference import inference
+from slippulse.measurement.inference import infer_parameters
 
 from ..text.prose import fill
 from . import layer_claims as layer
@@ -62,7 +62,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
 
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """The parameters of the published figure: best fit, confidence region, the other rule."""
-    fits = inference(evidence.tables["published_figure"])
+    fits = infer_parameters(evidence.tables["published_figure"])
     best = fits["best"]
     low, high = best["regions"][0.95]
     out = {"release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"])}

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from slippulse.measurement.inference import inference
+from slippulse.measurement.inference import infer_parameters
 
 from .evidence import Evidence
 from .kinds import Reading
@@ -13,7 +13,7 @@ ARROWS = ("arrow_time", "arrow_length")
 
 def left(evidence: Evidence, id: str) -> Reading:
     """The left panel at the best fit of all its readings but the arrows."""
-    best = inference(evidence.tables["published_figure"])["best"]
+    best = infer_parameters(evidence.tables["published_figure"])["best"]
     further = read_off(evidence, "space_time_displacement")
     fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
     return Reading(tolerance=evidence.tolerance(id), **fit, further=further, told=best)
@@ -22,7 +22,10 @@ def left(evidence: Evidence, id: str) -> Reading:
 def arrows(evidence: Evidence, id: str) -> Reading:
     """The two arrows of the left panel: how much they raise chi-square at the best fit of all."""
     study = evidence.tables["published_figure"]
-    fits = {"with": inference(study, part="arrows")["best"], "without": inference(study)["best"]}
+    fits = {
+        "with": infer_parameters(study, part="arrows")["best"],
+        "without": infer_parameters(study)["best"],
+    }
     further = {}
     for words, fit in fits.items():
         longer = []

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from slippulse.measurement.front_paths import straight_line
+from slippulse.measurement.front_paths import fit_line
 
 from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
@@ -291,7 +291,7 @@ def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
     """Whether T and L fall with gamma, at its three smallest values as powers; the exponents."""
     quantities = ["transition_time", "transition_length"]
     smallest = np.log(rows[["gamma", *quantities]].head(3))
-    lines = [straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
+    lines = [fit_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
     # Powers are below zero by three standard errors.
     falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
     diverges = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))

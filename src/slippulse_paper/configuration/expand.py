@@ -11,7 +11,7 @@ from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
 from slippulse.model.samples import Samples
 from slippulse.model.scene import Scene
-from slippulse.model.stability import MARGIN, chosen_step
+from slippulse.model.stability import STABILITY_MARGIN, choose_step
 
 from .runs import runs
 
@@ -33,9 +33,9 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
     # The simulation's own step, or the preset's, cut where it is not stable or accurate.
     friction, largest = friction_from(run.friction), accuracy["max_step"]
     traits = friction.traits
-    ratios = run.damping_ratio, run.gamma * run.dx**2, traits.steepest * run.dx
-    step = min(largest, chosen_step(scheme, accuracy["order"], *ratios))
-    step = simulation.get("max_step", min(step, MARGIN * traits.longest_step / run.dx))
+    ratios = run.damping_ratio, run.gamma * run.dx**2, traits.max_rate_slope * run.dx
+    step = min(largest, choose_step(scheme, accuracy["order"], *ratios))
+    step = simulation.get("max_step", min(step, STABILITY_MARGIN * traits.longest_step / run.dx))
     if "promise" in accuracy:
         step = min(step, largest)
     if "fixed" in simulation["spacing"]:

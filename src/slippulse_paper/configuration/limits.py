@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from slippulse.model.checks import check_that
-from slippulse.model.cost import Bound, bound_of
+from slippulse.model.cost import Bound, bound_cost
 from slippulse.model.scene import Scene
 from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed
@@ -105,7 +105,7 @@ def _pulse_blocks(scene: Scene) -> float:
 def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     """Upper bound on one of the jobs that share a simulation: its runs times its largest run."""
     scenes, samples = expand(promised(corners(simulation)))
-    bounds = [*map(bound_of, scenes, samples)]
+    bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
     updates = max(bound.block_updates for bound in bounds)
     return Bound(runs, runs * updates, runs * max(bound.bytes for bound in bounds))

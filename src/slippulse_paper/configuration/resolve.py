@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from slippulse.model.cost import reach_of
+from slippulse.model.cost import bound_front_reach
 from slippulse.model.friction import COULOMB, LinearRate
 from slippulse.simulation.accuracy import ORDER, STEP
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
@@ -106,7 +106,7 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
         highest = max([0.0, *(tau for _, tau in table.points)])
         known = np.linspace(0.0, highest, LEVELS)
         speeds = speeds_at(known)
-        reach = reach_of(
+        reach = bound_front_reach(
             table, table.nucleation_reach, scene.duration, lambda tau: np.interp(tau, known, speeds)
         )
     width = scene.width or 0.0

@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from pydantic_core import PydanticCustomError
 
 from slippulse.model.checks import short_repr
-from slippulse.model.friction import NAMES, friction_from
+from slippulse.model.friction import LAW_NAMES, friction_from
 from slippulse.model.layer_units import BOUNDARY_OF_TOP, Layer
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse.model.prestress import Prestress
@@ -83,7 +83,7 @@ TOP_OF_BOUNDARY: Mapping[str, str] = {value: name for name, value in BOUNDARY_OF
 Switch = Annotated[bool, Field(strict=False)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
-LAW = f"a mapping with law ({', '.join(NAMES)}) and its parameters"
+LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:

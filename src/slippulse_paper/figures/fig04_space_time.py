@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.data.point import point
-from slippulse.measurement.front_paths import position_at
+from slippulse.measurement.front_paths import front_position
 from slippulse.plotting import space_time, style
 from slippulse.plotting.style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look
 
@@ -38,7 +38,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
         rows, numbers = [space_time.run_rows(run)], tables[name].iloc[0]
         time, length = numbers["transition_time"], numbers["transition_length"]
-        transitions = {"measured": (time, position_at(run, time, "right") - length, length)}
+        transitions = {"measured": (time, front_position(run, time, "right") - length, length)}
         length = numbers["paper_transition_length"]
         transitions["paper"] = (numbers["paper_transition_time"], -0.5 * length, length)
         if "last_release_time" in numbers:

@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.data.point import point
-from slippulse.measurement.front_paths import path
+from slippulse.measurement.front_paths import front_path
 from slippulse.plotting import style
 from slippulse.plotting.style import GREY, MARKERS, OPEN, ORANGE, PAGE, Look, entry
 
@@ -38,7 +38,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     )
     parts = [numbers, tables["arrest_path"].assign(role="exact_path")]
     for ratio, index in runs.groupby("damping_ratio")["dx"].idxmin().items():
-        time, distance = path(point(data["arrest"], int(index)), "left")
+        time, distance = front_path(point(data["arrest"], int(index)), "left")
         kept = np.unique(np.linspace(0, time.size - 1, PATH_POINTS).astype(int))
         lines = {"time": time[kept] / scale[index], "to_go": 1.0 - distance[kept] / scale[index]}
         parts.append(pd.DataFrame(lines).assign(role="path", damping_ratio=ratio))

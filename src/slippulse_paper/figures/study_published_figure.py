@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from slippulse.measurement.inference import curve, likely
+from slippulse.measurement.inference import chi_square_rise, interpolate_fits
 from slippulse.plotting.style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_panels
 
 NEEDS = {
@@ -32,7 +32,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     study = tables["published_figure"]
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
     for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):
-        line = curve(profile)
+        line = interpolate_fits(profile)
         best = line.loc[line["chi2"].idxmin()]
         readings = profile.loc[profile["weight"] > 0.0, "reading"].drop_duplicates()
         rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
@@ -77,12 +77,12 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
     """Draw the smallest chi-square over the damping ratio, as far as a fit is accepted."""
     best = table[table["part"] == "best"]
     dof = best["reading"].nunique() - 3
-    accepted = likely(LEVELS[1], dof)
+    accepted = chi_square_rise(LEVELS[1], dof)
     for release, (colour, marker, label) in LOOKS.items():
         line, best_fit = fits["curve", release], fits["best", release].iloc[0]
         shown = line[line["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
-        inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
+        inside = line[line["chi2"] <= line["chi2"].min() + chi_square_rise(LEVELS[1])]
         look: Look = {"color": colour, "alpha": 0.18, "linewidth": 0.0}
         axes.fill_between(inside["damping_ratio"], inside["chi2"], **look)
         label = rf"{label}: $\chi^2 = {best_fit['chi2']:.1f}$"
@@ -104,7 +104,7 @@ def _draw_region(axes: Axes, fits: Mapping, ours: pd.Series, name: str, label: s
     for release, (colour, marker, _) in LOOKS.items():
         line, best = fits["curve", release], fits["best", release].iloc[0]
         for level, alpha in zip(LEVELS[::-1], (0.22, 0.45), strict=True):
-            room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
+            room = chi_square_rise(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
             look: Look = {"color": colour, "alpha": alpha, "gid": f"{release} {level:g}"}

@@ -11,7 +11,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from slippulse.model.prestress import Prestress, prestress_from
-from slippulse.model.recorded_law import law_of
+from slippulse.model.recorded_law import read_recorded_law
 
 from .html import page
 
@@ -56,7 +56,7 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
         if json.loads(run["steps_and_bumps"]).get("points"):
             continue
         plain = Prestress(run["left"], run["left"], run["width"])
-        if prestress_from(run) != plain or law_of(run)["law"] != "coulomb":
+        if prestress_from(run) != plain or read_recorded_law(run)["law"] != "coulomb":
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan

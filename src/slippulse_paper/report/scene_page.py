@@ -11,7 +11,7 @@ import pandas as pd
 from slippulse.data.readable_units import readable_unit
 from slippulse.model.layer_units import Layer
 from slippulse.model.prestress import prestress_from
-from slippulse.model.recorded_law import law_of
+from slippulse.model.recorded_law import read_recorded_law
 from slippulse.model.si_quantities import QUANTITIES
 
 from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
@@ -66,7 +66,7 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
         shown["width"] = "no Gaussian at x = 0"
         shown.pop("peak", None)
     if "friction" in shown:
-        law = law_of(attributes)
+        law = read_recorded_law(attributes)
         words = [law.pop("law").replace("_", " ")]
         words += [f"{key} = {setting(value)}" for key, value in law.items()]
         shown["friction"] = ", ".join(words)

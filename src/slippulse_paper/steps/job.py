@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
-from slippulse.data.files import CONFIGURATION
+from slippulse.data.files import CONFIGURATION_VARIABLE
 
 from ..records.job_records import (
     ChangedFile,
@@ -57,7 +57,9 @@ def run_job(job: Job) -> None:
         read, records = check_inputs(_paths(job.inputs))
         # Data, figures and pages carry the digest of all settings that they depend on.
         earlier = sorted({record.configuration for record in records.values()})
-        os.environ[CONFIGURATION] = configuration = digest_of([dict(job.settings), *earlier])
+        os.environ[CONFIGURATION_VARIABLE] = configuration = digest_of(
+            [dict(job.settings), *earlier]
+        )
         step = import_module(f"slippulse_paper.steps.{job.step}")
         show = progress_of(job.name, progress)
         # A figure of a sweep is drawn by a module of another name: settings go first.

@@ -3,7 +3,7 @@
 from slippulse.data.saving import save_dataset
 from slippulse.data.tables import load_table
 from slippulse.measurement.table import LABELS, PARAMETERS
-from slippulse.measurement.uncertainty import quantities
+from slippulse.measurement.uncertainty import studied_columns
 
 from .joined_files import join_datasets, join_grid_studies, join_tables
 
@@ -17,6 +17,6 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     elif kind == "uncertainties":
         finest = files["finest"][0]
         keys = [*PARAMETERS, *(name for name in LABELS if name in load_table(finest))]
-        join_grid_studies(chunks, finest, keys, quantities, joined)
+        join_grid_studies(chunks, finest, keys, studied_columns, joined)
     else:
         join_tables(chunks, joined)

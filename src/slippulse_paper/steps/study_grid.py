@@ -7,7 +7,7 @@ import pandas as pd
 
 from slippulse.data.sweeps import labelled
 from slippulse.data.tables import load_table, save_table
-from slippulse.measurement.promise import judged, summary
+from slippulse.measurement.promise import judge_promises, summarise_promises
 from slippulse.measurement.table import LABELS, PARAMETERS
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.prediction.comparison import measured_table
@@ -38,8 +38,10 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     uncertainties = grid_tables((measured, *tables.values()), tuple(tables), keys)
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
-        uncertainties = judged(uncertainties, measured, promise, settings["measure"]["share"])
-        sys.stderr.write(f"  {name}: {summary(uncertainties, promise)}\n")
+        uncertainties = judge_promises(
+            uncertainties, measured, promise, settings["measure"]["share"]
+        )
+        sys.stderr.write(f"  {name}: {summarise_promises(uncertainties, promise)}\n")
     save_table(uncertainties, outputs["uncertainties"])
     coarser = [table.assign(factor=factor) for factor, table in tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])

@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from slippulse.measurement.front_paths import arrival, fit_front, path
+from slippulse.measurement.front_paths import arrival, fit_front, front_path
 from slippulse.measurement.pulses import leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.model.stability import MARGIN, largest_step
+from slippulse.model.stability import STABILITY_MARGIN, largest_step
 from slippulse.simulation.simulate import simulate
 from slippulse.theory.arrest import ArrestingCrack
 from slippulse.theory.exact_transition import exact_transition_displacement
@@ -69,7 +69,10 @@ class Setting(NamedTuple):
         """Simulate a scene, at a step that is cut where it would not be stable."""
         # The textbook scheme and the exact solution have no order to choose.
         order = max(self.order, 3)
-        step = min(self.step, MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2))
+        step = min(
+            self.step,
+            STABILITY_MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2),
+        )
         boundary = "displacement" if gamma > 0.0 else "stress"
         scene = partial(Scene, boundary, profile, duration, self.dx, gamma, ratio * self.dx)
         return simulate(scene(scheme=self.scheme, max_step=step, order=order))
@@ -132,7 +135,7 @@ def errors(setting: Setting, window: float) -> dict[str, float]:
     coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
     run = coarser.run(UNEVEN, CRACK_DURATION * covered_at, 0.0, ratio)
     late = abs(arrival(run, FRACTION * distance, "left")[0] / covered_at - 1.0)
-    reached = abs(path(run, "left")[1][-1] / distance - 1.0)
+    reached = abs(front_path(run, "left")[1][-1] / distance - 1.0)
     runs.append(costs(run) | {"share_time": late, "arrest_position": reached})
     numbers: dict[str, float] = {}
     for name in QUANTITIES:

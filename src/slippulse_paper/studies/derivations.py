@@ -10,7 +10,7 @@ import pandas as pd
 
 from slippulse.model.prestress import Prestress
 from slippulse.model.release import RELEASES
-from slippulse.prediction.common import or_nan
+from slippulse.prediction.common import value_or_nan
 from slippulse.simulation.exact_rupture import exact_rupture
 from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 from slippulse.theory.front_motion import steady_front
@@ -77,7 +77,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "fronts_block_by_block": lambda: len(fronts),
         "fronts_admissible": lambda: sum(front.admissible for front in fronts),
     }
-    rows = [(name, math.nan, or_nan(find)) for name, find in numbers.items()]
+    rows = [(name, math.nan, value_or_nan(find)) for name, find in numbers.items()]
     for name in ("release_time", "stick_time", "final_slip"):
         try:
             values = np.round(getattr(rupture(), name)(POSITIONS), DECIMALS)

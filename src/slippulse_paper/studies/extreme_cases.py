@@ -8,8 +8,8 @@ import numpy as np
 
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.model.stability import chosen_step
-from slippulse.prediction.common import or_nan
+from slippulse.model.stability import choose_step
+from slippulse.prediction.common import value_or_nan
 from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.arrest import ArrestingCrack
 from slippulse.theory.exact_transition import exact_transition_displacement
@@ -79,7 +79,7 @@ class Case:
         if self.quantity not in ("front speed", "final slip"):
             return 0.0
         if self.family == "gamma":
-            return or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
+            return value_or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
         law = {"damping_ratio": self.ratio, "release": self.other.get("release", "total")}
         pulse = steady_pulse(self.level, self.gamma, self.ratio * self.dx, **law)
         return pulse.speed if self.quantity == "front speed" else pulse.slip
@@ -93,7 +93,7 @@ class Case:
         if held and self.quantity == "T_trans":
             # The lattice is late by some of its blocks.
             duration += 4.0 * self.dx
-        step = min(0.5, chosen_step("localised", 4, self.ratio, self.gamma * self.dx**2))
+        step = min(0.5, choose_step("localised", 4, self.ratio, self.gamma * self.dx**2))
         boundary = "displacement" if held else "stress"
         other = {"max_step": step} | self.other
         return Scene(

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from slippulse.measurement.front_paths import path
+from slippulse.measurement.front_paths import front_path
 from slippulse.prediction.comparison import measured_row
 from slippulse.simulation.sweep import simulate_on_lattice
 from slippulse.solver.lattice import UnstableRun
@@ -111,13 +111,13 @@ def measured_here(run: xr.Dataset, quantity: str) -> float:
         mirrored = np.interp(APART - x, x, slip, left=0.0, right=0.0)
         return float(np.max(np.abs(slip - mirrored)) / slip.max())
     if quantity == "passes by":
-        return max(0.0, float(path(run)[1][-1]) - CENTRE)
+        return max(0.0, float(front_path(run)[1][-1]) - CENTRE)
     return drift(run, quantity)
 
 
 def drift(run: xr.Dataset, quantity: str) -> float:
     """Relative change of the front speed or of the slip behind it, over most of a path."""
-    times, distances = path(run)
+    times, distances = front_path(run)
     x, last = run["x"].values, distances[-1]
 
     def number(start: float, end: float) -> float:

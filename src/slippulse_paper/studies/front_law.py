@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from slippulse.prediction.common import or_nan
+from slippulse.prediction.common import value_or_nan
 from slippulse.theory.front_speeds import prestress_for_speed
 from slippulse.theory.front_speeds_with_springs import continuum_front_speed, lattice_front_speed
 
@@ -67,4 +67,4 @@ def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
 
 def _speed(left: float, gamma: float, dx: float, ratio: float, release: str) -> float:
     """The lattice's front speed; NaN where no front outruns the waves."""
-    return or_nan(lambda: lattice_front_speed(left, gamma, dx, ratio, release))
+    return value_or_nan(lambda: lattice_front_speed(left, gamma, dx, ratio, release))

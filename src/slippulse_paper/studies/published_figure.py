@@ -18,7 +18,7 @@ from slippulse.model.prestress import Prestress
 from slippulse.model.release import RELEASES
 from slippulse.model.samples import Samples
 from slippulse.model.scene import Scene
-from slippulse.prediction.measured_run import SETTINGS
+from slippulse.prediction.measured_run import MEASURE_SETTINGS
 from slippulse.simulation.sweep import simulate_on_lattice
 from slippulse.theory.arrest import ArrestingCrack
 from slippulse.theory.rupture import Rupture
@@ -141,7 +141,7 @@ class LeftPanel:
         profile = Prestress(tau0, tau0)
         scene = lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release)
         run, settings = sampled(scene, 0.0), {"front_window": WINDOW, "trailing_times": self.times}
-        numbers, _ = measure_run(run, SETTINGS | settings)
+        numbers, _ = measure_run(run, MEASURE_SETTINGS | settings)
         numbers["largest_velocity"] = float(run["sample_velocity"].max())
         return np.array([numbers[name] for name in self.quantities])
 

@@ -1,1 +1,1 @@
-"""Laws of friction, which `slippulse.model.friction` lists."""
+"""Friction laws, one module for each family; `slippulse.model.friction` lists them by name."""

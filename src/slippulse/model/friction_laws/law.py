@@ -1,4 +1,4 @@
-"""The type that all laws of friction have, and the law of the paper."""
+"""The base class of all friction laws, and Coulomb friction, the law of the paper."""
 
 import math
 from abc import ABC, abstractmethod
@@ -8,37 +8,42 @@ from typing import Any, ClassVar, NamedTuple
 
 from ..checks import check_number
 
-# The longest step over the time in which slip or slip rate grows e-fold where friction weakens.
-RESOLVED = 0.5
+# Where friction weakens, slip or slip rate grows exponentially. The longest time step is this
+# fraction of the time in which it grows by a factor e.
+STEP_PER_GROWTH_TIME = 0.5
 
 
-class Bend(NamedTuple):
-    """Friction that falls linearly with slip or slip rate, and is constant beyond a bend."""
+class LawKink(NamedTuple):
+    """Friction that decreases linearly with slip or slip rate up to a kink, and is constant beyond.
 
-    rate: int  # 0: it falls with the slip since the release; 1: with slip rate
-    fall: float  # its slope before the bend
-    end: float  # slip or slip rate at the bend
-    lowest: float  # friction from there on
+    Below, "argument" is the slip since the release, or the slip rate.
+    """
+
+    rate: int  # order of the time derivative: 0 if the argument is the slip, 1 if it is slip rate
+    fall: float  # decrease of friction per unit of the argument, before the kink
+    end: float  # argument at the kink
+    lowest: float  # friction at the kink and beyond
 
 
 class Traits(NamedTuple):
-    """Properties of a law that solvers need besides its friction."""
+    """Properties of a law that the solvers need in addition to its friction."""
 
-    linear_rate: float = 0.0  # alpha, where friction is alpha du/dt
-    bend: Bend | None = None  # where friction is piecewise linear
-    steepest: float = 0.0  # upper bound on the slope of friction over slip rate
-    drive: float = 0.0  # upper bound on the friction that drives slip instead of resisting it
-    zone: float = 0.0  # half-length around x = 0 without friction, which nucleates the rupture
+    linear_rate: float = 0.0  # alpha, if friction is alpha du/dt
+    law_kink: LawKink | None = None  # if friction is piecewise linear
+    max_rate_slope: float = 0.0  # upper bound on the derivative of friction by slip rate
+    max_drive: float = 0.0  # upper bound on friction that drives slip instead of resisting it
+    nucleation_half_length: float = 0.0  # friction is 0 within this distance from x = 0
     longest_step: float = math.inf  # longest time step that resolves the law
 
 
 @dataclass(frozen=True)
 class Friction(ABC):
-    """Friction of a sliding block: 0 at the kinetic, 1 at the static friction of the paper.
+    """Friction of a sliding block, scaled so that kinetic friction is 0 and static friction is 1.
 
-    A law is a subclass. Its fields are its parameters, with ``bounds`` as `check_number` takes
-    them. `friction` is compiled into the textbook scheme; it gets the slip since the release, the
-    slip velocity and the first two parameters, 0 where there are fewer.
+    Each law is a subclass. Its fields are the parameters of the law, and ``bounds`` has their
+    allowed ranges in the form that `check_number` takes. The method `friction` is compiled into the
+    textbook scheme. Its arguments are the slip since the release, the slip velocity and the first
+    two parameters of the law; a missing parameter is 0.
     """
 
     law: ClassVar[str]
@@ -48,37 +53,37 @@ class Friction(ABC):
     def __post_init__(self) -> None:
         for name, value in asdict(self).items():
             check_number(name, value, **self.bounds.get(name, {}))
-            # Whole numbers would be computed with as such, and compiled for.
+            # An integer would make numba compile the kernels a second time.
             object.__setattr__(self, name, float(value))
 
     @staticmethod
     @abstractmethod
-    def friction(slip, velocity, first, second):
-        """Friction of a block."""
+    def friction(slip, velocity, parameter_1, parameter_2):
+        """Return the friction of a block."""
 
     @property
     def traits(self) -> Traits:
-        """Traits of the law and its parameters."""
+        """Properties that the solvers need, for the parameters of this law."""
         return Traits()
 
     @property
-    def constants(self) -> tuple[float, float]:
-        """The first two parameters, which `friction` gets."""
-        first, second, *_ = (*astuple(self), 0.0, 0.0)
-        return first, second
+    def kernel_parameters(self) -> tuple[float, float]:
+        """The first two parameters, which are passed to `friction`; 0 if there are fewer."""
+        parameter_1, parameter_2, *_ = (*astuple(self), 0.0, 0.0)
+        return parameter_1, parameter_2
 
     def mapping(self) -> dict[str, Any]:
-        """The law and its parameters by name, as the configuration spells them."""
+        """Return the name of the law and its parameters, with the keys of the configuration."""
         return {"law": self.law, **asdict(self)}
 
 
 class Coulomb(Friction):
-    """Amontons-Coulomb friction: kinetic from the release on, which is 0 here."""
+    """Amontons-Coulomb friction: a sliding block has kinetic friction, which is 0 here."""
 
     law: ClassVar = "coulomb"
     schemes: ClassVar = ("localised", "fixed_step", "continuum")
 
     @staticmethod
-    def friction(slip, velocity, first, second):
+    def friction(slip, velocity, parameter_1, parameter_2):
         """Return 0, the kinetic friction."""
         return 0.0

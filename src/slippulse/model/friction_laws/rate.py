@@ -1,14 +1,14 @@
-"""Friction that depends on slip rate alone."""
+"""Friction laws that depend on slip rate only."""
 
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import RESOLVED, Bend, Friction, Traits
+from .law import STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
 
 
 @dataclass(frozen=True)
 class LinearRate(Friction):
-    """Friction alpha v; it weakens with slip rate where alpha < 0."""
+    """Friction alpha v, which weakens with slip rate v if alpha < 0."""
 
     alpha: float
 
@@ -16,19 +16,19 @@ class LinearRate(Friction):
     schemes: ClassVar = ("localised", "fixed_step", "continuum")
 
     @staticmethod
-    def friction(slip, velocity, alpha, second):
+    def friction(slip, velocity, alpha, parameter_2):
         """Return alpha v."""
         return alpha * velocity
 
     @property
     def traits(self) -> Traits:
-        """The slope is alpha at any slip rate."""
-        return Traits(linear_rate=self.alpha, steepest=self.alpha)
+        """Slope alpha, which is the same at every slip rate."""
+        return Traits(linear_rate=self.alpha, max_rate_slope=self.alpha)
 
 
 @dataclass(frozen=True)
 class BoundedRate(Friction):
-    """Friction F v/(v + v_0): ``limit`` is F; it weakens with slip rate where F < 0."""
+    """Friction F v/(v + v_0), where ``limit`` is F; it weakens with slip rate v if F < 0."""
 
     limit: float
     v_0: float
@@ -43,13 +43,13 @@ class BoundedRate(Friction):
 
     @property
     def traits(self) -> Traits:
-        """The slope at rest is the steepest, and the law drives slip where F < 0."""
-        return Traits(steepest=self.limit / self.v_0, drive=max(-self.limit, 0.0))
+        """Slope F/v_0, which is steepest at rest; if F < 0, friction drives slip by up to -F."""
+        return Traits(max_rate_slope=self.limit / self.v_0, max_drive=max(-self.limit, 0.0))
 
 
 @dataclass(frozen=True)
 class RateWeakening(Friction):
-    """Friction -min(a v, F): ``slope`` is a, and ``limit`` is F."""
+    """Friction -min(a v, F), where ``slope`` is a and ``limit`` is F."""
 
     slope: float
     limit: float
@@ -65,8 +65,16 @@ class RateWeakening(Friction):
 
     @property
     def traits(self) -> Traits:
-        """The law drives slip by up to F. Slip rate grows e-fold in the time 1/a until F/a."""
+        """Kink at slip rate F/a, and a time step that resolves the growth of slip rate.
+
+        Friction drives slip by up to F. Below the kink, slip rate grows by a factor e in the
+        time 1/a.
+        """
         if self.slope * self.limit == 0.0:
             return Traits()
-        bend = Bend(1, self.slope, self.limit / self.slope, -self.limit)
-        return Traits(drive=self.limit, bend=bend, longest_step=RESOLVED / self.slope)
+        kink_rate = self.limit / self.slope
+        return Traits(
+            law_kink=LawKink(rate=1, fall=self.slope, end=kink_rate, lowest=-self.limit),
+            max_drive=self.limit,
+            longest_step=STEP_PER_GROWTH_TIME / self.slope,
+        )

@@ -1,17 +1,21 @@
-"""Friction that falls with the slip since the release, and is healed at a stick."""
+"""Slip-weakening friction, which decreases with the slip since the release of a block.
+
+When a block sticks, its friction heals: at the next release it is 1 again.
+"""
 
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import RESOLVED, Bend, Friction, Traits
+from .law import STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
 
 
 @dataclass(frozen=True)
 class SlipWeakening(Friction):
-    """Friction 1 - slip/d_c until it is 0. Within |x| < ``nucleation`` it is 0.
+    """Friction max(0, 1 - slip/d_c), and no friction within |x| < ``nucleation``.
 
-    A pre-stress of 1 at x = 0 alone starts nothing, since friction is 1 there too at first.
+    The zone without friction is needed to start a rupture. A block whose pre-stress is 1 does not
+    move by itself, because its friction is 1 as well before it has slipped.
     """
 
     d_c: float
@@ -23,19 +27,25 @@ class SlipWeakening(Friction):
 
     @staticmethod
     def friction(slip, velocity, d_c, nucleation):
-        """Return 1 - slip/d_c, or 0 beyond d_c."""
+        """Return 1 - slip/d_c, or 0 if the slip is larger than d_c."""
         return max(0.0, 1.0 - slip / d_c)
 
     @property
     def traits(self) -> Traits:
-        """Slip grows e-fold in the time sqrt(d_c); a step beyond makes front speeds wrong."""
-        step = RESOLVED * math.sqrt(self.d_c)
-        bend = Bend(0, 1.0 / self.d_c, self.d_c, 0.0)
-        return Traits(bend=bend, zone=self.nucleation, longest_step=step)
+        """Kink at slip d_c, and a time step that resolves the growth of slip.
+
+        Slip grows by a factor e in the time sqrt(d_c). Steps that are too long for it give wrong
+        front speeds.
+        """
+        return Traits(
+            law_kink=LawKink(rate=0, fall=1.0 / self.d_c, end=self.d_c, lowest=0.0),
+            nucleation_half_length=self.nucleation,
+            longest_step=STEP_PER_GROWTH_TIME * math.sqrt(self.d_c),
+        )
 
 
 class ExponentialWeakening(SlipWeakening):
-    """Friction exp(-slip/d_c). Within |x| < ``nucleation`` it is 0."""
+    """Friction exp(-slip/d_c), and no friction within |x| < ``nucleation``."""
 
     law: ClassVar = "exponential_weakening"
     schemes: ClassVar = ("fixed_step",)
@@ -47,5 +57,5 @@ class ExponentialWeakening(SlipWeakening):
 
     @property
     def traits(self) -> Traits:
-        """The traits of slip weakening that is not linear."""
-        return super().traits._replace(bend=None)
+        """Properties of slip weakening, except that this law is not piecewise linear."""
+        return super().traits._replace(law_kink=None)
