@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
+from slippulse.model.scene import EXTRA_TERMS
 from slippulse.plotting.style import (
     CYCLE,
     GREY,
@@ -18,9 +19,12 @@ from slippulse.plotting.style import (
 from .shared.main_numbers import main_numbers, with_symbols
 
 # Columns that may vary in a sweep, and the names of those without a symbol.
-VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
+VARYING = (
+    "tau_0", "left", "right", "gamma", *EXTRA_TERMS, "damping_ratio", "width", "beyond", "release",
+    "dx",
+)  # fmt: skip
 # With tables of pre-stress, their numbers say more than the levels at their ends.
-OF_TABLES = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
+OF_TABLES = ("seed", "profile", "gamma", *EXTRA_TERMS, "damping_ratio", "width", "release", "dx")
 WORDS = {"beyond": "level beyond the step", "release": "release rule"}
 WORDS |= {"profile": "profile", "seed": "seed"}
 
