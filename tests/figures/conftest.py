@@ -11,6 +11,8 @@ from selection import small_sweep
 from slippulse.data.saving import save_dataset
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.measurement.table import PARAMETERS
+from slippulse.measurement.uncertainty import grid_tables
 from slippulse.plotting.style import house_style
 from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
@@ -20,6 +22,8 @@ from slippulse_paper.configuration.selected import selected
 from slippulse_paper.steps.needs import declared
 from slippulse_paper.steps.predict import predictions
 
+# Factors of the spacing in grid studies.
+FACTORS = (1.5, 2.0)
 CHOICES = [
     {"release": "total", "deviation": 0.24, "solution": "lattice"},
     {"release": "elastic", "deviation": 0.16, "solution": "exact"},
@@ -57,6 +61,19 @@ def draw(shipped, shared, tmp_path_factory, study):
             save_table(measured_table(load_dataset(data), shipped["measure"]), measured)
         return load_dataset(data), load_table(measured)
 
+    @cache
+    def study_grid(name: str) -> pd.DataFrame:
+        """Uncertainties of a small sweep, from two coarser lattices."""
+        path = shared / f"sweeps/{name}.uncertainties.csv"
+        if not path.exists():
+            block, tables = small_sweep(shipped, name), [simulate(name)[1]]
+            for factor in FACTORS:
+                scenes, _ = expand(block | {"coarser": factor})
+                coarse = run_sweep(scenes, record=["fronts"], threads=2)
+                tables.append(measured_table(coarse, shipped["measure"]))
+            save_table(grid_tables(tuple(tables), FACTORS, PARAMETERS), path)
+        return load_table(path)
+
     def predict(name: str, topics: list[str]) -> pd.DataFrame:
         path = shared / f"sweeps/{name}.{'_'.join(topics)}.csv"
         if not path.exists():
@@ -71,6 +88,8 @@ def draw(shipped, shared, tmp_path_factory, study):
         for name, topics in needs.get("measured", {}).items():
             measured = simulate(name)[1]
             tables[name] = measured.join(predict(name, topics)) if topics else measured
+        for name in needs.get("uncertainties", []):
+            tables[f"uncertainties/{name}"] = study_grid(name)
         for name in needs.get("studies", []):
             tables[name] = study(name, *inputs(declared(f"studies.{name}", "NEEDS")))
         if "lists" in needs:

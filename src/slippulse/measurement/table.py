@@ -14,7 +14,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
-from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, leaf_stiffness
+from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify_regime
@@ -68,7 +68,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
         row |= {
             "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
             **{f"pulse_{name}": getattr(pulse, name) for name in PULSE_FIELDS},
-            "pulse_stress_drop": leaf_stiffness(run.attrs) * pulse.slip,
+            "pulse_stress_drop": gamma_without_extra_terms(run.attrs) * pulse.slip,
             "pulse_acceleration": acceleration_amplitude(run, pulse),
             "slip_variation": slip_variation(run, pulse),
             "pulse_half_width": half_width(run, pulse),

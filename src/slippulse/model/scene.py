@@ -347,7 +347,7 @@ def refuse_extra_terms(values: Mapping, condition: str) -> None:
         check_that(False, name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
 
 
-def leaf_stiffness(attributes: Mapping) -> float:
+def gamma_without_extra_terms(attributes: Mapping) -> float:
     """Return gamma, or NaN if a run has extra terms, which may resist slip as leaf springs do."""
     return math.nan if used_extra_terms(attributes) else attributes["gamma"]
 

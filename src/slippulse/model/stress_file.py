@@ -168,6 +168,7 @@ def _find_column(
 
 
 def _is_number(text: str) -> bool:
+    """Return True if Python can read a text as a number, which may be infinite or NaN."""
     try:
         float(text)
     except ValueError:

@@ -30,8 +30,11 @@ class Sources(NamedTuple):
 
 @cache
 def _imports() -> grimp.ImportGraph:
-    """Graph of the imports within both packages, as the sources are now."""
-    return grimp.build_graph(*PACKAGES, cache_dir=None, exclude_type_checking_imports=True)
+    """Graph of the imports within both packages; a module imports the packages that it is in."""
+    graph = grimp.build_graph(*PACKAGES, cache_dir=None, exclude_type_checking_imports=True)
+    for name in graph.modules - {*PACKAGES}:
+        graph.add_import(importer=name, imported=name.rpartition(".")[0])
+    return graph
 
 
 @cache
@@ -41,14 +44,8 @@ def _digest(path: str) -> str:
 
 @cache
 def modules_reached(*modules: str) -> frozenset[str]:
-    """Return the full names of modules, of all that they import, and of their packages."""
-    names = set(modules)
-    for module in modules:
-        names |= _imports().find_upstream_modules(module)
-    for name in [*names]:
-        parts = name.split(".")
-        names.update(".".join(parts[:count]) for count in range(1, len(parts)))
-    return frozenset(names)
+    """Return the full names of modules and of all that they import, with their packages."""
+    return frozenset(modules).union(*map(_imports().find_upstream_modules, modules))
 
 
 @cache
