@@ -227,7 +227,7 @@ class Scene:
         """Raise ValueError if the time step is unstable, or too small for the duration."""
         bound = self.largest_stable_step
         damping_ratio, stiffness, _ = self.ratios
-        ratios = f"beta/dx = {damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
+        ratios = f"beta/dx = {damping_ratio:.4g}, stiffness dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
