@@ -1,4 +1,4 @@
-"""Comparison of two trees of results: whether their numbers agree within their uncertainties.
+"""Compare two folders of results: do their numbers agree within their uncertainties?
 
 python -m slippulse_paper.report.compare results other/results
 """
@@ -19,18 +19,29 @@ from slippulse.data.tables import load_table
 
 from ..records.provenance import changes
 
-# These columns make a run the same run in another tree, whatever its lattice.
-RUN = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
-# A number without uncertainty depends on these, too.
-LATTICE = ["scheme", "dx", "order", "max_step"]
-TEXTS = ("boundary", "release", "quantity")
-# Numbers that agree to DIGITS need no uncertainty, since tables have nine digits. Numbers without
-# uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
-DIGITS, ROUNDING = 1e-8, 1e-6
-SHOWN = 10
+# Two runs with equal values in these columns are the same run, even on different lattices.
+RUN_COLUMNS = [
+    "boundary",
+    "left",
+    "right",
+    "width",
+    "gamma",
+    "damping_ratio",
+    "duration",
+    "release",
+]
+# Numbers without an uncertainty are compared only if these columns are equal, too.
+LATTICE_COLUMNS = ["scheme", "dx", "order", "max_step"]
+TEXT_COLUMNS = ("boundary", "release", "quantity")
+# Relative difference that is always allowed, since tables have nine digits.
+TABLE_PRECISION = 1e-8
+# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
+# number or to 1, whichever is larger.
+EQUAL_LATTICE_TOLERANCE = 1e-6
+MAX_SHOWN_LINES = 10
 Tables: TypeAlias = Sequence[pd.DataFrame]
-# Lines about a difference between two files of one name.
-LINES = {
+# The line that reports a difference between two files of the same name.
+DIFFERENCE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
 }
@@ -38,7 +49,13 @@ LINES = {
 
 @dataclass
 class Comparison:
-    """Numbers compared, agreeing and unknown; lines on numbers apart, and on the incomparable."""
+    """Counts of the compared numbers, and one line for each difference.
+
+    compared, agree : numbers in both folders, and those of them that agree
+    unknown : numbers that differ, but have no uncertainty to judge the difference by
+    apart : a line for each number that differs by more than is allowed
+    other : a line for everything that cannot be compared
+    """
 
     compared: int = 0
     agree: int = 0
@@ -48,7 +65,7 @@ class Comparison:
 
 
 def compare(here: Path, other: Path) -> Comparison:
-    """Compare measured tables, configurations and verdicts; ValueError for a broken tree."""
+    """Compare measured tables, configurations and verdicts; ValueError for an incomplete folder."""
     result, trees = Comparison(), (here, other)
     names = []
     for tree in trees:
@@ -56,7 +73,7 @@ def compare(here: Path, other: Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    for name, line in LINES.items():
+    for name, line in DIFFERENCE_LINES.items():
         contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
         if len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
@@ -68,9 +85,9 @@ def compare(here: Path, other: Path) -> Comparison:
 
 
 def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
-    """Compare one table of measured numbers, with the grid studies of both trees."""
-    ours, theirs = tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
-    if not ours[RUN].equals(theirs[RUN]):
+    """Compare one table of measured numbers, with the uncertainties from both grid studies."""
+    ours, theirs = tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
+    if not ours[RUN_COLUMNS].equals(theirs[RUN_COLUMNS]):
         result.other.append(f"{name}: other runs")
         return
     for column in sorted({*ours} ^ {*theirs}):
@@ -78,13 +95,15 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> Non
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
         result.other.append(f"{name}: uncertainties in one tree only")
-    common = ours.columns.intersection(theirs.columns, sort=False).difference(RUN, sort=False)
-    lattice = common.intersection(LATTICE)
+    common = ours.columns.intersection(theirs.columns, sort=False).difference(
+        RUN_COLUMNS, sort=False
+    )
+    lattice = common.intersection(LATTICE_COLUMNS)
     same_lattice = (ours[lattice] == theirs[lattice]).all(axis=1).to_numpy()[:, None]
     plain = ["number", "bool"]
     with_text = [*ours.select_dtypes(exclude=plain), *theirs.select_dtypes(exclude=plain)]
     texts = common.intersection(with_text, sort=False)
-    numbers = common.difference([*with_text, *LATTICE], sort=False)
+    numbers = common.difference([*with_text, *LATTICE_COLUMNS], sort=False)
     values = [table[numbers].astype(float) for table in tables]
     _compare_numbers(result, name, values, [*map(_uncertainties, studies, values)], same_lattice)
     ours, theirs = (table[texts].astype(object).fillna("") for table in tables)
@@ -96,12 +115,17 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> Non
 def _compare_numbers(
     result: Comparison, name: str, values: Tables, uncertainties: Tables, same_lattice: np.ndarray
 ) -> None:
-    """Compare numbers; a difference is unknown where lattices differ and no study was made."""
+    """Count the numbers that agree, and report each that does not.
+
+    A difference stays unknown if the lattices differ and neither folder has an uncertainty.
+    """
     ours, theirs = (table.to_numpy() for table in values)
     uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0).to_numpy()
     no_study, size = np.isnan(uncertainty), np.abs(ours)
-    allowed = np.nan_to_num(uncertainty) + DIGITS * size
-    allowed = np.where(no_study & same_lattice, ROUNDING * np.maximum(size, 1.0), allowed)
+    allowed = np.nan_to_num(uncertainty) + TABLE_PRECISION * size
+    allowed = np.where(
+        no_study & same_lattice, EQUAL_LATTICE_TOLERANCE * np.maximum(size, 1.0), allowed
+    )
     known = ~np.isnan([ours, theirs])
     compared = known.all(axis=0) | (known.any(axis=0) & same_lattice)
     differs = compared & ~(np.abs(ours - theirs) <= allowed)
@@ -116,19 +140,19 @@ def _compare_numbers(
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
-    """Read a table with these columns, and with no text in a column of numbers."""
+    """Read a table; ValueError if a needed column is missing or a column of numbers has text."""
     with _readable(path):
         table = load_table(path)
         for column in needed:
             if column not in table:
                 raise ValueError(f"no column {column}")
-            if table[column].dtype.kind not in "biuf" and column not in TEXTS:
+            if table[column].dtype.kind not in "biuf" and column not in TEXT_COLUMNS:
                 raise ValueError(f"text in column {column}")
     return table
 
 
 def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
-    """Uncertainty of every number; NaN where there is no study, or one of another value."""
+    """Return the uncertainty of every number; NaN without a study of exactly this number."""
     if not path.exists():
         return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
@@ -136,11 +160,14 @@ def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
     with _readable(path):
         study = table.pivot(index="point", columns="quantity", values=parts).astype(float)
         studied, uncertainty = (study[part].reindex_like(values) for part in parts)
-    return uncertainty.mask((values - studied).abs() > DIGITS * values.abs())
+    return uncertainty.mask((values - studied).abs() > TABLE_PRECISION * values.abs())
 
 
 def _content(path: Path) -> dict:
-    """The configuration without the preset, whose lattices the uncertainties cover; or verdicts."""
+    """Return what a file has to compare: the configuration, or the verdicts by claim.
+
+    The preset is left out, because the uncertainties cover its lattices.
+    """
     with _readable(path):
         content = json.loads(path.read_text(encoding="utf-8"))
         if path.stem == "provenance":
@@ -150,7 +177,7 @@ def _content(path: Path) -> dict:
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Name the file that cannot be read, or does not hold what a run writes."""
+    """Turn an error inside the block into one that names the unreadable file."""
     try:
         yield
     except UnreadableFile:
@@ -162,18 +189,24 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Compare two trees; returns the exit code."""
+    """Compare two folders, print the differences, and return the exit code."""
     try:
         result = compare(*map(Path, arguments))
     except ValueError as error:
         print(error)
         return 1
-    agree = f"{result.agree} of {result.compared} numbers agree within both uncertainties together"
+    agree = (
+        f"{result.agree} of {result.compared} numbers agree within the sum of both uncertainties"
+    )
     print(f"{agree}; {result.unknown} differ and have no uncertainty")
     for title, lines in (("Apart", result.apart), ("Not comparable", result.other)):
         if lines:
-            rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
-            print("\n  ".join([f"{title}:", *lines[:SHOWN], *rest]))
+            rest = (
+                [f"... and {len(lines) - MAX_SHOWN_LINES} more"]
+                if len(lines) > MAX_SHOWN_LINES
+                else []
+            )
+            print("\n  ".join([f"{title}:", *lines[:MAX_SHOWN_LINES], *rest]))
     return 0 if result.compared and not (result.apart or result.other) else 1
 
 
