@@ -274,9 +274,8 @@ def _with_extra_terms(lists: bool) -> type[Physics]:
     """Return `Physics` with a key for each extra term of the equation: a list, or a number."""
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
-        value = Annotated[
-            float, Field(**{LIMITS[limit]: end for limit, end in term.bounds.items()})
-        ]
+        limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
+        value = Annotated[int if "integer" in term.bounds else float, Field(**limits)]
         meaning = f"{term.meaning}; by default {term.default:g}"
         keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
