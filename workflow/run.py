@@ -21,11 +21,14 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "src"))
 RESULTS, STATE = Path("results"), Path(".snakemake")
+# Where docs/compare.md keeps the results from before an altered run.
+KEPT = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
-# Folders of results in which no rule makes the files.
-OTHER_FOLDERS = ("logs", "benchmarks", "reference", "tutorial")
+# Folders and files of results that no rule makes.
+OTHER_PLACES = ("logs", "benchmarks", "reference", "tutorial", "site")
+OTHER_PLACES += ("compare.html", "compare.csv")
 
 
 def options_of(given: Mapping[str, str]) -> list[str]:
@@ -176,6 +179,9 @@ def replicate(given: Mapping[str, str]) -> int:
     began = time.monotonic()
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
+    if given.get("OVERLAY") and (RESULTS / "provenance.json").exists() and not KEPT.exists():
+        line = "To see old beside new later, stop now, keep these results, and start again: "
+        print(f"{line}cp -r {RESULTS} {KEPT} (docs/compare.md)", file=sys.stderr)
     take_over()
     renewed = renewal(options, targets)
     run = Run(["--cores", given.get("CORES") or "2", *options, *renewed, "--", *targets])
@@ -197,6 +203,8 @@ def replicate(given: Mapping[str, str]) -> int:
         LAST_RUN.write_text(json.dumps(last), encoding="utf-8")
         time_taken = timedelta(seconds=round(time.monotonic() - began))
         print(f"{closing_line(targets, given)}. It took {time_taken}.")
+        if given.get("OVERLAY") and KEPT.exists():
+            print(f"Old beside new: make compare AGAINST={KEPT}")
     return code
 
 
@@ -256,7 +264,7 @@ def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     for path in sorted(RESULTS.rglob("*")):
         parts = path.relative_to(RESULTS).parts
         hidden = any(part.startswith(".") for part in parts)
-        ours = path.is_file() and not hidden and parts[0] not in OTHER_FOLDERS
+        ours = path.is_file() and not hidden and parts[0] not in OTHER_PLACES
         if ours and str(path) not in known and str(path) not in outdated:
             yield str(path), "no job has recorded it"
 

@@ -84,7 +84,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         return entry + float(self.fronts.arrival(entry)) - position
 
     def transition(self, fraction: float) -> ExactTransition:
-        """Return time and length when the left front has covered a fraction of |x_minus|.
+        """Return time and length when the left front has covered a fraction of ``|x_minus|``.
 
         Parameters
         ----------

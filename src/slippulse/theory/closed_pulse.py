@@ -207,7 +207,7 @@ def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
 
     Returns
     -------
-    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
+    tuple of floats : ``T_trans = |x_minus|`` and ``L_trans = 2 |x_minus|``
     """
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

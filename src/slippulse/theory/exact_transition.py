@@ -75,7 +75,7 @@ def uniform_transition_time(
     """Return T_trans in uniform pre-stress with a point-like nucleation.
 
     Raises ValueError: outside the domain.
-    Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v. With w = 1/v and
+    Source: the first zero of du/dt at x = 0 behind the fronts ``T(x) = |x|/v``. With w = 1/v and
     q = sqrt(gamma) t/(1 + w), du/dt is proportional to Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) )
     ds, whose zero depends on v alone.
 

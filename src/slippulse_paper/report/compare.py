@@ -1,6 +1,8 @@
 """Compare two folders of results: do their numbers agree within their uncertainties?
 
-python -m slippulse_paper.report.compare results other/results
+python -m slippulse_paper.report.compare results other/results [results/compare.html]
+
+With a third argument it also writes the page of old beside new, and its numbers as CSV beside it.
 """
 
 import json
@@ -9,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -18,20 +20,16 @@ from slippulse.data.files import UnreadableFile
 from slippulse.data.tables import load_table
 
 from ..records.provenance import changes
+from .joined_runs import (
+    LATTICE_COLUMNS,
+    RUN_COLUMNS,
+    JoinedRuns,
+    describe_pair,
+    describe_run,
+    join_runs,
+    varying_parameters,
+)
 
-# Two runs with equal values in these columns are the same run, even on different lattices.
-RUN_COLUMNS = [
-    "boundary",
-    "left",
-    "right",
-    "width",
-    "gamma",
-    "damping_ratio",
-    "duration",
-    "release",
-]
-# Numbers without an uncertainty are compared only if these columns are equal, too.
-LATTICE_COLUMNS = ["scheme", "dx", "order", "max_step"]
 TEXT_COLUMNS = ("boundary", "release", "quantity")
 # Relative difference that is always allowed, since tables have nine digits.
 TABLE_PRECISION = 1e-8
@@ -40,7 +38,9 @@ TABLE_PRECISION = 1e-8
 EQUAL_LATTICE_TOLERANCE = 1e-6
 MAX_SHOWN_LINES = 10
 Tables: TypeAlias = Sequence[pd.DataFrame]
-# The line that reports a difference between two files of the same name.
+# Outcomes of comparing a number that is in both folders.
+AGREES, DIFFERS, UNKNOWN, ALTERED = "agrees", "differs", "no uncertainty", "altered run"
+# Lines about a difference between two files of one name.
 DIFFERENCE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
@@ -49,23 +49,47 @@ DIFFERENCE_LINES = {
 
 @dataclass
 class Comparison:
-    """Counts of the compared numbers, and one line for each difference.
+    """Joined numbers, and lines about differing numbers and about what cannot be compared.
 
-    compared, agree : numbers in both folders, and those of them that agree
-    unknown : numbers that differ, but have no uncertainty to judge the difference by
-    apart : a line for each number that differs by more than is allowed
-    other : a line for everything that cannot be compared
+    ``numbers`` has one row per number that is in both folders, and ``runs`` one row per table.
+    ``changes`` has the differences of the configuration and of the verdicts by the file's name.
     """
 
-    compared: int = 0
-    agree: int = 0
-    unknown: int = 0
     apart: list[str] = field(default_factory=list)
     other: list[str] = field(default_factory=list)
+    numbers: pd.DataFrame = field(default_factory=pd.DataFrame)
+    runs: list[dict[str, Any]] = field(default_factory=list)
+    changes: dict[str, list[dict]] = field(default_factory=dict)
+
+    def count(self, *outcomes: str) -> int:
+        """Return the number of numbers with one of these outcomes."""
+        return int(self.numbers["outcome"].isin(outcomes).sum()) if len(self.numbers) else 0
+
+    @property
+    def compared(self) -> int:
+        """Number of numbers of the same runs."""
+        return self.count(AGREES, DIFFERS, UNKNOWN)
+
+    @property
+    def agree(self) -> int:
+        """Number of numbers that agree."""
+        return self.count(AGREES)
+
+    @property
+    def unknown(self) -> int:
+        """Number of numbers that differ between lattices and have no uncertainty."""
+        return self.count(UNKNOWN)
+
+    def summary(self) -> str:
+        """Say in one sentence how many numbers agree."""
+        agree = (
+            f"{self.agree} of {self.compared} numbers agree within the sum of both uncertainties"
+        )
+        return f"{agree}; {self.unknown} differ and have no uncertainty"
 
 
 def compare(here: Path, other: Path) -> Comparison:
-    """Compare measured tables, configurations and verdicts; ValueError for an incomplete folder."""
+    """Compare measured tables, configurations and verdicts; ValueError for a broken folder."""
     result, trees = Comparison(), (here, other)
     names = []
     for tree in trees:
@@ -78,65 +102,123 @@ def compare(here: Path, other: Path) -> Comparison:
         if len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
         else:
-            result.other += [line.format(**change) for change in changes(contents[1], contents[0])]
-    for name in sorted(names[0] & names[1]):
-        _compare_tables(result, trees, name)
+            result.changes[name] = changes(contents[1], contents[0])
+            result.other += [line.format(**change) for change in result.changes[name]]
+    numbers = [_compare_tables(result, trees, name) for name in sorted(names[0] & names[1])]
+    result.numbers = pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
     return result
 
 
-def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
-    """Compare one table of measured numbers, with the uncertainties from both grid studies."""
-    ours, theirs = tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
-    if not ours[RUN_COLUMNS].equals(theirs[RUN_COLUMNS]):
-        result.other.append(f"{name}: other runs")
-        return
-    for column in sorted({*ours} ^ {*theirs}):
+def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.DataFrame:
+    """Compare one table of measured numbers, with the grid studies of both folders."""
+    tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
+    joined, varying = join_runs(*tables), varying_parameters(*tables)
+    _list_runs(result, name, tables, joined, varying)
+    for column in sorted({*tables[0]} ^ {*tables[1]}):
         result.other.append(f"{name}: columns in one tree only: {column}")
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
         result.other.append(f"{name}: uncertainties in one tree only")
-    common = ours.columns.intersection(theirs.columns, sort=False).difference(
-        RUN_COLUMNS, sort=False
-    )
-    lattice = common.intersection(LATTICE_COLUMNS)
-    same_lattice = (ours[lattice] == theirs[lattice]).all(axis=1).to_numpy()[:, None]
+    common = tables[0].columns.intersection(tables[1].columns, sort=False)
+    common = common.difference(RUN_COLUMNS, sort=False)
     plain = ["number", "bool"]
-    with_text = [*ours.select_dtypes(exclude=plain), *theirs.select_dtypes(exclude=plain)]
-    texts = common.intersection(with_text, sort=False)
+    with_text = {column for table in tables for column in table.select_dtypes(exclude=plain)}
     numbers = common.difference([*with_text, *LATTICE_COLUMNS], sort=False)
-    values = [table[numbers].astype(float) for table in tables]
-    _compare_numbers(result, name, values, [*map(_uncertainties, studies, values)], same_lattice)
-    ours, theirs = (table[texts].astype(object).fillna("") for table in tables)
-    for row, column in np.argwhere(((ours != theirs) & same_lattice).to_numpy()):
+    sides = []
+    for table, path in zip(tables, studies, strict=True):
+        values = table[numbers].astype(float)
+        sides.append(_Side(table, values, _uncertainties(path, values)))
+    same, altered = (
+        [side.take(pairs[:, column]) for column, side in enumerate(sides)]
+        for pairs in (joined.same, joined.altered)
+    )
+    _compare_texts(result, name, same, [column for column in common if column in with_text])
+    compared = [_compare_numbers(same, varying), _compare_numbers(altered, varying, altered=True)]
+    long = pd.concat([rows for rows in compared if len(rows)] or compared[:1], ignore_index=True)
+    long.insert(0, "table", Path(name).stem)
+    for row in long[long["outcome"] == DIFFERS].itertuples():
+        pair = f"{row.new:.6g} against {row.old:.6g}"
+        limit = f"allowed: a difference of {row.allowed:.2g}"
+        result.apart.append(f"{name}: point {row.point}, {row.quantity}: {pair}; {limit}")
+    return long
+
+
+def _list_runs(
+    result: Comparison, name: str, tables: Tables, joined: JoinedRuns, varying: list[str]
+) -> None:
+    """Record how many runs are joined, and list the runs of one folder alone."""
+    only: dict[str, list[str]] = {}
+    for side, table, rows in zip(("new", "old"), tables, joined[3:], strict=True):
+        only[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
+        which = "this" if side == "new" else "the other"
+        result.other += [f"{name}: only in {which} tree: {run}" for run in only[side]]
+    counts = {"same": len(joined.same), "altered": len(joined.altered)}
+    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **only})
+    if counts["altered"]:
+        many = counts["altered"] > 1
+        pairs = f"{counts['altered']} pairs of runs differ" if many else "1 pair of runs differs"
+        result.other.append(f"{name}: {pairs} in {', '.join(joined.keys)}")
+
+
+@dataclass
+class _Side:
+    """Runs of one folder: their parameters, numbers, and uncertainties of these."""
+
+    table: pd.DataFrame
+    values: pd.DataFrame
+    errors: pd.DataFrame
+
+    def take(self, rows: np.ndarray) -> "_Side":
+        """Return these rows, in this order."""
+        return _Side(self.table.loc[rows], self.values.loc[rows], self.errors.loc[rows])
+
+
+def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
+    """Return whether the two runs of each pair have the same lattice, as a column."""
+    lattice = new.table.columns.intersection(old.table.columns).intersection(LATTICE_COLUMNS)
+    return (new.table[lattice].to_numpy() == old.table[lattice].to_numpy()).all(axis=1)[:, None]
+
+
+def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts: list[str]) -> None:
+    """Add a line for each text that differs between runs with the same lattice."""
+    ours, theirs = (side.table[texts].astype(object).fillna("") for side in sides)
+    differs = (ours.to_numpy() != theirs.to_numpy()) & _same_lattice(*sides)
+    for row, column in np.argwhere(differs):
         pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
-        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}")
+        result.apart.append(f"{name}: point {ours.index[row]}, {texts[column]}: {pair}")
 
 
 def _compare_numbers(
-    result: Comparison, name: str, values: Tables, uncertainties: Tables, same_lattice: np.ndarray
-) -> None:
-    """Count the numbers that agree, and report each that does not.
-
-    A difference stays unknown if the lattices differ and neither folder has an uncertainty.
-    """
-    ours, theirs = (table.to_numpy() for table in values)
-    uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0).to_numpy()
-    no_study, size = np.isnan(uncertainty), np.abs(ours)
-    allowed = np.nan_to_num(uncertainty) + TABLE_PRECISION * size
+    sides: Sequence[_Side], varying: list[str], altered: bool = False
+) -> pd.DataFrame:
+    """Return one row per number; it is unknown where lattices differ and no study was made."""
+    new, old = (side.values.to_numpy() for side in sides)
+    new_error, old_error = (side.errors.to_numpy() for side in sides)
+    no_study, size = np.isnan(new_error) & np.isnan(old_error), np.abs(new)
+    same_lattice = _same_lattice(*sides)
+    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + TABLE_PRECISION * size
     allowed = np.where(
         no_study & same_lattice, EQUAL_LATTICE_TOLERANCE * np.maximum(size, 1.0), allowed
     )
-    known = ~np.isnan([ours, theirs])
-    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice)
-    differs = compared & ~(np.abs(ours - theirs) <= allowed)
-    unknown = differs & no_study & ~same_lattice
-    result.compared += int(compared.sum())
-    result.agree += int((compared & ~differs).sum())
-    result.unknown += int(unknown.sum())
-    for row, column in np.argwhere(differs & ~unknown):
-        pair = f"{ours[row, column]:.6g} against {theirs[row, column]:.6g}"
-        limit = f"allowed: a difference of {allowed[row, column]:.2g}"
-        result.apart.append(f"{name}: point {row}, {values[0].columns[column]}: {pair}; {limit}")
+    known = ~np.isnan([new, old])
+    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not altered))
+    differs = ~(np.abs(new - old) <= allowed)
+    outcome = np.where(differs, np.where(no_study & ~same_lattice, UNKNOWN, DIFFERS), AGREES)
+    records = [side.table.to_dict("records") for side in sides]
+    runs = [describe_pair(ours, theirs, varying) for ours, theirs in zip(*records, strict=True)]
+    row, column = np.nonzero(compared)
+    columns = {
+        "point": sides[0].table.index.to_numpy()[row],
+        "run": np.array(runs, object)[row],
+        "quantity": sides[0].values.columns.to_numpy()[column],
+        "old": old[row, column],
+        "old_uncertainty": old_error[row, column],
+        "new": new[row, column],
+        "new_uncertainty": new_error[row, column],
+        "allowed": allowed[row, column],
+        "outcome": ALTERED if altered else outcome[row, column],
+    }
+    return pd.DataFrame(columns)
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
@@ -189,17 +271,19 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Compare two folders, print the differences, and return the exit code."""
+    """Compare two folders, and write the page if its path is given; returns the exit code."""
+    here, other, *pages = map(Path, arguments)
     try:
-        result = compare(*map(Path, arguments))
+        result = compare(here, other)
+        if pages:
+            from .compare_page import write_comparison
+
+            write_comparison(result, here, other, pages[0])
     except ValueError as error:
         print(error)
         return 1
-    agree = (
-        f"{result.agree} of {result.compared} numbers agree within the sum of both uncertainties"
-    )
-    print(f"{agree}; {result.unknown} differ and have no uncertainty")
-    for title, lines in (("Apart", result.apart), ("Not comparable", result.other)):
+    print(result.summary())
+    for title, lines in (("Apart", result.apart), ("Not in both, or altered", result.other)):
         if lines:
             rest = (
                 [f"... and {len(lines) - MAX_SHOWN_LINES} more"]
@@ -207,6 +291,9 @@ def main(arguments: Sequence[str]) -> int:
                 else []
             )
             print("\n  ".join([f"{title}:", *lines[:MAX_SHOWN_LINES], *rest]))
+    if pages:
+        print(f"Open {pages[0]}")
+        return 0
     return 0 if result.compared and not (result.apart or result.other) else 1
 
 
