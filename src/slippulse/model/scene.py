@@ -318,10 +318,27 @@ EXTRA_TERMS = {name: term for name, term in SCENE_NUMBERS.items() if term.extra_
 DEFAULTS_OF_EXTRA_TERMS = {name: term.default for name, term in EXTRA_TERMS.items()}
 # Names of the attributes that describe a simulation in a data file.
 ATTRIBUTES = (
-    "boundary", "gamma", "beta", "damping_ratio", "left", "right", "width", "peak",
-    "steps_and_bumps", "duration", "dx", "release", "scheme", "max_step", "order", "half_lattice",
-    "friction_ratio", "resolved_blocks", "friction", *EXTRA_TERMS,
-)  # fmt: skip
+    "boundary",
+    "gamma",
+    "beta",
+    "damping_ratio",
+    "left",
+    "right",
+    "width",
+    "peak",
+    "steps_and_bumps",
+    "duration",
+    "dx",
+    "release",
+    "scheme",
+    "max_step",
+    "order",
+    "half_lattice",
+    "friction_ratio",
+    "resolved_blocks",
+    "friction",
+    *EXTRA_TERMS,
+)
 
 
 def used_extra_terms(values: Mapping) -> dict[str, float]:

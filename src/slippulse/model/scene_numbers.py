@@ -38,8 +38,8 @@ def number(
     bounds : as in `check_number`
     """
     definition = NumberDefinition(meaning, symbol, unit, bounds, extra_term, default)
-    given: Any = MISSING if default is None else default
-    return field(default=given, metadata={"definition": definition})
+    field_default: Any = MISSING if default is None else default
+    return field(default=field_default, metadata={"definition": definition})
 
 
 def definitions_of(scene: type) -> dict[str, NumberDefinition]:

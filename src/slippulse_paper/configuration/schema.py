@@ -275,7 +275,8 @@ def _with_extra_terms(lists: bool) -> type[Physics]:
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
-        value = Annotated[int if "integer" in term.bounds else float, Field(**limits)]
+        number: Any = int if "integer" in term.bounds else float
+        value: Any = Annotated[number, Field(**limits)]
         meaning = f"{term.meaning}; by default {term.default:g}"
         keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
