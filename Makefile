@@ -72,7 +72,7 @@ help:
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
 	@echo "make slurm-test  the draft through a Slurm of one node, against the draft without"
 	@echo "make check       format and lint"
-	@echo "make describe    the tables of config/README.md and the JSON Schema of the configuration"
+	@echo "make describe    the tables of config/README.md, the JSON Schema and rows of docs/columns.md"
 	@echo "make tutorial    docs/tutorial.md from top to bottom, its pictures into results/tutorial"
 	@echo "make reference   the reference of the Python interface, into results/reference"
 	@echo "make clean       remove results/;  make distclean: the environment too"

@@ -7,6 +7,7 @@ import pandas as pd
 
 from slippulse.data.tables import save_table
 from slippulse.model.run import Run
+from slippulse.model.scene import used_extra_terms
 
 from ..configuration.runs import runs
 
@@ -33,7 +34,10 @@ def predictions(topics: Iterable[str], swept: Sequence[Run], settings: Mapping) 
     for topic in topics:
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
         table = module.predictions(swept, settings)
-        # A number that ignores the friction of a run is worse than none.
-        known = [one.friction["law"] in module.LAWS for one in swept]
+        # A number that ignores the friction or an extra term of a run is worse than none.
+        known = [
+            one.friction["law"] in module.LAWS and not used_extra_terms(one.extra_terms)
+            for one in swept
+        ]
         tables.append(table[known].reindex(table.index))
     return pd.concat(tables, axis=1)
