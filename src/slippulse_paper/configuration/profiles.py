@@ -117,3 +117,11 @@ def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
         before = shape
         labels.append({"profile": number, "seed": float(seed)})
     return labels
+
+
+def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Return expanded profiles with the first and the last seed of each ensemble only."""
+    numbers = [label["profile"] for label in labels_of(profiles)]
+    last = dict(zip(numbers, range(len(numbers)), strict=True))
+    first = dict(zip(reversed(numbers), reversed(range(len(numbers))), strict=True))
+    return [profiles[index] for index in sorted({*first.values(), *last.values()})]

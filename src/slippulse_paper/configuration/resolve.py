@@ -12,7 +12,7 @@ from slippulse.model.scene import EXTRA_TERMS
 from slippulse.simulation.accuracy import LARGEST_STEP, TAYLOR_ORDER
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 
-from .profiles import expanded, prestress_of
+from .profiles import ends_of_ensembles, expanded, prestress_of
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
 # A scene samples these numbers of times and positions, for its map and its animation.
@@ -115,8 +115,14 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:
-    """A resolved simulation with only the ends of its lists, at which any refusal shows."""
+    """Return a resolved simulation with only the ends of its lists, at which refusals show.
+
+    Of an ensemble of rough profiles, the first and the last seed are kept. A job checks the scenes
+    of all seeds before it simulates.
+    """
     ends = {key: value for key, value in simulation.items() if key != "chunk"}
+    if "profiles" in ends:
+        ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
         ends["beyond"] = corners(ends["beyond"])
     for key in ORDERED:
