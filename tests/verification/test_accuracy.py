@@ -10,7 +10,7 @@ from slippulse import theory
 from slippulse.measurement.promise import covered_numbers
 from slippulse.prediction.comparison import measured_table
 
-SHARE = 0.95
+FRACTION = 0.95
 # Accuracy, level, gamma, damping ratio, width, release; each scene lasts until the pulse is steady.
 PULSES = [
     (1e-2, 0.1, 1.0, 0.1, 0.5, "total"), (1e-2, 0.1, 0.1, 1.0, 1.0, "total"),
@@ -54,7 +54,7 @@ def pulse(accuracy, level, gamma, ratio, width, release):
 def crack(accuracy, level, ratio, width):
     profile = sp.Prestress(level, 0.0, width)
     exact = theory.ArrestingCrack(profile, ratio)
-    time, length = exact.transition(SHARE)
+    time, length = exact.transition(FRACTION)
     duration = 1.15 * time
     return scene_of(accuracy, ratio, duration, boundary="stress", prestress=profile), {
         "transition_time": time,
@@ -75,7 +75,7 @@ def test_the_worst_covered_number_keeps_its_promise_and_not_more_than_needed(shi
     sweep = sp.run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (scene, exact), run in zip(cases, made, runs, strict=True):
-        promised = covered_numbers(run, SHARE).intersection(exact)
+        promised = covered_numbers(run, FRACTION).intersection(exact)
         # The transition of an undamped crack is not covered.
         undamped_crack = scene.beta == 0.0 and "largest_velocity" in exact
         assert promised == ({"largest_velocity"} if undamped_crack else set(exact)), case

@@ -177,9 +177,9 @@ DAMPED, HELD = "fig10_damping_displacement", "fig08_steady_state_displacement"
 # of `measure`, one of them the model too, and the last reads nothing.
 STUDIES = {"study_of_extremes", "study_of_regime_plane", "study_of_layer"}
 # A change, some of the rules that it marks, and rules that it does not mark.
-SHARES = {
-    "share": (
-        "measure: {share: 0.9}",
+CHANGES = {
+    "fraction": (
+        "measure: {fraction: 0.9}",
         {"measure", "study_grid", "draw_scene", "write_claims", "fig05_scaling"},
         SKETCHES | STUDIES | {"simulate", "animate_scene", "fig06_burridge_knopoff", HELD, DAMPED},
     ),
@@ -203,7 +203,7 @@ SHARES = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("change", "readers", "untouched"), SHARES.values(), ids=SHARES)
+@pytest.mark.parametrize(("change", "readers", "untouched"), CHANGES.values(), ids=CHANGES)
 def test_a_shared_value_or_topic_runs_its_readers_alone(imitated, change, readers, untouched):
     jobs = set(jobs_after(imitated, change))
     assert readers | ALWAYS <= jobs and not untouched & jobs and untouched <= RULES

@@ -21,6 +21,7 @@ from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
 from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.promised_spacings import promised
 from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.renamed_keys import rename_warnings
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse_paper.configuration.runs import run_count
 from slippulse_paper.configuration.selected import selected
@@ -208,14 +209,14 @@ def settings_of(job):
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     scheme = sweep["scheme"]
-    # A fraction of the way to the arrest counts under a stress boundary only.
-    share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
+    # Under a displacement boundary no number depends on the fraction.
+    fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
         # Where an accuracy is asked for, the sweep has the spacing of each run.
         "sweep": promised(sweep),
         "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
-        "measure": {**config["measure"], "share": share},
+        "measure": {**config["measure"], "fraction": fraction},
         # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
@@ -240,7 +241,9 @@ def check_packages_and_lock():
     if held is None:
         sys.exit("Another run is at work in this folder: wait for it, or stop it.")
     HELD.append(held)
-    for line in ALTERED.untaken() if ALTERED else ():
+    lines = rename_warnings([*OVERLAYS, GIVEN])
+    lines += ALTERED.overridden_defaults() if ALTERED else []
+    for line in lines:
         print(line, file=sys.stderr)
 
 

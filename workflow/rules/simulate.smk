@@ -71,7 +71,7 @@ rule predict:
         settings=lambda wildcards: {
             "sweep": settings_of(wildcards.simulation)["sweep"],
             "topics": settings_of(wildcards.simulation)["topics"],
-            "share": settings_of(wildcards.simulation)["measure"]["share"],
+            "fraction": settings_of(wildcards.simulation)["measure"]["fraction"],
             "still": config["measure"]["still"],
         },
         code=lambda wildcards: code_of("predict", *prediction_modules(wildcards)),

@@ -41,7 +41,7 @@ class Alterations:
             named.append(f"{len(different) - MOST} more")
         return f"altered: {', '.join(named)}" if named else ""
 
-    def untaken(self) -> list[str]:
+    def overridden_defaults(self) -> list[str]:
         """A line for each altered default of the model that some simulations do not take."""
         lines = []
         for change in changes(self.shipped.model.plain(), self.here.model.plain()):

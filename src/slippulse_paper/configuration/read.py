@@ -24,6 +24,7 @@ from .limits import simulation_problems
 from .problems import ConfigError, nearest
 from .profiles import with_points_of_files
 from .refusals import dotted, format_problems, problem_line
+from .renamed_keys import with_new_names
 from .schema import Configuration
 
 # The shipped configuration has some 20 kB. An overlay lists what differs, and is never larger.
@@ -34,14 +35,19 @@ LIKE_SHIPPED = "allowed: keys and values as in config/config.yaml"
 def read_config(
     shipped: Mapping,
     overlays: Sequence[Mapping] = (),
-    said: Mapping | None = None,
+    command_line_values: Mapping | None = None,
     every_run: bool = True,
 ) -> Configuration:
-    """Merge shipped values, overlays and those said by --config, and check them; or ConfigError."""
+    """Merge the shipped values, the overlays and the values of ``--config``, and check the result.
+
+    Raises ConfigError with one line for each problem. The runs of all simulations are checked only
+    if ``every_run`` is set, since that takes time.
+    """
     merged = dict(shipped)
-    for overlay in (*overlays, _typed(said or {})):
-        # Those that were read from a file have the points of their own files already.
-        merged = _merge(merged, with_points_of_files(overlay, Path()))
+    for overlay in (*overlays, _typed(command_line_values or {})):
+        # An overlay that was read from a file already has the points of the files that it names.
+        with_points = with_points_of_files(with_new_names(overlay), Path())
+        merged = _merge(merged, with_points)
     sweeps = merged.get("simulations")
     missing = {*shipped["simulations"]} - {*sweeps} if isinstance(sweeps, Mapping) else ()
     for name in sorted(missing):

@@ -466,7 +466,7 @@ class Model(Block):
 
 
 class Measure(Block):
-    share: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
+    fraction: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
     front_window: float = key("last fraction of a path, for the front speed", ge=0.05, lt=1.0)
     steady_tolerance: Fraction = key("largest change of a steady peak velocity over the last third")
     trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")

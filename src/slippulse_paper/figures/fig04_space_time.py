@@ -14,7 +14,7 @@ NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
     "measured": {"space_time_displacement": [], "space_time_stress": []},
     "studies": ["exact_space_time"],
-    "settings": ["measure.share"],
+    "settings": ["measure.fraction"],
 }
 # A run of each simulation that the figure can draw, in words of configuration/drawn.py.
 DRAWS = {
@@ -52,7 +52,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
         if panel == "stress":
-            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
+            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["fraction"]}]))
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 

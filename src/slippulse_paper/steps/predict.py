@@ -22,7 +22,7 @@ DIGITS = 15
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), topics; share, still (of `measure`)."""
+    """Outputs: predicted. Settings: sweep (resolved), topics, fraction and still (of `measure`)."""
     table = predictions(settings["topics"], [*runs(settings["sweep"])], settings)
     save_table(table, outputs["predicted"], DIGITS)
 

@@ -39,7 +39,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
         uncertainties = judge_promises(
-            uncertainties, measured, promise, settings["measure"]["share"]
+            uncertainties, measured, promise, settings["measure"]["fraction"]
         )
         sys.stderr.write(f"  {name}: {summarise_promises(uncertainties, promise)}\n")
     save_table(uncertainties, outputs["uncertainties"])
