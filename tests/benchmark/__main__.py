@@ -1,4 +1,7 @@
-"""Speed as ratios within one run on one core, for any machine: `make benchmark`."""
+"""The benchmark: speeds relative to reference codes, on one core (`make benchmark`).
+
+Ratios of times measured in one session can be compared between machines.
+"""
 
 import json
 import platform
@@ -31,30 +34,37 @@ LEVEL, GAMMA = 0.5, 0.65
 RATIO, DX = 0.1, 0.01
 DURATION = 400.0
 REPEATS, TURNS = 3, 18
-# The kernel is timed between these times: a crack with 4,200 to 6,200 sliding blocks on each side,
-# and a steady pulse of 200.
+# The kernel is timed between these two times of a scene: a crack with 4,200 to 6,200 sliding blocks
+# on each side, and a steady pulse of 200 blocks.
 CRACK, PULSE = (3400.0, 5000.0), (60.0, 200.0)
-# Steps of the textbook scheme around these powers of a half, over this many blocks of path.
+# The steps of the textbook scheme are near these powers of 1/2, and the front runs along this
+# number of blocks.
 POWERS, LENGTH = (7, 8, 9), 160.0
 
 
 def best(run: Callable[[], object], repeats: int) -> float:
-    """Least processor seconds of a few repeats, without other work of the machine."""
+    """Return the smallest processor time of a few repeats, in seconds.
+
+    Processor time does not contain other work of the machine.
+    """
     return min(timeit.repeat(run, timer=time.process_time, repeat=repeats, number=1))
 
 
 def stencil_rate(blocks: int) -> float:
-    """Block updates a second of the branch-free stencil, timed once, as the kernel is."""
+    """Return the block updates per second of the stencil without branches, timed once."""
     tau, w = np.full(blocks, 0.5), np.zeros((6, blocks))
     run = lambda count: stencils.taylor_steps(w, tau, count, 1e-6, 1.0, 1e-6, RATIO)
     run(1)
-    # It runs for about 0.05 s.
+    # With this number of steps it runs for about 0.05 s.
     count = max(20, int(1.0 / max(best(lambda: run(20), 1), 1e-9)))
     return blocks * count / best(lambda: run(count), 1)
 
 
 def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
-    """Block updates a second from the end of a scene to ``until``, and the mean sliding blocks."""
+    """Return the block updates per second from the end of a scene until a later time.
+
+    The second number is the mean number of sliding blocks.
+    """
     lattice = Lattice(scene, None, scene.beta)
     lattice.advance_to_end(None)
     updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
@@ -65,7 +75,7 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
 
 
 def kernel() -> dict:
-    """The kernel against a branch-free stencil, the best of turns of both."""
+    """Compare the best times of the kernel and of a stencil without branches, timed in turns."""
     step = {"max_step": 0.5, "order": 4}
     profile = Prestress(LEVEL, LEVEL, 8.0)
     crack = Scene("displacement", profile, CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **step)
@@ -85,9 +95,9 @@ def kernel() -> dict:
 
 
 def whole_scene(accuracy: Mapping, window: float) -> dict:
-    """A scene against the textbook scheme on the full lattice at the same error of the front speed.
+    """Compare a scene with the textbook scheme on the whole lattice, at equal error in front speed.
 
-    The textbook's time is seconds a step times the steps needed.
+    The time of the textbook scheme is the time of one step, multiplied by the number of steps.
     """
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))
@@ -114,11 +124,11 @@ def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
 
 
 def textbook_error(window: float) -> float:
-    """Error of the textbook scheme's front speed over the step, the median of several steps.
+    """Return the error in front speed of the textbook scheme, divided by the step.
 
-    It is of first order in the step and does not depend on the spacing: a small lattice is enough.
-    The reference is the localised scheme at order 8 on the same path, so that the approach to the
-    steady speed does not count.
+    The result is the median over several steps. The error is of first order in the step and does
+    not depend on the spacing, so a small lattice is enough. The reference is the localised scheme
+    at order 8 on the same path, so the approach to the steady speed does not count as an error.
     """
 
     def speed(scheme: str, step: float) -> float:
@@ -133,8 +143,8 @@ def textbook_error(window: float) -> float:
 
 
 def textbook_step(blocks: int) -> float:
-    """Seconds a step of the textbook scheme, which is compiled too, over ``blocks`` blocks."""
-    # Bumps that are too small to matter make the lattice as large as it has to become.
+    """Return the seconds per step of the compiled textbook scheme for a number of blocks."""
+    # Bumps at its ends make the lattice as large as needed. They are too small to matter.
     end = 0.5 * blocks * DX
     profile = Prestress(LEVEL, LEVEL, bumps=((end, 1e-12, DX), (-end, 1e-12, DX)))
     scene = _scene(2.0, DX, {"max_step": 0.25, "order": 4})
@@ -145,6 +155,7 @@ def textbook_step(blocks: int) -> float:
 
 
 def main(folder: Path) -> None:
+    """Run the benchmark, print the results and write them to a folder."""
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text(encoding="utf-8"))
     machine = machine_class() | {"python": platform.python_version(), "versions": versions()}
     scene = whole_scene(config["presets"]["paper"], config["measure"]["front_window"])

@@ -1,6 +1,6 @@
-"""Random scenes at a promised accuracy against the exact solution, and what they cost.
+"""Errors of random scenes at a promised accuracy, relative to the exact solution, and their cost.
 
-python tests/benchmark/promises.py ACCURACY FIRST COUNT MOST_STEPS prints rows of the table in
+python tests/benchmark/promises.py ACCURACY FIRST COUNT MAX_STEPS prints rows of the table in
 config/README.md. Scenes from number 1000 on have a barrier of negative pre-stress on both sides.
 """
 
@@ -18,25 +18,29 @@ from slippulse.model.stability import choose_step
 from slippulse.prediction.comparison import measured_row
 from slippulse.prediction.measured_run import MEASURE_SETTINGS
 
-# The first three are the grid study, the others look for the cheapest spacing that is enough.
-FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
-# Scenes with this number of covered numbers or more have a pulse or a transition among them.
-MANY = 5
+# The first three factors are the grid study. The others serve to find the cheapest spacing that is
+# accurate enough.
+SPACING_FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+# Scenes with at least this number of covered numbers have a pulse or a transition.
+MIN_KEPT_NUMBERS = 5
 KINDS = ["kept", "wrong", "missed", "missed_rightly", "unknown"]
 COLUMNS = ["scene", "family", *KINDS, "cost", "not_kept"]
-BARRIERS = 1000
+FIRST_BARRIER_SCENE = 1000
 RATIOS = (0.0, 0.02, 0.05, 0.1, 0.3, 1.0)
 between = lambda chance, low, high: float(np.exp(chance.uniform(math.log(low), math.log(high))))
 
 
 def profile(left, right, width, *bumps):
-    """Pre-stress that is 1 at x = 0 in spite of bumps."""
+    """Return a pre-stress that is 1 at x = 0, whatever its bumps are."""
     others = sum(a * math.exp(-0.5 * (c / w) ** 2) for c, a, w in bumps)
     return sp.Prestress(left, right, width, 1.0 - others + (1e-12 if bumps else 0.0), (), bumps)
 
 
 def held_displacement(chance, unit):
-    """Levels on both sides, equal in three of four; in one of two a bump, or one on each side."""
+    """Return a random pre-stress and duration under a displacement boundary.
+
+    The levels are equal in three scenes of four. Every other scene has a bump on one side or both.
+    """
     width = between(chance, 0.4, 3.0) * unit * 0.8
     left, equal = float(chance.uniform(0.1, 0.85)), chance.random() < 0.75
     right = left if equal else float(chance.uniform(-0.5, 0.85))
@@ -49,6 +53,7 @@ def held_displacement(chance, unit):
 
 
 def barriers(chance, unit):
+    """Return a random pre-stress with a barrier on each side, and a duration."""
     width, level = float(chance.uniform(0.2, 1.0)) * unit, float(chance.uniform(0.15, 0.8))
     centre, wide = float(chance.uniform(1.2, 4.0)) * unit, float(chance.uniform(0.1, 0.8)) * unit
     depth = float(chance.uniform(0.0, 0.8)) * (1.0 if chance.random() < 0.8 else 2.0)
@@ -59,7 +64,10 @@ def barriers(chance, unit):
 
 
 def held_stress(chance):
-    """A negative level on the left in most, 0 on the right in most; in one of three a bump."""
+    """Return a random pre-stress and duration under a stress boundary.
+
+    Most scenes have a negative level on the left and 0 on the right. One in three has a bump.
+    """
     width, negative = between(chance, 0.5, 4.0), chance.random() < 0.7
     left = -between(chance, 0.1, 2.0) if negative else float(chance.uniform(0.1, 0.6))
     right = 0.0 if chance.random() < 0.75 else float(chance.uniform(0.0, 0.5))
@@ -72,11 +80,11 @@ def held_stress(chance):
 
 
 def drawn(number):
-    """Family, layer, damping ratio and duration of a random scene."""
+    """Return family, layer, damping ratio and duration of a random scene."""
     chance = np.random.default_rng([37, number])
     ratio = float(chance.choice(RATIOS))
     layer = {"release": "total" if chance.random() < 0.8 else "elastic", "boundary": "displacement"}
-    if number >= BARRIERS:
+    if number >= FIRST_BARRIER_SCENE:
         family, layer["gamma"] = "barriers", between(chance, 0.05, 1.0)
         layer["prestress"], duration = barriers(chance, 1.0 / math.sqrt(layer["gamma"]))
     elif chance.random() < 0.6:
@@ -90,26 +98,30 @@ def drawn(number):
 
 
 def numbers(layer, duration, dx, ratio, **scheme):
+    """Simulate a scene, and return its measured numbers."""
     scene = sp.Scene(duration=duration, dx=dx, beta=ratio * dx, **layer, **scheme)
     return measured_row(sp.simulate(scene), MEASURE_SETTINGS)
 
 
-def judge(number, accuracy, most_steps):
-    """Row of one scene: how many numbers of each kind it has; none if it takes too many steps.
+def judge(number, accuracy, max_steps):
+    """Return the row of one scene: how many numbers of each kind it has.
 
-    Its cost is that of its spacing over that of the largest one that keeps all covered numbers.
+    The row has no numbers if the scene takes too many steps. The cost is the work at its spacing,
+    divided by the work at the largest spacing that keeps all covered numbers.
     """
     family, layer, ratio, duration = drawn(number)
     dx = sp.settings_for(accuracy, damping_ratio=ratio, **layer)["dx"]
     result = {"scene": number, "family": family}
-    if duration / dx > most_steps:
+    if duration / dx > max_steps:
         return result
     rows = []
-    for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
+    for spacing in (
+        factor * dx for factor in SPACING_FACTORS if factor * dx <= layer["prestress"].width
+    ):
         step = min(1.0, choose_step("localised", 8, ratio, layer["gamma"] * spacing**2))
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
-    study = grid_tables(tables[:3], FACTORS[1:3], PARAMETERS)
+    study = grid_tables(tables[:3], SPACING_FACTORS[1:3], PARAMETERS)
     study = judge_promises(study, tables[0], accuracy, MEASURE_SETTINGS["fraction"])
     truth = numbers(layer, duration, min(0.01, duration / 2000.0), ratio, scheme="continuum")
     promised = study[study["kept"] != ""].set_index("quantity")
@@ -130,19 +142,21 @@ def judge(number, accuracy, most_steps):
 
 
 def median(costs):
-    """Median cost with its range; "-" for none."""
+    """Return the median cost with its range, "-" if there are no costs."""
     if not len(costs):
         return "-"
     return f"{costs.median():.0f} ({costs.min():.0f} to {costs.max():.0f})"
 
 
-def main(accuracy, first, count, most_steps):
+def main(accuracy, first, count, max_steps):
     """Print rows of the table of config/README.md, numbers not kept, and scenes left out."""
-    judged_scenes = (judge(number, accuracy, most_steps) for number in range(first, first + count))
+    judged_scenes = (judge(number, accuracy, max_steps) for number in range(first, first + count))
     rows = pd.DataFrame(judged_scenes, columns=COLUMNS)
     for family, group in rows.groupby("family", sort=False):
         done, costly = group.dropna(subset="kept"), group.dropna(subset="cost")
-        costs = [median(part["cost"]) for part in (costly, costly[costly["kept"] >= MANY])]
+        costs = [
+            median(part["cost"]) for part in (costly, costly[costly["kept"] >= MIN_KEPT_NUMBERS])
+        ]
         sums = done[KINDS].sum().astype(int)
         cells = [family, f"{accuracy:g}", len(done), len(group) - len(done), *sums, *costs]
         print("|", " | ".join(map(str, cells)), "|")

@@ -1,13 +1,13 @@
-"""What kernels are compared with: a branch-free stencil, and the textbook scheme in numpy."""
+"""References for the speed of kernels: a stencil without branches, and a scheme in NumPy."""
 
 import numpy as np
 
-from slippulse.solver.jit import entry, inner
+from slippulse.solver.jit import kernel_entry, kernel_function
 
 
-@inner()
+@kernel_function()
 def second_difference(out, lower, upper, per_dx2, leaf, damping):
-    """One derivative of slip from the two before it, over an array between fixed ends."""
+    """Compute a time derivative of slip from the two before it, in an array with fixed ends."""
     for i in range(out.shape[0]):
         out[i] = (
             per_dx2 * (lower[i + 2] - 2.0 * lower[i + 1] + lower[i])
@@ -16,8 +16,9 @@ def second_difference(out, lower, upper, per_dx2, leaf, damping):
         )
 
 
-@inner()
+@kernel_function()
 def advance_polynomials(slip, velocity, a, b, c, d, h):
+    """Advance slip and velocity by their Taylor polynomials."""
     for i in range(slip.shape[0]):
         slip[i] += h * (
             velocity[i] + h / 2.0 * (a[i] + h / 3.0 * (b[i] + h / 4.0 * (c[i] + h / 5.0 * d[i])))
@@ -25,9 +26,9 @@ def advance_polynomials(slip, velocity, a, b, c, d, h):
         velocity[i] += h * (a[i] + h / 2.0 * (b[i] + h / 3.0 * (c[i] + h / 4.0 * d[i])))
 
 
-@entry
+@kernel_entry
 def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
-    """Steps of order 4 of slip w[0] and velocity w[1] without events; w has 6 rows."""
+    """Take steps of order 4 without events; rows 0 and 1 of w (6 rows) are slip and velocity."""
     n = tau.shape[0]
     for _ in range(steps):
         second_difference(w[2, 1 : n - 1], w[0], w[1], per_dx2, leaf, damping)
@@ -41,7 +42,7 @@ def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
 def numpy_steps(
     tau: np.ndarray, steps: int, h: float, dx: float, leaf: float, beta: float
 ) -> np.ndarray:
-    """Slip of each block between fixed ends by the textbook scheme, with events once a step."""
+    """Return the slip of each block between fixed ends by the textbook scheme."""
     (slip, velocity, force), sliding = np.zeros((3, tau.size)), tau >= 1.0
     for _ in range(steps):
         force[1:-1] = np.diff(slip + beta * velocity, 2) / dx**2 - leaf * slip[1:-1] + tau[1:-1]

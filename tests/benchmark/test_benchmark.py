@@ -1,4 +1,4 @@
-"""The references of the benchmark do the same work, and its command writes what it measures."""
+"""The references of the benchmark are correct, and its command writes what it measures."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from tests.benchmark import stencils
 
 GAMMA, BETA = 0.3, 0.2
 STEP = 0.4
-# A mode of a chain between fixed ends, at rest there, dx = 1.
+# An eigenmode of a chain with fixed ends and dx = 1, and its stiffness.
 SINE = np.sin(np.pi * 7 * np.arange(50) / 49)
 STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
 
@@ -32,7 +32,7 @@ def test_the_stencil_is_a_taylor_step_of_order_four():
 
 
 def test_plain_numpy_is_the_textbook_scheme():
-    """Against the compiled one, on the same lattice: a crack that turns into two pulses."""
+    """It agrees with the compiled scheme on the same lattice: a crack turns into two pulses."""
     lattice = {"gamma": 0.65, "beta": 0.01, "scheme": "fixed_step", "max_step": 0.25}
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 8.0, 0.1, **lattice)
     run = sp.simulate(scene)
@@ -43,7 +43,7 @@ def test_plain_numpy_is_the_textbook_scheme():
 
 
 def test_the_command_writes_ratios_and_the_machine(tmp_path, monkeypatch, capsys):
-    """The scenes have a hundredth of the size."""
+    """The scenes have about a hundredth of their usual size."""
     small = {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "TURNS": 2, "POWERS": (3, 4)}
     small |= {"LENGTH": 60.0, "CRACK": (60.0, 90.0), "PULSE": (20.0, 30.0)}
     for name, value in small.items():

@@ -15,7 +15,7 @@ from matplotlib.text import Text
 from PIL import Image
 
 from slippulse.measurement.regime import REGIMES
-from slippulse.plotting.style import PAGE, colour_scale, save_figure
+from slippulse.plotting.style import PAGE_WIDTH, colour_scale, save_figure
 from slippulse_paper.figures import fig02_phase_diagram as phases
 
 MODULES = Path(__file__).parents[2] / "src/slippulse_paper/figures"
@@ -53,7 +53,7 @@ def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tm
         apart = min(across, upwards) <= TOUCHING * figure.dpi
         assert apart or {one, other} <= ticks, (one.get_text(), other.get_text())
     width, height = figure.get_size_inches()
-    assert width <= PAGE + 1e-9 and height <= 9.0
+    assert width <= PAGE_WIDTH + 1e-9 and height <= 9.0
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes]
     labels.append(figure.get_supxlabel() + figure.get_supylabel())
     assert sum(bool(label) for label in labels) >= 2 or name in UNLABELLED

@@ -22,7 +22,7 @@ from pypdf import PdfReader
 
 from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting import style
-from slippulse.plotting.style import COLUMN, CYCLE, FAMILY, SCALES, colour_scale
+from slippulse.plotting.style import COLOUR_CYCLE, COLUMN_WIDTH, FONT_FAMILY, SCALES, colour_scale
 from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
 from slippulse_paper.steps import draw_figure
 
@@ -56,7 +56,7 @@ def lab(colour, vision: str) -> np.ndarray:
 
 @pytest.mark.parametrize("vision", ["usual", "deuteranopia", "protanopia"])
 def test_colours_of_the_cycle_are_apart(vision):
-    for one, other in combinations([lab(colour, vision) for colour in CYCLE], 2):
+    for one, other in combinations([lab(colour, vision) for colour in COLOUR_CYCLE], 2):
         assert np.linalg.norm(one - other) > APART
 
 
@@ -69,7 +69,7 @@ def test_levels_are_seen_on_white(quantity, value):
 @pytest.mark.parametrize("vision", VISION)
 @pytest.mark.parametrize("quantity", SCALES)
 def test_a_scale_goes_one_way_in_lightness(quantity, vision):
-    *_, norm = SCALES[quantity]
+    norm = SCALES[quantity].norm
     colours = colour_scale(quantity).to_rgba(norm.inverse(np.linspace(0.0, 1.0, 9)))
     lightness = [lab(colour, vision)[0] for colour in colours]
     steps = np.diff(lightness)
@@ -86,7 +86,7 @@ def test_states_of_a_block_are_apart_in_grey():
 def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp_path, monkeypatch):
     """A figure that no job made has no configuration."""
     monkeypatch.setenv(CONFIGURATION_VARIABLE, configuration)
-    figure, (axes,) = style.new_panels(COLUMN, 2.0, "a")
+    figure, (axes,) = style.new_panels(COLUMN_WIDTH, 2.0, "a")
     axes.set(xlabel="pre-stress AVATAR", ylabel=r"$\tau_0$")
     style.save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf")
     said = f"configuration {configuration}" if configuration else ""
@@ -118,18 +118,18 @@ def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):
         # The defaults of Matplotlib are what is left where a module is imported in a context.
         matplotlib.rcdefaults()
         draw_figure.run({}, outputs, settings)
-        assert matplotlib.rcParams["font.family"] != [FAMILY, "DejaVu Sans"]
+        assert matplotlib.rcParams["font.family"] != [FONT_FAMILY, "DejaVu Sans"]
     with Image.open(outputs["png"]) as picture:
         assert picture.info["dpi"] == pytest.approx((300.0, 300.0), abs=0.1)
     fonts = PdfReader(outputs["pdf"]).pages[0]["/Resources"]["/Font"].values()
-    assert any(FAMILY in font.get_object().get("/BaseFont", font) for font in fonts)
+    assert any(FONT_FAMILY in font.get_object().get("/BaseFont", font) for font in fonts)
 
 
 def test_settings_fonts_and_dates_of_the_user_change_no_byte_of_a_figure(tmp_path, monkeypatch):
     def written(name: str) -> list[bytes]:
         paths = [tmp_path / f"{name}.{ending}" for ending in ("png", "pdf")]
         with style.house_style():
-            figure, (axes,) = style.new_panels(COLUMN, 2.0, "a")
+            figure, (axes,) = style.new_panels(COLUMN_WIDTH, 2.0, "a")
             axes.plot([0.0, 1.5], [0.0, 1e4], label=r"$\tau_0$")
             axes.set(xlabel="position", title="costs $5")
             style.save_figure(figure, *paths, "altered: published.a.statement = $\\frac{1}{$")
@@ -143,7 +143,7 @@ def test_settings_fonts_and_dates_of_the_user_change_no_byte_of_a_figure(tmp_pat
     with matplotlib.rc_context(theirs):
         # A font of the user that has the name of ours.
         fonts = font_manager.fontManager
-        other = replace(fonts.ttflist[0], fname=str(tmp_path / "none.ttf"), name=FAMILY)
+        other = replace(fonts.ttflist[0], fname=str(tmp_path / "none.ttf"), name=FONT_FAMILY)
         monkeypatch.setattr(fonts, "ttflist", [replace(other, weight=400), *fonts.ttflist])
         assert written("theirs") == expected
         assert matplotlib.rcParams["text.usetex"] and os.environ["SOURCE_DATE_EPOCH"] == ""

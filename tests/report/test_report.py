@@ -11,7 +11,7 @@ import yaml
 from PIL import Image
 from report.conftest import DIGEST
 
-from slippulse.plotting.style import FAMILY
+from slippulse.plotting.style import FONT_FAMILY
 from slippulse_paper.claims.ledger import with_texts
 from slippulse_paper.configuration.read import read_config
 from slippulse_paper.report.manuscript import DOCUMENTS, execute, names_for
@@ -66,7 +66,7 @@ def test_the_pdf_is_a4_in_the_typeface_of_its_figures_which_have_alternative_tex
     for page in pdf.pages:
         assert sorted(round(float(x)) for x in page.mediabox[2:]) == [595, 842]
     fonts = pdf.pages[0]["/Resources"]["/Font"].values()
-    assert any(FAMILY in font.get_object()["/BaseFont"] for font in fonts)
+    assert any(FONT_FAMILY in font.get_object()["/BaseFont"] for font in fonts)
     said = set()
     for one in report.pdfs:
         objects = (one.get_object(number) for number in range(1, int(one.trailer["/Size"])))

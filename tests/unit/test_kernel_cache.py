@@ -20,9 +20,9 @@ def run_with(folder, program: str, **variables: str) -> str:
     return subprocess.check_output(command, env=environment, text=True).strip()
 
 
-def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path, monkeypatch):
+def test_any_edit_changes_the_digest_and_with_it_the_cache_folder(tmp_path, monkeypatch):
     copied = tmp_path / "solver"
-    shutil.copytree(jit.SOURCES, copied, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(jit.SOLVER_FOLDER, copied, ignore=shutil.ignore_patterns("__pycache__"))
     digests = [jit.source_digest()]
     assert jit.source_digest(copied) == digests[0]
     for path in sorted(copied.glob("*.py")):
@@ -44,21 +44,22 @@ def test_any_edit_changes_the_digest_and_by_it_the_folder_of_the_cache(tmp_path,
 
 
 @pytest.mark.parametrize("variable", ["SLIPPULSE_CACHE", "NUMBA_CACHE_DIR"])
-def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self(
-    tmp_path, variable
-):
-    """numba's own cache would: the file that holds the caller is unchanged."""
+def test_an_edited_helper_function_makes_its_caller_be_compiled_again(tmp_path, variable):
+    """Numba's own cache would return old machine code, as the file of the caller is unchanged."""
     package, cache = tmp_path / "edited", tmp_path / "cache"
     package.mkdir()
     shutil.copy2(jit.__file__, package / "jit.py")
     (package / "__init__.py").write_text("")
-    imports = "from .helper import helper\nfrom .jit import entry\n"
-    (package / "caller.py").write_text(imports + "@entry\ndef caller(x): return 10 * helper(x)\n")
+    imports = "from .helper import helper\nfrom .jit import kernel_entry\n"
+    (package / "caller.py").write_text(
+        imports + "@kernel_entry\ndef caller(x): return 10 * helper(x)\n"
+    )
     program = "from edited.caller import caller; print(caller(1))"
     for added, result in ((1, "20"), (2, "30")):
-        helper = f"from .jit import inner\n@inner()\ndef helper(x): return x + {added}\n"
+        decorator = "from .jit import kernel_function\n@kernel_function()\n"
+        helper = f"{decorator}def helper(x): return x + {added}\n"
         (package / "helper.py").write_text(helper)
-        # Python's own cache tells files apart by the second of their last change.
+        # Python's own cache would miss a second edit within the same second.
         environment = {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
         environment |= {"SLIPPULSE_CACHE": "", variable: str(cache)}
         assert run_with(cache, program, **environment) == result
@@ -69,13 +70,13 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
 def test_a_cache_that_cannot_be_written_is_a_warning(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setenv("SLIPPULSE_CACHE", str(tmp_path / "file"))
-    monkeypatch.setattr(jit, "SOURCES", tmp_path / "solver")
+    monkeypatch.setattr(jit, "SOLVER_FOLDER", tmp_path / "solver")
     with pytest.warns(UserWarning, match="compiled kernels: .*SLIPPULSE_CACHE") as warned:
         folder = jit.writable_cache()
-    # The folder beside the sources has the digest in its name, too.
+    # The name of the folder next to the sources contains the digest, too.
     assert folder == str(tmp_path / "solver/__pycache__" / jit.cache_folder().name)
     assert folder in str(warned[0].message)
-    monkeypatch.setattr(jit, "SOURCES", tmp_path / "file")
+    monkeypatch.setattr(jit, "SOLVER_FOLDER", tmp_path / "file")
     with pytest.warns(UserWarning, match="each process compiles its own"):
         assert jit.writable_cache() == ""
 
@@ -93,15 +94,15 @@ def test_a_simulation_finds_every_kernel_compiled_and_compiles_none_again(tmp_pa
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
         run_with(tmp_path, f"import slippulse as sp; sp.simulate({scene}, {samples})")
     assert times() == kernels
-    # One that is missing is compiled, and no other.
+    # A missing kernel is compiled, and no other one.
     textbook = next(tmp_path.rglob("*advance_fixed*.nbc"))
     textbook.unlink()
     run_with(tmp_path, COMPILE_ALL)
     assert {name for name, time in times().items() if time != kernels[name]} == {textbook.name}
 
 
-def test_the_first_compilation_of_a_kernel_says_so_once(capsys, monkeypatch):
-    monkeypatch.setattr(compile_notice.LISTENER, "printed", False)
+def test_the_first_compilation_of_a_kernel_is_announced_once(capsys, monkeypatch):
+    monkeypatch.setattr(compile_notice.COMPILE_LISTENER, "printed", False)
 
     def compiled(module: str):
         kernel = lambda x: x + 1
@@ -113,8 +114,8 @@ def test_the_first_compilation_of_a_kernel_says_so_once(capsys, monkeypatch):
         assert capsys.readouterr().err == ""
         kernel = compiled("slippulse.solver.taylor")
         kernel(1)
-        assert capsys.readouterr().err == f"{compile_notice.NOTICE}\n"
-        # Machine code that is there already is not announced, and nothing is twice.
+        assert capsys.readouterr().err == f"{compile_notice.NOTICE_TEXT}\n"
+        # Existing machine code is not announced, and no announcement is repeated.
         kernel(2)
         compiled("slippulse.solver.events")(1)
     compiled("slippulse.solver.layer")(1)

@@ -147,7 +147,7 @@ def test_without_tqdm_a_sweep_runs_with_one_line_of_advice(monkeypatch, capsys):
     ):
         assert run()["release_time"].size
         shown = capsys.readouterr().err
-        assert shown == "progress: tqdm is not installed, so that no bar is drawn\n"
+        assert shown == "progress: no bar is drawn, since tqdm is not installed\n"
 
 
 def test_a_damping_ratio_replaces_beta():

@@ -1,4 +1,4 @@
-"""Formulas of the appendices, as printed, against the code and the paper's equations."""
+"""Formulas of the paper's appendices, checked against the code and the equations of the paper."""
 
 from itertools import pairwise
 from types import SimpleNamespace
@@ -18,8 +18,9 @@ from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, pape
 from slippulse.theory.part import Part
 from slippulse.theory.two_fronts import fast_fronts
 
-# The algebra of the paper: each formula over the one derived from its equations, at random layers
-# of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
+# The algebra of the paper: each printed formula divided by the formula that follows from the
+# equations of the paper, for random layers of rock. The constants are the number of layers, the
+# seed, and the degree of the polynomials that represent a general displacement.
 LAYERS, SEED, DEGREE = 200, 20210501, 4
 # Gauss-Legendre quadrature over the height of a layer, from 0 to 1.
 HEIGHTS, WEIGHTS = 0.5 * np.array(leggauss(DEGREE)) + [[0.5], [0.0]]
@@ -33,7 +34,7 @@ def test_the_factors_at_damping_ratio_one(v):
     for k in (0.3, 2.0, -7.5, 0.4 + 0.0j):
         product = factor(k, 1) * factor(k, -1)
         assert product == pytest.approx(symbol(k, v, 1.0), rel=tolerances.PULSE_THEORY)
-    # No zero in its own half plane: on a large half circle and the axis the factor stays near 1.
+    # The factor has no zero in its half plane: it stays near 1 on a large half circle and the axis.
     half_plane = np.add.outer(np.linspace(-30, 30, 61), 1j * np.array([1e-9, 0.1, 1.0, 10.0]))
     assert np.max(np.abs(factor(half_plane, 1) - 1.0)) <= 1.0 / v + 1e-12
     closed = (1.0 - 1.0 / v) * np.exp(1.0 / v)
@@ -49,12 +50,12 @@ def test_the_symbol_does_not_wind_around_zero(v, b):
 
 @pytest.mark.parametrize("v", [1.2, 2.0])
 def test_the_factor_by_cauchys_integral(v):
-    """ln M_+(0) by adaptive quadrature of the formula as printed, against the code's own."""
+    """The adaptive quadrature of the printed formula for ln M_+(0) agrees with the code."""
     b = 0.3
     phase = lambda z: float(np.angle(symbol(z, v, b))) / z
     edges = np.concatenate([[1e-9, 0.5], np.arange(1.0, 400.0) * 2.0 * np.pi])
     integral = sum(quad(phase, lo, hi, epsabs=1e-13)[0] for lo, hi in pairwise(edges))
-    # Beyond the last edge the mean of -b 4 sin^2(z/2)/(v z) is -2 b/(v z).
+    # Beyond the last edge, the mean value of -b 4 sin^2(z/2)/(v z) is -2 b/(v z).
     integral += -2.0 * b / (v * edges[-1])
     printed = np.exp(0.5 * np.log(1.0 - 1.0 / v**2) + integral / np.pi)
     prestress = theory.prestress_for_speed(v, b)
@@ -63,21 +64,22 @@ def test_the_factor_by_cauchys_integral(v):
 
 @pytest.mark.parametrize("v", [1.2, 2.0, 3.0])
 def test_strong_damping(v):
-    """Elastic rule: tau tends to 1 - 1/v^2 as 1/b. Total rule: b tau to v - 1/v as 1/sqrt(b)."""
+    """By the elastic rule, tau tends to 1 - 1/v^2 as 1/b; by the total rule, b tau to v - 1/v."""
     limit = 1.0 - v**-2
     elastic = [theory.prestress_for_speed(v, b, "elastic") - limit for b in (4.0, 20.0, 100.0)]
     assert abs(elastic[1]) < 0.3 * abs(elastic[0]) and abs(elastic[2]) < 0.3 * abs(elastic[1])
     products = [theory.prestress_for_speed(v, b) * b for b in (100.0, 400.0, 1600.0)]
     first, second = np.diff(products)
     assert second / first == pytest.approx(0.5, abs=tolerances.STRONG_DAMPING_ORDER)
-    # Halved by each factor of 4: what is left is as much again.
+    # The difference is halved by each factor of 4 (as 1/sqrt(b)), so the remaining difference is as
+    # large as the last one.
     assert products[2] + second == pytest.approx(v - 1.0 / v, rel=tolerances.STRONG_DAMPING_LIMIT)
 
 
 @pytest.mark.parametrize("b", [0.0, 0.1])
 @pytest.mark.parametrize("time", [1.0, 3.0])
 def test_uniform_pre_stress_in_closed_form(b, time):
-    """A narrow Gaussian in place of none; what is left falls with its width."""
+    """A narrow Gaussian approximates uniform pre-stress. The error decreases with its width."""
     tau, gamma = 0.5, 0.6
     v = theory.front_speed(tau, b)
     shrink = np.sqrt(1.0 - v**-2)
@@ -94,9 +96,9 @@ def test_uniform_pre_stress_in_closed_form(b, time):
 
 
 def random_layers():
-    """Elastic layers on a rigid substrate (sections II and IV A and appendix B of the paper).
+    """Yield elastic layers on a rigid substrate (sections II and IV A and appendix B of the paper).
 
-    They have properties of rock; each comes with a pre-stress and a generator of its own.
+    Each has random properties of rock and comes with a pre-stress and a random generator.
     """
     random = np.random.default_rng(SEED)
     for i in range(LAYERS):
@@ -116,23 +118,24 @@ def random_layers():
 
 
 def prestress(layer, shear_stress: float) -> float:
+    """Return the dimensionless pre-stress by equation (7)."""
     excess = shear_stress / layer.normal_stress - layer.kinetic_friction
     return excess / (layer.static_friction - layer.kinetic_friction)
 
 
 def relative(one, other) -> float:
-    """1 + the largest difference of two fields over the largest of them."""
+    """Return 1 plus the largest difference of two fields, divided by the largest value."""
     return 1.0 + float(np.max(np.abs(np.subtract(one, other))) / np.max(np.abs(other)))
 
 
 def wave_equation_at_zero(layer, tau, random):
-    """Without Gamma and tau a step of dt = dx moves any profile by one block."""
+    """Without Gamma and tau, a step dt = dx moves any profile by one block."""
     slip = random.normal(size=64)
     return [relative(2.0 * slip - np.roll(slip, -1) + second_difference(slip), np.roll(slip, 1))]
 
 
 def layer_average(layer, tau, random):
-    """Mean over y of the divergence of stress, where u_y = 0, by quadrature, and equation (3)."""
+    """Compare equation (3) with the quadrature over y of the divergence of stress, with u_y = 0."""
     u = random.normal(size=(DEGREE + 1, DEGREE + 1))
     x = random.uniform(-1.0, 1.0)
     shear = layer.shear_modulus / layer.thickness**2
@@ -147,7 +150,7 @@ def layer_average(layer, tau, random):
 
 
 def displacement_reduction(layer, tau, random):
-    """A linear profile under a held top, averaged by quadrature, and (A8), its sign corrected."""
+    """Compare (A8), with its sign corrected, with the quadrature of a linear profile."""
     slip, held, acceleration, *curvatures = random.normal(size=5)
     height, rigidity = layer.thickness, layer.shear_modulus / layer.thickness
     inertia = layer.density * height * (WEIGHTS @ (acceleration * (1.0 - HEIGHTS)))
@@ -162,14 +165,14 @@ def displacement_reduction(layer, tau, random):
 
 
 def prestress_is_initial_displacement(layer, tau, random):
-    """Force with a relative displacement u_0 at the start, and with its stress instead."""
+    """An initial displacement u_0 gives the same force as a pre-stress equal to its stress."""
     u0, slip = random.normal(size=(2, 32))
     force, stress, both = (second_difference(u) - layer.gamma * u for u in (slip, u0, u0 + slip))
     return [relative(both, force + stress)]
 
 
 def nondimensional_form(layer, tau, random):
-    """Each coefficient of the scaled equations, with X = H and the stated T and U, over inertia."""
+    """Return the coefficients of the scaled equations, with X = H, T and U, divided by inertia."""
     height, time = layer.thickness, layer.time_scale
     ratios = []
     for boundary, halved in (("displacement", 2.0), ("stress", 1.0)):
@@ -188,7 +191,7 @@ def nondimensional_form(layer, tau, random):
 
 
 def units_wave_speed(layer, tau, random):
-    """Phase speed, from rho w^2 = (lambda + 2G) k^2 + 2G/H^2, and the root of 1 + gamma/k^2."""
+    """Compare the phase speed by rho w^2 = (lambda + 2G) k^2 + 2G/H^2 with sqrt(1 + gamma/k^2)."""
     k = random.uniform(0.1, 10.0)
     metres = k / layer.thickness
     stiffness = layer.modulus * metres**2 + 2.0 * layer.shear_modulus / layer.thickness**2
@@ -197,13 +200,13 @@ def units_wave_speed(layer, tau, random):
 
 
 def pulse_algebra(layer, tau, random):
-    """Closed forms of a pulse, its width and stress drop, against the steady equation."""
+    """Compare the closed forms of a pulse, its width and stress drop with the steady equation."""
     gamma, pulse = layer.gamma, paper_pulse(tau, layer.gamma)
     k = np.sqrt(gamma * (1.0 - tau**2)) / tau
     chi = random.uniform(-0.5, 0.5, size=8) * np.pi / k
     sine, cosine = np.sin(k * chi), np.cos(k * chi)
     printed = tau / gamma * (1.0 - sine), cosine / np.sqrt(gamma), sine / tau
-    # (v^2 - 1)/v^2 = tau_0^2.
+    # In the steady equation, (v^2 - 1)/v^2 = tau_0^2.
     equation = relative(tau**2 * printed[2] + gamma * printed[0], np.full(8, tau))
     fields = map(relative, pulse.profile(chi - 0.5 * np.pi / k), printed)
     peak, speed = pulse.peak_velocity * np.sqrt(gamma), pulse.speed / front_speed_undamped(tau)
@@ -212,16 +215,19 @@ def pulse_algebra(layer, tau, random):
 
 
 def transition_estimate_algebra(layer, tau, random):
-    """Oscillator without strain term: slip 2 tau/gamma and rest at pi/sqrt(gamma); the length."""
+    """Check T_trans and L_trans of an oscillator without the strain term.
+
+    After the time pi/sqrt(gamma) its slip is 2 tau/gamma, and it is at rest.
+    """
     root = np.sqrt(layer.gamma)
-    # In units of 1/sqrt(gamma) and tau/gamma: slip, velocity, and the constant load.
+    # The state is slip, velocity and the constant load, in units of 1/sqrt(gamma) and tau/gamma.
     slip, velocity, _ = expm(np.pi * np.array([[0, 1, 0], [-1, 0, 1], [0, 0, 0]])) @ [0.0, 0.0, 1.0]
     length = 2.0 * np.pi / root * front_speed_undamped(tau)
     return [slip / 2.0, 1.0 + velocity, length / (2.0 * np.pi / (root * np.sqrt(1.0 - tau**2)))]
 
 
 def dimensional_lengths(layer, tau, factor=1.0) -> np.ndarray:
-    """L_trans and width at a factor times the thickness, over those of the scaled model."""
+    """Return L_trans and pulse width at a multiple of H, divided by those of the scaled model."""
     reach = factor * layer.thickness / np.sqrt(layer.gamma) * front_speed_undamped(tau)
     transition = 2.0 * np.pi / np.sqrt(layer.gamma * (1.0 - tau**2))
     scaled = np.array([transition, paper_pulse(tau, layer.gamma).width])
@@ -229,14 +235,14 @@ def dimensional_lengths(layer, tau, factor=1.0) -> np.ndarray:
 
 
 def dimensional_peak_velocity(layer, tau, random):
-    """Twice the peak as printed in section IV A, and that of the paper's pulse by the scales."""
+    """Compare twice the peak velocity printed in section IV A with the pulse and its scales."""
     printed = layer.friction_drop / np.sqrt(2.0 * layer.shear_modulus * layer.density)
     scaled = layer.slip_scale["displacement"] / layer.time_scale / np.sqrt(layer.gamma)
     return [2.0 * printed / scaled]
 
 
 def damage_zone_in_series(layer, tau, random):
-    """Stress drop of two layers in series, and equation (17); also with rigid rock."""
+    """Compare equation (17) with the stress drop of two layers in series, also with rigid rock."""
     slip, rock, thickness = (10.0 ** random.uniform(-3.0, 3.0) for _ in range(3))
     shear, height = layer.shear_modulus, layer.thickness
     compliance = height / shear + thickness * height / (rock * shear)
@@ -246,7 +252,7 @@ def damage_zone_in_series(layer, tau, random):
 
 
 def burridge_knopoff_identity(layer, tau, random):
-    """Forces of springs on blocks at distance H, and those of the scheme at dx = 1."""
+    """Compare the forces of springs between blocks at distance H with the scheme at dx = 1."""
     slip, load = random.normal(size=32), random.uniform(-1.0, 1.0, size=32)
     scale, mass = layer.slip_scale["displacement"], 0.5 * layer.density * layer.thickness**2
     force = scale * (0.5 * layer.modulus * second_difference(slip) - layer.shear_modulus * slip)
@@ -259,13 +265,13 @@ FORMULAS = (wave_equation_at_zero, layer_average, displacement_reduction, nondim
 FORMULAS += (prestress_is_initial_displacement, units_wave_speed, pulse_algebra)
 FORMULAS += (transition_estimate_algebra, burridge_knopoff_identity, dimensional_peak_velocity)
 ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
-    # Equation (7) at the static strength, forwards.
+    # Equation (7), evaluated at the static strength.
     "static_threshold": lambda one, *_: [prestress(one, one.static_friction * one.normal_stress)],
     "dimensional_transition_length": lambda rock, tau, _: dimensional_lengths(rock, tau)[:1],
     "dimensional_width": lambda rock, tau, _: dimensional_lengths(rock, tau)[1:],
     "transition_length_scales_with_H": lambda one, tau, _: dimensional_lengths(one, tau, 2.0) / 2.0,
     "damage_zone_stress_drop": damage_zone_in_series,
-    # A zone of 1e-9 of the stiffness of rock ten times as thick.
+    # A damage zone with 1e-9 of the stiffness of a rock that is ten times as thick.
     "damage_zone_limit": lambda *_: [damage_zone_stress_drop(1.0, 1.0, 1e9, 1.0, 10.0)],
 }
 

@@ -1,4 +1,4 @@
-"""Blocks and springs against an independent integration, and the friction law block by block."""
+"""Chains of blocks and springs, compared with an independent integration event by event."""
 
 import math
 from itertools import product
@@ -13,7 +13,7 @@ import slippulse as sp
 from slippulse.solver.fixed_step import LATTICES
 
 DURATION = 16.0
-REACH = 40
+COMPARED_BLOCKS = 40  # on each side of x = 0
 UNEVEN = sp.Prestress(0.2, 0.6, peak=1.01, bumps=((5.0, -0.7, 1.0),))
 TWO_POINTS = sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0)))
 PROFILES = {
@@ -33,10 +33,11 @@ def run_of(name: str, beta: float, release: str, **accuracy):
 
 
 def check(run, chain: Chain, error: float) -> None:
+    """Compare the fields of a run with the fields of the independent integration."""
     blocks = np.round(run["x"].values).astype(int)
-    kept = np.abs(blocks) <= REACH
+    kept = np.abs(blocks) <= COMPARED_BLOCKS
     for name in ("release_time", "stick_time", "slip", "slip_velocity"):
-        ours, theirs = run[name].values[kept], getattr(chain, name)[blocks[kept] + REACH]
+        ours, theirs = run[name].values[kept], getattr(chain, name)[blocks[kept] + COMPARED_BLOCKS]
         np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=error, err_msg=name)
 
 
@@ -44,15 +45,17 @@ def check(run, chain: Chain, error: float) -> None:
 def test_every_event_and_every_slip_agrees(case):
     run = run_of(*case, max_step=0.05, order=8, half_lattice=False)
     _, gamma, profile = PROFILES[case[0]]
-    chain = Chain(profile(np.arange(-REACH, REACH + 1.0)), gamma, *case[1:]).run(DURATION)
+    chain = Chain(
+        profile(np.arange(-COMPARED_BLOCKS, COMPARED_BLOCKS + 1.0)), gamma, *case[1:]
+    ).run(DURATION)
     releases, sticks, again = (run.attrs[name] for name in ("releases", "sticks", "re_releases"))
     assert (releases, sticks) == (chain.releases, chain.sticks)
-    # Blocks released again are counted, and slide on.
+    # Blocks that were released again are counted as well, and are still sliding.
     assert again == releases - np.isfinite(run["release_time"].values).sum()
     assert releases - sticks == sliding(run).sum()
     assert again > 0 or case != ("stress, one-way", 0.0, "total")
     check(run, chain, tol.CHAIN)
-    # The fourth-order step of the figure agrees to its truncation error.
+    # The fourth-order step, as in the figure, agrees within its truncation error.
     check(run_of(*case, max_step=0.1, order=4), chain, tol.CHAIN_ORDER_4)
 
 

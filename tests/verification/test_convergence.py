@@ -1,4 +1,4 @@
-"""Observed orders in the time step, each against a much finer run of the highest order."""
+"""Observed orders of convergence in the time step, relative to a much finer run of order 8."""
 
 import math
 from dataclasses import replace
@@ -11,17 +11,17 @@ import tolerances as tol
 
 import slippulse as sp
 
-# Without damping the lattice rings at its own scale, and under a stress boundary an event may
-# appear or vanish with the step. The order is measured where all steps have the same events.
+# Without damping the lattice oscillates at the scale of its spacing, and under a stress boundary
+# the step can decide whether an event happens. These scenes have the same events for all steps.
 BASES = {
     "displacement, undamped": ("displacement", 0.65, 0.0, sp.Prestress(0.5, 0.5)),
     "displacement, damped": ("displacement", 0.65, 0.02, sp.Prestress(0.5, 0.5)),
     "stress, damped": ("stress", 0.0, 0.02, sp.Prestress(-0.3, 0.2)),
 }
-# Gamma and the levels; the damping ratio and the rate strengthening.
+# Gamma and the levels on the left and right, and then damping ratios with rate strengthening.
 SPRUNG, UNSPRUNG = [(0.65, 0.5, 0.5), (0.1, 0.3, 0.8)], [(0.0, -0.5, 0.0), (0.0, 0.4, -0.2)]
 RATES = [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6)]
-# Weakening without leaf springs would let slip run away.
+# Without leaf springs, slip would run away under friction that weakens with slip rate.
 BALANCED = [*product(SPRUNG + UNSPRUNG, RATES), *product(SPRUNG, [(0.0, -0.3)])]
 DAMPED = ("displacement, damped", "stress, damped")
 STEPS, HALVED = (0.2, 0.1, 0.05), 2.0 ** np.arange(7)
@@ -33,7 +33,7 @@ slope = lambda steps, errors: np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 @cache
 def run(base: str, **accuracy):
-    """The blocks that are released by the end in every case."""
+    """Return a run, at the blocks that are released by the end for every step."""
     boundary, gamma, beta, profile = BASES[base]
     how = {"resolved_blocks": 1} | accuracy
     scene = sp.Scene(boundary, profile, 10.0, 0.1, gamma=gamma, beta=beta, **how)
@@ -41,6 +41,7 @@ def run(base: str, **accuracy):
 
 
 def errors(base: str, quantity: str, steps=STEPS, mean=np.nanmax, **accuracy) -> list[float]:
+    """Return the error of a field for each step, relative to the finest run."""
     finest = run(base, max_step=0.02, order=8)[quantity].values
     fields = [run(base, max_step=float(step), **accuracy)[quantity].values for step in steps]
     return [float(mean(np.abs(values - finest))) for values in fields]
@@ -56,7 +57,7 @@ def test_release_times_and_slip_converge_at_the_order_of_the_step(base, order, q
 @pytest.mark.parametrize("base", DAMPED)
 @pytest.mark.parametrize("quantity", ["release_time", "slip"])
 def test_the_textbook_scheme_converges_at_first_order(base, quantity):
-    """Root mean square over the blocks, since single releases jump by entire steps."""
+    """The error is a root mean square, since single release times jump by whole steps."""
     steps, (low, high) = 0.2 / 2.0 ** np.arange(9), tol.FIRST_ORDER
     mean = lambda error: np.sqrt(np.nanmean(error**2))
     deviations = errors(base, quantity, steps, mean, scheme="fixed_step")
@@ -64,8 +65,8 @@ def test_the_textbook_scheme_converges_at_first_order(base, quantity):
     assert deviations[-1] < tol.FIXED_AGAINST_LOCALISED
 
 
-# The position of events in a step decides size and sign of the error of the step itself with
-# damping, hence six halvings. The viscous loss is integrated to third order.
+# With damping, size and sign of the error depend on the position of events within the step, so the
+# step is halved six times. The viscous loss is integrated to third order.
 BALANCES = [("stress, damped", 0.1 / HALVED[:4], {"scheme": "fixed_step"}, (1, 1))]
 BALANCES += [("displacement, undamped", STEPS[1:], {"order": n}, (n, n)) for n in (4, 6)]
 BALANCES += [(base, 0.8 / HALVED, {"order": 4}, (3, 4)) for base in DAMPED]
@@ -85,9 +86,10 @@ def test_the_energy_balance_closes_at_the_order_of_the_step_or_of_the_loss(
 
 @pytest.mark.parametrize("case", BALANCED)
 def test_the_energy_balance_closes(paper_accuracy, case):
-    """Work of the pre-stress = kinetic + elastic + leaf springs + loss, at the paper preset's step.
+    """The work of the pre-stress is the sum of all other energies, at the step of the paper preset.
 
-    The loss is to damping and rate strengthening. Friction that weakens with slip rate adds energy.
+    These are kinetic energy, elastic energy, energy of the leaf springs, and the loss to damping
+    and rate strengthening. Friction that weakens with slip rate adds energy.
     """
     (gamma, *levels), (ratio, alpha) = case
     boundary, dx = "displacement" if gamma else "stress", 0.02
@@ -96,8 +98,8 @@ def test_the_energy_balance_closes(paper_accuracy, case):
     numbers = sp.simulate(scene).attrs
     assert numbers["energy_residual"] < tol.ENERGY
     stored = ("kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss")
-    all_of_it = sum(map(numbers.get, stored))
-    assert numbers["work_of_prestress"] == pytest.approx(all_of_it, rel=tol.ENERGY)
+    total = sum(map(numbers.get, stored))
+    assert numbers["work_of_prestress"] == pytest.approx(total, rel=tol.ENERGY)
     assert np.sign(numbers["viscous_loss"]) == np.sign(ratio + alpha)
     finer = replace(scene, max_step=0.1 * scene.max_step, order=8)
     assert sp.simulate(finer).attrs["energy_residual"] < tol.ENERGY_FINE

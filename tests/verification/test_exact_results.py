@@ -1,4 +1,4 @@
-"""Theory against tables, closed forms and its equations; the solver against both and a figure."""
+"""Theory compared with tables and equations; runs compared with theory and a published figure."""
 
 from itertools import pairwise
 
@@ -17,19 +17,19 @@ from slippulse.theory.two_fronts import fast_fronts
 GAMMA = 2.0 / 3.0
 SPEED = sp.theory.front_speed(0.4, 0.3, "elastic")
 STEADY = [(0.25, 0.55, beta, 1.0686) for beta in (0.0, 1e-3, 0.05)] + [(0.4, 0.65, 3e-3, SPEED)]
-# On the right the pre-stress falls from 1 to 1/2 over TAIL_LENGTH, and is 0 from there on.
+# On the right the pre-stress falls from 1 to 1/2 within TAIL_LENGTH, and is 0 beyond it.
 TAIL_LEVEL, TAIL_LENGTH, TAIL_RATIO = -0.5, 3.0, 0.1
 X_MINUS, ARREST = -4.5, 9.1247
 
 
 def run_of(left, right=None, width=1.0, *, gamma=0.0, **values):
-    """A run under a stress boundary, or with leaf springs under the other one."""
+    """Return a run under a stress boundary, or under a displacement boundary if gamma is given."""
     boundary = "displacement" if gamma else "stress"
     prestress = sp.Prestress(left, left if right is None else right, width)
     return sp.simulate(sp.Scene(boundary=boundary, prestress=prestress, gamma=gamma, **values))
 
 
-# Levels whose exact speeds are irrational, so that no locking on dx/(n dt) can pass for agreement.
+# The exact speeds of these levels are irrational, so a front locked to dx/(n dt) cannot agree.
 @pytest.mark.parametrize("tau0", [0.23, 0.37, 0.5, 0.71, 0.9])
 def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     run = run_of(tau0, gamma=0.65, dx=0.02, duration=120.0, **paper_accuracy)
@@ -59,8 +59,8 @@ def test_the_published_figure():
     assert edges == pytest.approx([3.19, 4.74, 6.03, 7.27, 8.48, 9.64], rel=tol.PUBLISHED_TRAILING)
 
 
-# Level, gamma, T_trans and L_trans as tabulated, and first sticks of lattices at dx = 0.05, 0.02
-# and 0.01; None where no lattice is run.
+# Level, gamma, tabulated T_trans and L_trans, and first stick times of lattices with dx = 0.05,
+# 0.02 and 0.01 (None if no lattice is solved).
 TRANSITIONS = [
     (0.5, GAMMA, (3.7805, 10.3226), (3.7945, 3.7863, 3.7835)),
     (0.2, GAMMA, (3.6006, 8.7692), ()),
@@ -90,7 +90,7 @@ def test_lattices_converge_to_tabulated_transitions(paper_accuracy, tau0, gamma,
     _, coarse, middle, fine = np.array(measured) - truth
     first_sticks = [time for time, _ in measured[: len(known)]]
     assert first_sticks == pytest.approx(known, rel=tol.TRANSITION_TABLE)
-    # L_trans can be converged to the error of the step already, and then has no order.
+    # If L_trans has converged to the error of the step, no order can be measured.
     low, high = tol.TRANSITION_HALVING
     for ratio in (coarse / middle, middle / fine):
         assert low < ratio[0] < high and (not known or low < ratio[1] < high)
@@ -98,8 +98,8 @@ def test_lattices_converge_to_tabulated_transitions(paper_accuracy, tau0, gamma,
     assert not known or np.all(np.abs(2.0 * middle - coarse) < tol.TRANSITION_EXTRAPOLATED * truth)
 
 
-# Level, width, damping ratio, and tabulated times without damping to 0.9, 0.95 and 0.99 of
-# |x_minus|, over |x_minus|.
+# Level, width, damping ratio, and tabulated times without damping at which the front has covered
+# 0.9, 0.95 and 0.99 of |x_minus|, divided by |x_minus|.
 CRACKS = [
     (-0.75, 5.0, 0.1, ()),
     (-1.0, 4.0, 0.1, ()),
@@ -134,7 +134,7 @@ def test_share_times_and_peak_under_stress_as_tabulated_to_first_order(left, wid
 
 @pytest.mark.parametrize(("tau", "gamma", "beta", "v"), STEADY)
 def test_the_pulse_solves_its_equation(tau, gamma, beta, v):
-    """(v^2 - 1) U'' + gamma U + beta v U''' = tau_0, with U and U' from rest at the front."""
+    """(v^2 - 1) U'' + gamma U + beta v U''' = tau_0, with U = U' = 0 at the front."""
     pulse = sp.theory.steady_pulse(tau, gamma, beta, v)
     root = complex(pulse.growth, pulse.wavenumber)
     assert abs(beta * v * root**3 + (v**2 - 1.0) * root**2 + gamma) < tol.QUADRATURE
@@ -151,7 +151,7 @@ def test_the_pulse_solves_its_equation(tau, gamma, beta, v):
 
 
 class EndingTail(sp.Prestress):
-    """A ramp, which no Gaussian can be."""
+    """Pre-stress with a linear ramp, which `Prestress` cannot have."""
 
     def __call__(self, x):
         x = np.asarray(x, dtype=float)
@@ -160,7 +160,10 @@ class EndingTail(sp.Prestress):
 
 
 def test_the_arrest_of_a_tail_that_ends():
-    """t = T(3) + 3 - x_minus, the last characteristic entering where the tail ends."""
+    """The front stops at t = T(3) + 3 - x_minus.
+
+    The last characteristic starts at the end of the tail, at x = 3 and t = T(3).
+    """
     slowness = lambda x: 1.0 / sp.theory.front_speed(1.0 - 0.5 * x / TAIL_LENGTH, TAIL_RATIO)
     arrest = quad(slowness, 0.0, TAIL_LENGTH)[0] + TAIL_LENGTH - X_MINUS
     assert arrest == pytest.approx(ARREST, abs=1e-4)
@@ -171,5 +174,5 @@ def test_the_arrest_of_a_tail_that_ends():
         left = run["release_time"].where(run["x"] < 0.0)
         assert float(left.max()) == pytest.approx(ARREST, rel=0.01)
         gaps.append(float(run["x"].where(left.notnull()).min()) - X_MINUS)
-    # It stops short by a few blocks, and by less on the finer lattice.
+    # The front stops a few blocks too early, and fewer on the finer lattice.
     assert 0.0 < gaps[1] < gaps[0] < 3.0 * 0.04

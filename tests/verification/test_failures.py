@@ -1,4 +1,4 @@
-"""Simulations whose numbers are not the model's: stopped with a reason, or flagged."""
+"""Simulations whose numbers are not those of the model stop with a reason, or are flagged."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def stress(left: float, right: float, duration: float, dx: float, **values) -> s
 
 
 def at_most(calls: int):
-    """A progress that ends after some calls a simulation that repeats one instant for ever."""
+    """Return a progress function that ends an endless simulation after some calls."""
     left = iter(range(calls))
     return lambda _fraction: next(left)
 
@@ -26,7 +26,7 @@ def at_most(calls: int):
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize("scheme", LATTICES)
 def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
-    """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
+    """In the published scene with -beta, modes grow at rates up to 2 beta/dx^2 = 20."""
     scene = displacement(0.25, 10.8, 0.01, gamma=0.55, beta=1e-3, scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
         solve_on_lattice(scene, progress=at_most(40), damping_sign=-1, kind=LATTICES[scheme])
@@ -52,12 +52,12 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
 
 
 arrest = lambda left, **values: displacement(left, 60.0, beta=0.01, **values)
-# The pre-stress is positive over a seventh of the Gaussian's width on each side.
+# The pre-stress is positive within a seventh of the width of the Gaussian on each side.
 steep = lambda dx: stress(-100.0, 0.0, 4.0, dx, beta=0.1 * dx, friction_ratio=60.0)
-# The front runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps.
+# The front speed is dx/(n dt) instead of 1.1547, which differs by 13 % at the longest step.
 textbook = lambda step: displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=step)
 BOUNDED = sp.friction("bounded_rate", limit=0.2, v_0=0.1)
-# The level -1.5 is below the threshold of reverse sliding for ratios below 0.25.
+# The level -1.5 is below the threshold of reverse sliding if the friction ratio is below 0.25.
 below = lambda ratio: stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=ratio)
 FLAGS = {
     "a pulse of few blocks": (displacement(0.3, 20.0, 0.4), "unresolved_pulse"),

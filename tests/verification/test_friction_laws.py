@@ -1,4 +1,4 @@
-"""Other laws of friction on lattices: energy, healing, and the steady ruptures of theory."""
+"""Other laws of friction on lattices: energy balance, healing, and steady ruptures by theory."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from slippulse.model.friction import LAWS
 GAMMA, BETA = 2.0 / 3.0, 0.05
 SPACINGS = (0.08, 0.04, 0.02)
 # Work against friction is summed to second order in the step.
-ENERGY = 1e-5
+MAX_ENERGY_RESIDUAL = 1e-5
 EXAMPLES = {
     "coulomb": {},
     "linear_rate": {"alpha": 0.4},
@@ -36,18 +36,18 @@ def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
     if law in ("coulomb", "linear_rate"):
         assert fine["friction_loss"] == 0.0
         return
-    assert fine["energy_residual"] < ENERGY
+    assert fine["energy_residual"] < MAX_ENERGY_RESIDUAL
     assert fine["energy_residual"] < 0.4 * coarse["energy_residual"]
     assert np.sign(fine["friction_loss"]) == (-1.0 if law == "rate_weakening" else 1.0)
 
 
 @pytest.mark.parametrize("law", ["slip_weakening", "exponential_weakening"])
 def test_the_work_against_friction_is_the_fracture_energy_of_the_path(law):
-    """Exponential weakening by 50 d_c and more pays d_c a length, linear weakening d_c/2."""
+    """It is d_c per length for exponential weakening and slip > 50 d_c, and d_c/2 for linear."""
     data = run(sp.friction(law, d_c=0.02, nucleation=2.0), 0.02, 0.8, 12.0, step=0.05)
     done = (np.abs(data["x"].values) >= 2.0) & (data["slip"].values > 0.0)
     per_length = 0.02 if law == "exponential_weakening" else 0.01
-    # Blocks at the fronts are on their way.
+    # Blocks at the fronts have not weakened completely.
     assert data.attrs["friction_loss"] == pytest.approx(per_length * 0.02 * done.sum(), rel=0.03)
 
 
@@ -56,12 +56,15 @@ def test_the_work_against_friction_is_the_fracture_energy_of_the_path(law):
     ("level", "d_c", "sticks"), [(0.8, 0.1, True), (0.5, 0.2, True), (0.5, 0.3, False)]
 )
 def test_lattices_tend_to_the_rupture_of_linear_weakening(level, d_c, sticks, scheme, least):
-    """By events at second order: the error falls by a factor of at least 3 as spacing is halved."""
+    """With events, the error falls by a factor of at least 3 each time the spacing is halved."""
     exact = theory.weakening_pulse(level, GAMMA, BETA, d_c)
     law = sp.friction("slip_weakening", d_c=d_c, nucleation=2.0)
     runs = [run(law, dx, level, scheme=scheme) for dx in SPACINGS]
     measured = [sp.measure(data) for data in runs]
-    assert scheme == "fixed_step" or max(data.attrs["energy_residual"] for data in runs) < ENERGY
+    assert (
+        scheme == "fixed_step"
+        or max(data.attrs["energy_residual"] for data in runs) < MAX_ENERGY_RESIDUAL
+    )
     assert exact.sticks == sticks
     expected = {"front_speed_right": exact.speed} | ({"pulse_slip": exact.slip} if sticks else {})
     for name, value in expected.items():
@@ -79,7 +82,7 @@ BOUNDED_RATE = sp.friction("bounded_rate", **EXAMPLES["bounded_rate"])
 def test_bounded_weakening_with_slip_rate_by_events_tends_to_its_steady_pulse(ratio):
     exact = theory.rate_pulse(0.5, GAMMA, ratio, RATE_WEAKENING)
     runs = [run(RATE_WEAKENING, dx, beta=ratio * dx, scheme="localised") for dx in SPACINGS]
-    assert max(data.attrs["energy_residual"] for data in runs) < ENERGY
+    assert max(data.attrs["energy_residual"] for data in runs) < MAX_ENERGY_RESIDUAL
     measured = [sp.measure(data) for data in runs]
     for name, value in (("pulse_slip", exact.slip), ("front_speed_right", exact.speed)):
         errors = np.abs([numbers[name] / value - 1.0 for numbers in measured])
@@ -92,14 +95,14 @@ def test_bounded_strengthening_tends_to_its_steady_pulse():
     measured = [sp.measure(run(BOUNDED_RATE, dx, beta=0.1 * dx, **how)) for dx in SPACINGS]
     errors = [abs(numbers["pulse_slip"] / exact.slip - 1.0) for numbers in measured]
     assert errors[0] >= errors[1] >= errors[2] and errors[2] < 5e-3
-    # Fronts of this scheme lock to a whole number of steps a block.
+    # Fronts of this scheme lock to a whole number of steps per block.
     expected = {"front_speed_right": exact.speed, "pulse_peak_velocity": exact.peak_velocity}
     assert {name: measured[2][name] for name in expected} == pytest.approx(expected, rel=0.01)
     assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
 
 
 @pytest.mark.parametrize("order", [4, 6, 8])
-def test_the_order_of_a_step_holds_where_friction_bends_inside_it(order):
+def test_a_step_keeps_its_order_if_friction_has_a_kink_within_it(order):
     scene = {"dx": 0.1, "beta": 0.01, "duration": 8.0, "scheme": "localised"}
     fine = run(RATE_WEAKENING, **scene, order=8, step=0.02)["slip"]
     coarse = [run(RATE_WEAKENING, **scene, order=order, step=step)["slip"] for step in (0.4, 0.2)]
@@ -116,7 +119,7 @@ def test_the_order_of_a_step_holds_where_friction_bends_inside_it(order):
         sp.Prestress(0.5, 0.5, bumps=((9.0, 0.5, 1.0),)),
     ],
 )
-def test_bends_close_the_energy_also_where_pulses_die_meet_and_start_again(profile):
+def test_energy_balances_with_kinks_of_friction_also_where_pulses_die_or_meet(profile):
     def solve(**values):
         how = {"scheme": "localised", "friction": RATE_WEAKENING, "beta": 0.005} | values
         return sp.simulate(sp.Scene("displacement", profile, 12.0, 0.05, GAMMA, **how))
@@ -130,7 +133,7 @@ def test_bends_close_the_energy_also_where_pulses_die_meet_and_start_again(profi
     assert data.attrs["friction_loss"] == pytest.approx(textbook.attrs["friction_loss"], rel=2e-3)
 
 
-def test_without_a_bend_in_reach_bounded_weakening_is_linear():
+def test_bounded_weakening_that_never_reaches_its_kink_is_linear():
     linear = run(sp.friction("linear_rate", alpha=-0.4), 0.05, scheme="localised", duration=12.0)
     law = sp.friction("rate_weakening", slope=0.4, limit=1e3)
     data = run(law, 0.05, scheme="localised", duration=12.0)
@@ -151,7 +154,7 @@ def test_linear_weakening_by_events_does_not_depend_on_the_order():
 
 
 def test_a_block_heals_when_it_sticks():
-    """It needs a stress of 1 again: no block slides back and forth behind a pulse."""
+    """A block that stuck needs a stress of 1 to slide again, so none is released behind a pulse."""
     data = run(SLIP_WEAKENING, 0.05, 0.8, 30.0)
     assert data.attrs["re_releases"] == 0 and data.attrs["sticks"] > 100
     data = run(sp.friction("slip_weakening", d_c=0.1, nucleation=0.0), 0.05)

@@ -1,4 +1,4 @@
-"""Runs off the beaten path that once gave wrong numbers without a flag: right now, or flagged."""
+"""Unusual runs that gave wrong numbers in earlier versions: now they are right, or flagged."""
 
 from itertools import product
 
@@ -18,10 +18,12 @@ from slippulse.prediction.measured_run import MEASURE_SETTINGS
 GAMMA, SPEED, END = 0.65, 1.2, 30.0
 
 
-def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, str]:
-    """Pulse of a run whose right front came to a distance, and waited at 4/5 of it; its state.
+def artificial_pulse(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, str]:
+    """Return the measured pulse of an artificial run, and its state.
 
-    pulses : start, end and peak velocity of a sine of slip velocity
+    The right front has reached a distance, where it stopped for a time before the end. On its way
+    it waited at 4/5 of the distance. The slip velocity of each of ``pulses`` is half a sine wave,
+    given by its start, end and peak velocity.
     """
     x = 0.05 * np.arange(-10, 800)
     released = (x >= 0.0) & (x <= reached)
@@ -42,7 +44,7 @@ def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[LeadingPulse, st
 
 
 def test_a_promise_looks_at_the_prestress_that_fronts_cross():
-    """L of the first scene was 1.7e-2 off at an accuracy of 1e-2, and said to be 4e-4 off."""
+    """In an earlier version, L_trans of the first scene was wrong by 1.7e-2, reported as 4e-4."""
     for distance, promised in ((2.92, False), (60.0, True)):
         barriers = ((distance, -1.096, 0.938), (-distance, -1.096, 0.938))
         profile = sp.Prestress(0.549, 0.549, 1.043, 1.0172, (), barriers)
@@ -63,7 +65,7 @@ def test_an_undone_first_stick_is_flagged():
 
 
 def test_strong_damping_has_a_step_that_its_front_allows():
-    """At 0.9 of the stability bound the fronts were 0.8 to 1.4 per cent slow at order 4."""
+    """At 0.9 of the stability bound and order 4, fronts were 0.8 to 1.4 per cent too slow."""
     for ratio, order in product((2.0, 10.0), (4, 8)):
         step = choose_step("localised", order, ratio, 0.0)
         for factor, flags in ((1.0, ""), (1.3, "long_step")):
@@ -76,7 +78,7 @@ def test_strong_damping_has_a_step_that_its_front_allows():
 
 
 def test_a_rough_chain_that_a_long_step_moves_is_flagged():
-    """Near the stability bound slip was up to 61 per cent off, and the energy balance closed."""
+    """Near the stability bound, slip was wrong by up to 61 per cent, but the energy balanced."""
     centres = [*range(-15, 0), *range(1, 16)]
     for seed in (9, 12, 13):
         heights = np.random.default_rng(seed).uniform(-0.6, 0.4, 30).tolist()
@@ -94,16 +96,18 @@ def test_a_rough_chain_that_a_long_step_moves_is_flagged():
 
 
 def test_a_front_that_stopped_is_not_extrapolated_and_one_that_paused_is_measured_after_it():
-    """It was said to be at 30 and to have the patch as its pulse."""
+    """An earlier version reported the front at 30, and took slip far behind it for its pulse."""
     for pulses in ((), ((2.0, 3.0, 3.0),)):
-        pulse, state = made_up(12.0, stopped=15.0, pulses=pulses)
+        pulse, state = artificial_pulse(12.0, stopped=15.0, pulses=pulses)
         assert state == "stopped" and pulse.front == 12.0
         assert pulse.peak_velocity == 0.0 and np.isnan(pulse.width)
-    assert made_up(30.0, wait=8.0)[0].speed == pytest.approx(SPEED, rel=tol.ALGEBRA)
+    assert artificial_pulse(30.0, wait=8.0)[0].speed == pytest.approx(SPEED, rel=tol.ALGEBRA)
 
 
 def test_the_leading_one_of_two_pulses_is_measured():
     pulse, other = (27.0, 30.0, 1.0), (2.0, 5.0, 1.3)
-    (one, _), (two, state) = (made_up(30.0, pulses=chosen) for chosen in ((pulse,), (pulse, other)))
+    (one, _), (two, state) = (
+        artificial_pulse(30.0, pulses=chosen) for chosen in ((pulse,), (pulse, other))
+    )
     assert state == "several" and two == one._replace(pulses=2)
     assert two.width == pytest.approx(3.0, abs=0.1)

@@ -1,4 +1,4 @@
-"""Layer in the plane: energy, plane waves, resonance of a strip, symmetry, and pulses."""
+"""The layer in the plane: energy, plane waves, resonance of a strip, symmetry, and pulses."""
 
 from dataclasses import replace
 
@@ -21,19 +21,19 @@ def test_energy_is_conserved_to_rounding(boundary, top):
 
 
 def plane_wave_error(cells: int) -> float:
-    """Largest error of a compressional wave that has gone along the layer by three thicknesses."""
+    """Return the largest error of a compressional wave after a path of three thicknesses."""
     flat = Prestress(0.0, 0.0, 1.0, 0.0)
     scene = LayerScene("stress", GAMMA, flat, 1.0, 3.0, nucleation=20.0, cells=cells)
     h, x = 1.0 / cells, np.arange(10 * cells) / cells
     elastic, fields, fault = layer.layer_at_rest(scene, x, 0.5)
     wave = lambda position: np.exp(-0.5 * ((position - 3.0) / 0.5) ** 2)
-    # Velocities stand half a step before the stresses, which stand half a cell to the right.
+    # Velocities belong to the time half a step before the stresses, which lie half a cell right.
     fields.vx[:] = wave(x + 0.25 * h)
     fields.sxx[:] = -wave(x + 0.5 * h + 0.5 * h)
     fields.syy[:] = (1.0 - GAMMA) * fields.sxx
     fault.sliding[:] = True
-    ends = (0, 6 * cells), (x.size // 2, x.size, x.size)
-    layer.advance_layer(elastic, fields, fault, 0.5 * h, *ends)
+    everything = layer.Columns(centre=x.size // 2, nucleation=x.size, trail=x.size)
+    layer.advance_layer(elastic, fields, fault, 0.5 * h, (0, 6 * cells), everything)
     return float(np.max(np.abs(fields.vx[cells // 2] - wave(x + 0.25 * h - 3.0))))
 
 
@@ -59,8 +59,8 @@ def test_half_a_layer_and_a_full_one_agree():
         np.testing.assert_allclose(mirrored, half.slip[:-20], atol=1e-9)
 
 
-def at_twelve(run):
-    """Front speed, width and slip of what passes 12 H, averaged over 2 H."""
+def pulse_at_twelve(run):
+    """Return front speed, width and slip of the pulse at x = 12 H, averaged over 2 H."""
     near = np.abs(run.x - 12.0) <= 1.0
     speed = 1.0 / np.polyfit(run.x[near], run.release_time[near], 1)[0]
     width = speed * (run.stick_time - run.release_time)[near].mean()
@@ -69,11 +69,11 @@ def at_twelve(run):
 
 @pytest.mark.parametrize("cells", [40, 80, pytest.param(160, marks=pytest.mark.slow)])
 def test_a_pulse_has_the_same_numbers_on_three_grids(cells):
-    numbers = at_twelve(simulate_layer(replace(PULSE, duration=17.0, cells=cells)))
+    numbers = pulse_at_twelve(simulate_layer(replace(PULSE, duration=17.0, cells=cells)))
     assert numbers == pytest.approx((0.970, 1.62, 1.820), rel=0.01)
 
 
-def test_columns_that_are_left_behind_change_no_event_before_their_wave_arrives():
+def test_columns_that_are_no_longer_advanced_change_no_event_before_their_wave_arrives():
     scene = replace(PULSE, duration=17.0)
     full, short = simulate_layer(scene), simulate_layer(replace(scene, trail=2.5))
     soon = full.stick_time <= full.x + 2.5
@@ -83,8 +83,8 @@ def test_columns_that_are_left_behind_change_no_event_before_their_wave_arrives(
     assert np.isnan(short.energy_residual)
 
 
-# Speed, width and slip of a staggered-grid code that is independent of this one, tau_0 = 0.8, by
-# fracture energy over tau_0^2/(2 gamma).
+# Front speed, width and slip of an independent code on a staggered grid, for tau_0 = 0.8. The keys
+# are gamma, and the fracture energy divided by tau_0^2/(2 gamma).
 INDEPENDENT = {
     (2.0 / 3.0, 0.42): (0.982, 1.61, 1.87),
     (2.0 / 3.0, 0.21): (0.997, 1.55, 1.97),
@@ -97,7 +97,7 @@ INDEPENDENT = {
 
 @pytest.mark.parametrize(("case", "numbers"), INDEPENDENT.items())
 def test_pulses_have_the_numbers_of_an_independent_code(case, numbers):
-    """Small fracture energies have a narrow tip, which needs a finer grid; so do short pulses."""
+    """Small fracture energies have a narrow tip, which needs a finer grid, as short pulses do."""
     gamma, energy = case
     stretch = np.sqrt(GAMMA / gamma)
     scene = replace(PULSE, gamma=gamma, weakening=energy * 0.64 / gamma, nucleation=2.0 * stretch)
@@ -111,10 +111,10 @@ def test_pulses_have_the_numbers_of_an_independent_code(case, numbers):
 
 
 @pytest.mark.parametrize("cells", [60, 80, pytest.param(160, marks=pytest.mark.slow)])
-def test_a_pulse_below_a_top_that_may_rise_has_these_numbers(cells):
-    """Its width still changes by 1.5 % between two of the grids, its speed and slip do not."""
+def test_a_pulse_below_a_free_top_has_these_numbers(cells):
+    """The width still changes by 1.5 % between two of the grids; speed and slip do not change."""
     scene = replace(PULSE, prestress=Prestress(0.5, 0.5, 1.0, 0.5), weakening=0.225, top="free")
-    speed, width, slip = at_twelve(simulate_layer(replace(scene, duration=24.0, cells=cells)))
+    speed, width, slip = pulse_at_twelve(simulate_layer(replace(scene, duration=24.0, cells=cells)))
     assert (speed, slip) == pytest.approx((0.640, 0.953), rel=0.01)
     assert width == pytest.approx(1.17, rel=0.02)
 

@@ -1,4 +1,4 @@
-"""Runs on tables of pre-stress: another solver, mirror images, shifts, a sampled Gaussian."""
+"""Runs with tables of pre-stress, compared with another solver, mirror images and shifted runs."""
 
 import dataclasses
 import json
@@ -11,8 +11,8 @@ import tolerances as tol
 
 import slippulse as sp
 
-# Release and stick times, slip and the ends of the fronts by a solver that shares no code with ours
-# (Runge-Kutta steps of the whole row, each event by bisection).
+# Release and stick times, slip and ends of the fronts from a solver that shares no code with ours.
+# It uses Runge-Kutta steps for all blocks and finds each event by bisection.
 EXAMPLES = json.loads((Path(__file__).parents[1] / "reference/prestress_tables.json").read_text())
 FIELDS = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
 HELD = {"boundary": "displacement", "duration": 8.0, "gamma": 0.65}
@@ -44,7 +44,7 @@ def test_a_table_gives_the_run_of_an_independent_solver(example, scheme):
 
 
 def random_table(width):
-    """A table with jumps, which nucleates at x = 0 with and without a Gaussian."""
+    """Return a table with jumps that nucleates a rupture at x = 0, with or without a Gaussian."""
     rng = np.random.default_rng(11)
     x = np.sort(rng.uniform(-12.0, 12.0, 24))
     x[6], x[18] = x[7], x[17]
@@ -121,7 +121,7 @@ def test_a_sampled_gaussian_converges_to_its_run_at_second_order(physics):
         run = sp.simulate(dataclasses.replace(scene, prestress=table))
         slips = []
         for one in (run, exact):
-            # Both lattices end a little beyond their fronts.
+            # Both lattices end a little beyond their fronts, so both contain this part.
             slips.append(one["slip"].values[np.abs(one["x"].values) < 7.0])
         errors.append(float(np.max(np.abs(slips[0] - slips[1]))))
     orders = [math.log2(errors[i] / errors[i + 1]) for i in (0, 1)]

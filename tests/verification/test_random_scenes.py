@@ -1,4 +1,4 @@
-"""Invariants of the model over hundreds of random valid scenes, extremes included."""
+"""Invariants of the model in hundreds of random valid scenes, including extreme ones."""
 
 import collections
 import dataclasses
@@ -26,11 +26,12 @@ SAME = {"derandomize": True, "deadline": None, "database": None}
 SETTINGS = settings(max_examples=600, suppress_health_check=list(HealthCheck), **SAME)
 # The number of scenes of each kind.
 seen: collections.Counter = collections.Counter()
-# A front of the textbook scheme that moves by a block a step, near the end of its lattice.
+# In this scene, a front of the textbook scheme moves by one block per step near the end of its
+# lattice.
 FAST_PROFILE = sp.Prestress(-3.0, 0.95, 1.0, bumps=((0.0, 1.0, 0.5),))
 FAST_STEP = {"scheme": "fixed_step", "max_step": 0.07284750148033359, "order": 3}
 FAST = sp.Scene("displacement", FAST_PROFILE, 5.0, 0.1, gamma=1.0, beta=0.3, **FAST_STEP)
-# Some profiles are symmetric with their bumps, and some are not, on lattices of some 400 blocks.
+# Profiles with bumps, symmetric and asymmetric, on lattices of about 400 blocks.
 BUMPS = ((5.0, -0.5, 0.7), (-5.0, -0.5, 0.7))
 EVEN = sp.Prestress(0.4, 0.4, peak=1.05, bumps=BUMPS)
 UNEVEN = sp.Prestress(0.25, 0.6, peak=1.05, steps=((4.0, 0.4),), bumps=BUMPS[1:])
@@ -47,7 +48,7 @@ def real(low: float, high: float, *extremes: float) -> st.SearchStrategy[float]:
     return st.one_of(st.sampled_from(extremes), anywhere) if extremes else anywhere
 
 
-# Levels include some far below and just below the threshold, at 0 and beside it.
+# The extremes are levels far below and just below the threshold, at 0 and next to 0.
 LEVELS = real(-3.0, 0.95, -3.0, -1.0, -1e-9, 0.0, 1e-9, 0.5, 0.95)
 RATIOS = real(0.0, 1.0, 0.0, 1e-6, 0.1, 1.0, 1.5, 2.0, 3.0)
 STEP = st.tuples(st.one_of(real(-15.0, -0.5), real(0.5, 15.0)), real(-3.0, 0.95))
@@ -98,13 +99,13 @@ def check_invariants(scene):
     }
     seen.update(kind for kind, held in kinds.items() if held)
     check_motion(run)
-    # The energy balance is kept, or the run is flagged, by any scheme.
+    # With any scheme, either the energy balances or the run is flagged.
     flagged = "energy" in run.attrs["run_flags"]
     assert flagged == (run.attrs["energy_residual"] > tol.RANDOM_ENERGY)
     if scene.scheme == "localised":
         check_equation(run)
-        # A scene is flagged only where it is coarse or strongly damped; a Gaussian of the
-        # pre-stress that is hardly wider than a block is coarse.
+        # Only coarse or strongly damped scenes are flagged. A lattice is coarse if the Gaussian of
+        # the pre-stress is hardly wider than a block.
         narrow = scene.prestress.width < 1.5 * scene.dx
         coarse = run.attrs["steps"] < 20 or scene.order == 3 or narrow
         assert not flagged or coarse or scene.damping_ratio >= 1.0
@@ -118,7 +119,7 @@ def check_motion(run) -> None:
     for name in ("slip_velocity", "sample_velocity"):
         assert np.nanmin(run[name].values) >= 0.0
     assert np.nanmin(np.diff(run["sample_slip"].values, axis=0)) >= 0.0
-    # No block is released before both its neighbours, but those that are released at the start.
+    # Except at the start, no block is released before both of its neighbours.
     late = np.where(np.isfinite(release), release, np.inf)
     after = np.flatnonzero(np.isfinite(release) & (release > 0.0))
     assert np.all(np.minimum(late[after - 1], late[after + 1]) <= release[after])
@@ -127,7 +128,7 @@ def check_motion(run) -> None:
 
 
 def check_equation(run) -> None:
-    """Stuck blocks are at rest below the threshold; the others obey the equation of motion."""
+    """Stuck blocks are at rest below the threshold. Sliding blocks obey the equation of motion."""
     moving, total = sliding(run)[1:-1], total_stress(run)[1:-1]
     assert np.max(threshold_stress(run)[1:-1][~moving], initial=-np.inf) <= 1.0 + tol.STRESS_AT_END
     assert not run["slip_velocity"].values[1:-1][~moving].any()
@@ -136,7 +137,7 @@ def check_equation(run) -> None:
 
 
 def check_mirror(scene, run) -> None:
-    """The mirror image has the same motion, and all of a lattice that of its half."""
+    """A mirrored scene has the mirrored motion. Half a lattice and a whole one agree."""
     tau = scene.prestress
     steps = tuple((-position, level) for position, level in tau.steps)
     bumps = tuple((-centre, *rest) for centre, *rest in tau.bumps)

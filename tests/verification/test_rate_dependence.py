@@ -1,4 +1,4 @@
-"""Friction that depends on slip rate: numbers of the exact solution, and the end of pulses."""
+"""Friction that is linear in slip rate: numbers of the exact solution, and the end of pulses."""
 
 import numpy as np
 import pytest
@@ -44,9 +44,9 @@ def test_the_steady_pulse_and_its_end_are_those_derived_independently():
 
 @pytest.mark.parametrize(("alpha", "time"), [(1.2, 19.71489), (1.3, None)])
 def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(alpha, time):
-    """It leaves an oscillation that outlives the wake below 2 sqrt(gamma/(1 + 1/v^2)).
+    """Below alpha = 2 sqrt(gamma/(1 + 1/v^2)), an oscillation at the nucleation makes it stick.
 
-    A coarse lattice misses it.
+    The oscillation lasts longer than the motion behind the front. A coarse lattice misses it.
     """
     bound = 2.0 * np.sqrt(GAMMA / (1.0 + 1.0 / SPEED**2))
     assert alpha > CRITICAL and (alpha < bound) == (time is not None)
@@ -68,7 +68,7 @@ def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
 
 @pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
 def test_a_step_just_below_the_bound_is_stable_with_strong_strengthening(scheme):
-    """Drag alone sets it at alpha dx = 8."""
+    """At alpha dx = 8, the drag alone decides the bound."""
     values = {"dx": 0.5, "beta": 0.0, "scheme": scheme, "duration": 200.0}
     bound = run(16.0, **values | {"max_step": 1e-3, "duration": 0.1}).attrs
     scene = sp.Scene.from_attributes(bound)

@@ -1,4 +1,4 @@
-"""The compiled kernels against the same sources run by the interpreter."""
+"""The compiled kernels give the results of the same sources run by the interpreter."""
 
 import os
 import subprocess

@@ -1,6 +1,7 @@
-"""Only sliding blocks cost work: updates and bytes a block; growth and pages of a lattice."""
+"""Only sliding blocks cost work, a block takes few bytes, and the lattice grows as it needs to."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -9,35 +10,47 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.solver import lattice as lattices
 from slippulse.solver.fixed_step import LATTICES
-from slippulse.solver.lattice import FIRST_BLOCKS, Lattice
+from slippulse.solver.lattice import INITIAL_BLOCKS, Lattice
 from slippulse.solver.solution import solve_on_lattice
 
-HOW = {"beta": 0.1 * 0.04, "max_step": 0.5}
-PULSE = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, **HOW)
-CRACK = sp.Scene("stress", sp.Prestress(0.5, 0.5), 50.0, 0.04, half_lattice=False, **HOW)
-# Scene; expected block updates a step over the mean number of sliding blocks (1: no others are
-# touched, 1/2: half of a symmetric scene); most blocks changed by events over block updates; least
-# blocks of the lattice over the sliding ones.
+STEP = {"beta": 0.1 * 0.04, "max_step": 0.5}
+PULSE = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, **STEP)
+CRACK = sp.Scene("stress", sp.Prestress(0.5, 0.5), 50.0, 0.04, half_lattice=False, **STEP)
+
+
+class Work(NamedTuple):
+    """A scene and the work that it is expected to take."""
+
+    scene: sp.Scene
+    # Block updates per step, divided by the mean number of sliding blocks: 1 if no other blocks are
+    # touched, 1/2 if only half of a symmetric scene is solved.
+    updates_per_sliding_block: float
+    max_event_updates: float  # blocks changed by events, divided by the block updates
+    min_released_blocks: float  # divided by the mean number of sliding blocks
+
+
+ONE_PULSE = replace(CRACK, prestress=sp.Prestress(-0.5, 0.0))
 WORK = {
-    "two pulses, by symmetry": (PULSE, 0.5, 0.3, 15.0),
-    "two pulses, whole lattice": (replace(PULSE, half_lattice=False), 1.0, 0.3, 15.0),
-    "crack, whole lattice": (CRACK, 1.0, 0.05, 1.0),
-    "one pulse, whole lattice": (replace(CRACK, prestress=sp.Prestress(-0.5, 0.0)), 1.0, 0.05, 1.0),
+    "two pulses, by symmetry": Work(PULSE, 0.5, 0.3, 15.0),
+    "two pulses, whole lattice": Work(replace(PULSE, half_lattice=False), 1.0, 0.3, 15.0),
+    "crack, whole lattice": Work(CRACK, 1.0, 0.05, 1.0),
+    "one pulse, whole lattice": Work(ONE_PULSE, 1.0, 0.05, 1.0),
 }
 
 
 @pytest.mark.parametrize("name", WORK)
 def test_only_sliding_blocks_are_updated_and_events_change_few(name):
-    """An event changes as many blocks on a side as the order; a step changes all that slide."""
-    scene, expected, most, least = WORK[name]
-    run = solve_on_lattice(scene)
+    """An event changes as many blocks on each side as the order; a step changes all that slide."""
+    work = WORK[name]
+    run = solve_on_lattice(work.scene)
     released, end = np.isfinite(run.release_time), run.numbers["end_time"]
     stopped = np.where(np.isfinite(run.stick_time), run.stick_time, end)
     sliding = float(np.sum(stopped[released] - run.release_time[released])) / end
     updates = run.numbers["block_updates"]
-    assert updates / run.numbers["steps"] / sliding == pytest.approx(expected, rel=tol.WORK)
-    assert 0.0 < run.numbers["event_updates"] < most * updates
-    assert released.sum() > least * sliding
+    updates_per_block = updates / run.numbers["steps"] / sliding
+    assert updates_per_block == pytest.approx(work.updates_per_sliding_block, rel=tol.WORK)
+    assert 0.0 < run.numbers["event_updates"] < work.max_event_updates * updates
+    assert released.sum() > work.min_released_blocks * sliding
 
 
 @pytest.mark.parametrize(
@@ -55,36 +68,43 @@ def test_a_pulse_costs_linearly_in_time_and_quadratically_in_spacing(changes, ex
     assert slope == pytest.approx(exponent, abs=tol.EXPONENT)
 
 
-def test_a_block_takes_few_bytes_and_an_order_eight_more():
-    def bytes_a_block(order: int) -> float:
+def test_a_block_takes_few_bytes_and_each_order_takes_eight_more():
+    def bytes_per_block(order: int) -> float:
         lattice = Lattice(replace(PULSE, order=order), None, PULSE.beta)
         lattice.advance_to_end(None)
         rows = (*lattice.motion, *lattice.history)
         return sum(row.nbytes for row in rows) / lattice.size
 
-    assert bytes_a_block(4) < 200.0
-    assert bytes_a_block(8) - bytes_a_block(4) == pytest.approx(4 * 8.0, rel=tol.WORK)
+    assert bytes_per_block(4) < 200.0
+    assert bytes_per_block(8) - bytes_per_block(4) == pytest.approx(4 * 8.0, rel=tol.WORK)
 
 
 @pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
 def test_rows_begin_at_different_places_of_their_pages(right):
-    """In a page of 4096 bytes, any two beginnings are at least three lines of the cache apart."""
+    """Any two rows begin at least three cache lines apart, modulo a page of 4096 bytes."""
     scene = sp.Scene("displacement", sp.Prestress(0.5, right), 320.0, 0.1, gamma=0.5, order=8)
     lattice = Lattice(scene, None, 0.0)
     lattice.advance_to_end(None)
     rows = (*lattice.motion.w, *lattice.motion[1:])
     positions = np.sort([row.ctypes.data % 4096 for row in rows])
     assert np.diff(positions, append=positions[0] + 4096).min() >= 3 * 64
-    assert lattice.size > 4 * FIRST_BLOCKS
+    assert lattice.size > 4 * INITIAL_BLOCKS
 
 
 @pytest.mark.parametrize("scheme", LATTICES)
 @pytest.mark.parametrize("right", [0.4, 0.6], ids=["half lattice", "whole lattice"])
-def test_the_first_size_and_the_length_of_a_call_do_not_change_a_bit(monkeypatch, right, scheme):
+def test_results_do_not_depend_on_the_initial_size_or_the_length_of_a_call(
+    monkeypatch, right, scheme
+):
     profile, fractions = sp.Prestress(0.4, right, peak=1.05, steps=((4.0, 0.5), (-4.0, 0.5))), []
     scene = replace(PULSE, prestress=profile, duration=8.0, max_step=0.3, scheme=scheme)
     plain = sp.simulate(scene)
-    for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3, "CALL_STEPS": 7}.items():
+    for name, value in {
+        "INITIAL_BLOCKS": 16,
+        "PAGE_BLOCKS": 8,
+        "PAGE_OFFSET": 3,
+        "MAX_CALL_STEPS": 7,
+    }.items():
         monkeypatch.setattr(lattices, name, value)
     grown = sp.simulate(scene, progress=fractions.append)
     assert grown.equals(plain) and plain.attrs["releases"] > 100

@@ -1,1 +1,1 @@
-"""Pictures of runs, and the look of every figure."""
+"""Pictures of single runs, and the style that all figures share."""

@@ -1,4 +1,4 @@
-"""A run as a picture, in one call: for a notebook or a script."""
+"""A picture of a run, drawn by one call in a notebook or a script."""
 
 import io
 
@@ -12,33 +12,34 @@ from ..model.layer_units import Layer, layer_of
 from ..model.scene import check_run_attributes
 from . import space_time
 from .si_tables import table_in_si, with_unit
-from .style import BLUE, PAGE, by_role, house_style
+from .style import BLUE, PAGE_WIDTH, by_role, house_style
 
-DRAWN = ("prestress", "release_time", "stick_time", "slip")
+DRAWN_VARIABLES = ("prestress", "release_time", "stick_time", "slip")
 
 
 class Picture(Figure):
-    """A figure that a notebook shows, whatever its backend."""
+    """A figure that a notebook shows with any backend of Matplotlib."""
 
     def _repr_png_(self) -> bytes:
+        """Return the PNG file that the notebook shows."""
         buffer = io.BytesIO()
         self.savefig(buffer, format="png", dpi=150)
         return buffer.getvalue()
 
 
 def plot(run: xr.Dataset) -> Picture:
-    """Draw a run: pre-stress, slip velocity over time and position with both edges, final slip.
+    """Draw pre-stress, slip velocity as a function of time and position, and final slip of a run.
 
-    The edges are the front (time of first release) and the trailing edge (time of stick). The
-    panels follow the space-time figure of the paper (figure 4). Quantities are dimensionless, or
-    have the units on the axes if the run is in SI units.
+    The map of slip velocity also shows the front (time of first release) and the trailing edge
+    (time of stick). The panels follow the space-time figure of the paper (figure 4). Quantities are
+    dimensionless. If the run is in SI units, the axes have units.
 
     Parameters
     ----------
     run : xarray.Dataset
-        A run over x that `slippulse.simulate` returned or `Layer.to_si` converted. The slip
-        velocity is drawn if the run has samples in which anything slides; otherwise the edges are
-        drawn alone.
+        A run with the dimension x that `slippulse.simulate` returned or `Layer.to_si` converted.
+        The slip velocity is drawn if the run has samples in which anything slides. Otherwise only
+        the front and the trailing edge are drawn.
 
     Returns
     -------
@@ -48,9 +49,9 @@ def plot(run: xr.Dataset) -> Picture:
     Raises
     ------
     TypeError
-        If `run` is no such Dataset; `slippulse.point` takes one run out of a sweep.
+        If `run` is not such a Dataset. `slippulse.point` takes one run out of a sweep.
     ValueError
-        If an attribute of it is not of its kind.
+        If an attribute of the run is invalid.
 
     Examples
     --------
@@ -60,8 +61,8 @@ def plot(run: xr.Dataset) -> Picture:
     >>> samples = sp.Samples(np.linspace(0.0, 8.0, 81), np.linspace(-9.0, 9.0, 181))
     >>> figure = sp.plot(sp.simulate(scene, samples))
     """
-    known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
-    if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
+    is_run = isinstance(run, xr.Dataset) and "end_time" in run.attrs
+    if not is_run or not all(name in run and run[name].dims == ("x",) for name in DRAWN_VARIABLES):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
     layer = layer_of(run.attrs)
     if layer is not None:
@@ -72,27 +73,28 @@ def plot(run: xr.Dataset) -> Picture:
 
 
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
+    """Draw the panels, in SI units if a layer is given."""
     slipped = {"series": "slip", "position": run["x"].values, "value": run["slip"].values}
-    rows = [space_time.prestress_profile(run), *space_time.edges(run)]
+    rows = [space_time.prestress_rows(run), *space_time.edge_rows(run)]
     rows.append(pd.DataFrame({"role": "profile", **slipped}))
-    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-    moves = sampled and bool((run["sample_velocity"] > 0.0).any())
-    if moves:
-        rows.append(space_time.velocity_map(run))
-    # A run in which nothing moves ends at 0.
+    has_samples = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    has_map = has_samples and bool((run["sample_velocity"] > 0.0).any())
+    if has_map:
+        rows.append(space_time.velocity_rows(run))
+    # The end time of a run in which nothing moves is 0.
     end = run.attrs["end_time"] or run.attrs["duration"]
     rows.append(pd.DataFrame({"role": ["end"], "time": [end]}))
     table = pd.concat(rows, ignore_index=True)
     roles = {"front": table.iloc[:0], "trailing": table.iloc[:0]}
     roles |= by_role(table if layer is None else table_in_si(table, layer))
-    figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
+    figure = Picture(figsize=(PAGE_WIDTH, 2.8), layout="constrained")
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     space_time.draw_profile(profile, roles)
-    if moves:
+    if has_map:
         space_time.draw_map(times, roles)
         if run.attrs.get("limit_reason"):
             _hatch_unknown(times, run, roles)
-            figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
+            figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")
     else:
         space_time.draw_edges(times, roles, roles["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():
@@ -103,15 +105,13 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
 
 
 def _hatch_unknown(axes: Axes, run: xr.Dataset, roles: dict[str, pd.DataFrame]) -> None:
-    """Hatch the part of the map that the exact solution does not reach."""
+    """Hatch the part of the map in which the exact solution is not known."""
     unknown = run["sample_velocity"].isnull().T
-    # Coordinates of the axes for one unit of the model.
-    scale_of_time = roles["end"]["time"].iloc[0] / run.attrs["end_time"]
-    drawn = roles["profile"]["position"]
-    scale_of_position = np.ptp(drawn) / np.ptp(run["x"].values)
+    # Factors from dimensionless time and position to the coordinates of the axes.
+    time_scale = roles["end"]["time"].iloc[0] / run.attrs["end_time"]
+    drawn_positions = roles["profile"]["position"]
+    position_scale = np.ptp(drawn_positions) / np.ptp(run["x"].values)
     hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
-    times, positions = (
-        run["sample_time"] * scale_of_time,
-        run["sample_position"] * scale_of_position,
-    )
+    times = run["sample_time"] * time_scale
+    positions = run["sample_position"] * position_scale
     axes.contourf(times, positions, unknown, **hatched)

@@ -1,4 +1,7 @@
-"""Tables of a run converted to SI units with readable prefixes, before they are drawn."""
+"""Conversion of the table of a run to SI units with readable prefixes, before it is drawn.
+
+The column `role` of a table decides what is drawn from a row, for example a map or a front.
+"""
 
 import pandas as pd
 
@@ -6,21 +9,27 @@ from ..data.readable_units import readable_unit
 from ..model.layer_units import Layer
 from ..model.si_quantities import QUANTITIES
 
-# Quantity of the column value by role; of the other roles the column series names it.
-ROLE_QUANTITIES = {"prestress": "stress", "map": "slip_velocity", "largest": "slip_velocity"}
-ROLE_QUANTITIES["strength"] = "stress"
-# Non-dimensional stresses that are marked (role strength).
+# Quantity in the column `value` for some roles. In rows with another role, the column `series`
+# names the quantity.
+ROLE_QUANTITIES = {
+    "prestress": "stress",
+    "strength": "stress",
+    "map": "slip_velocity",
+    "largest": "slip_velocity",
+}
+# Dimensionless stresses that are marked on the axis of stresses (role strength).
 STRENGTHS = {"kinetic friction": 0.0, "static friction": 1.0}
-# Roles whose values share one unit by quantity, so that they can share an axis.
-ON_AXES = ("prestress", "strength", "map", "largest", "profile", "steady")
+# Roles whose values have the same unit for each quantity, so that they can share an axis.
+AXIS_ROLES = ("prestress", "strength", "map", "largest", "profile", "steady")
 COLUMN_QUANTITIES = {"position": "length", "time": "time"}
 
 
 def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
-    """Convert the rows of a run, and add rows with the units of its axes (role unit).
+    """Convert the table of a run to SI units.
 
-    The column unit has the unit of the column value. Rows of numbers stay as they are. Static and
-    kinetic friction are added as well (role strength).
+    The new column `unit` holds the unit of the column `value`, and is empty for dimensionless
+    numbers. Rows with the units of the axes (role unit), with static and kinetic friction (role
+    strength) and with the thickness of the layer are added.
     """
     strengths = [
         {"role": "strength", "series": name, "value": value} for name, value in STRENGTHS.items()
@@ -33,11 +42,11 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
         unit = readable_unit(quantity, numbers)
         table[column], units[column] = numbers / unit.value, unit.text
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
-    on_axes = table["role"].isin(ON_AXES)
+    on_axes = table["role"].isin(AXIS_ROLES)
     for quantity, rows in table[on_axes].groupby(quantities[on_axes]):
         units[str(quantity)] = _convert_values(table, rows.index, str(quantity), layer)
     for index in table.index[(table["role"] == "parameter") & quantities.notna()]:
-        # Each parameter has a prefix of its own.
+        # Each parameter has its own prefix.
         _convert_values(table, pd.Index([index]), quantities[index], layer)
     unit = readable_unit("length", layer.thickness)
     height = {"series": "thickness", "value": layer.thickness / unit.value, "unit": unit.text}
@@ -56,7 +65,7 @@ def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: L
 
 
 def with_unit(label: str, roles: dict[str, pd.DataFrame], name: str) -> str:
-    """Add to the label of an axis the unit of a column or quantity, if the table is in SI units."""
+    """Append the unit of a column or quantity to the label of an axis, if there are SI units."""
     if "unit" not in roles:
         return label
     units = roles["unit"].set_index("series")["unit"]

@@ -1,4 +1,8 @@
-"""A run over time and position: slip velocity, front and trailing edge; their table and drawing."""
+"""The space-time map of a run: slip velocity, front, trailing edge and pre-stress.
+
+The first half of the module collects what is drawn in a table with the columns role, series,
+position, time and value. The second half draws such a table, split by `style.by_role`.
+"""
 
 import numpy as np
 import pandas as pd
@@ -10,21 +14,28 @@ from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
 from .selection import spaced_indices
 from .si_tables import with_unit
-from .style import BLACK, GREY, HALO, SMALL, Look, conditions
+from .style import BLACK, GREY, SMALL_TEXT, TEXT_OUTLINE, Look, conditions
 
-# Samples kept along each axis of a map, and blocks along each front.
-MAP_SAMPLES, FRONT_POINTS = 121, 400
-# Points of a table that are drawn, and the part of the height within which a jump is drawn.
-TABLE_POINTS, JUMP = 1000, 1e-6
-# The panel is wider than the slipped part by this fraction of it on each side, for an arrow.
-MARGIN = 0.12
-STUCK = "#cfcfcf"
-MAP: Look = {"rasterized": True, "vmin": 0.0}
+# Largest numbers of samples along each axis of a map, of blocks along each front, and of points of
+# a table of pre-stress.
+MAP_SAMPLES = 121
+FRONT_POINTS = 400
+TABLE_POINTS = 1000
+# A jump of the pre-stress is drawn within this fraction of the height of the panel.
+JUMP_WIDTH = 1e-6
+# The panel extends beyond the slipped part by this fraction of it on each side, which leaves room
+# for an arrow.
+MARGIN_FRACTION = 0.12
+STUCK_COLOUR = "#cfcfcf"
+MAP_STYLE: Look = {"rasterized": True, "vmin": 0.0}
 PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
-def run_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Rows of all that `draw_profile` and `draw_map` show; series names a parameter or flags."""
+def run_table(run: xr.Dataset) -> pd.DataFrame:
+    """Return the table that `draw_profile` and `draw_map` need.
+
+    It also has rows with the parameters, the law of friction and the flags of the run.
+    """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     points = prestress_from(run.attrs).points
     if points:
@@ -34,26 +45,29 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
         rows.append({"role": "friction", "series": law.replace("_", " ")})
     if run.attrs["run_flags"]:
         rows.append({"role": "flag", "series": run.attrs["run_flags"]})
-    return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
+    return pd.concat([pd.DataFrame(rows), velocity_rows(run), prestress_rows(run), *edge_rows(run)])
 
 
-def description(roles: dict[str, pd.DataFrame]) -> str:
-    """Boundary, pre-stress, damping, another friction and flags of a run, as a title."""
+def run_title(roles: dict[str, pd.DataFrame]) -> str:
+    """Return a title with the boundary, pre-stress, damping and flags of a run.
+
+    The law of friction is named if it is not that of the paper.
+    """
     if "unit" in roles:
-        return _with_remarks(_description_in_si(roles["parameter"]), roles)
+        return _append_remarks(_title_in_si(roles["parameter"]), roles)
     value = roles["parameter"].set_index("series")["value"]
     value["tau_0"], held = value["left"], value["gamma"] > 0.0
     levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
     if "table" in roles:
-        # Levels far away do not describe a table.
+        # The levels far away do not describe a table of pre-stress.
         levels = []
     names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio", "dx"]
     title = conditions(held, **value[[name for name in names if np.isfinite(value[name])]])
-    return _with_remarks(title, roles)
+    return _append_remarks(title, roles)
 
 
-def _description_in_si(parameters: pd.DataFrame) -> str:
-    """Condition on top, thickness, elasticity, damping and spacing, as a title."""
+def _title_in_si(parameters: pd.DataFrame) -> str:
+    """Return a title with the condition on top, thickness, elasticity, damping and spacing."""
     rows = parameters.fillna({"unit": ""}).set_index("series")
     height, gamma, ratio, dx = (
         f"{rows['value'][name]:.4g} {rows['unit'][name]}".strip()
@@ -64,8 +78,8 @@ def _description_in_si(parameters: pd.DataFrame) -> str:
     return rf"$H =$ {height}, {top}, $b = {ratio}$, $\Delta x =$ {dx}"
 
 
-def _with_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
-    """Add another friction and flags to a title."""
+def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
+    """Append the table of pre-stress, the law of friction and the flags to a title, if any."""
     if "table" in roles:
         title += f", {roles['table']['series'].iloc[0]}"
     if "friction" in roles:
@@ -75,11 +89,14 @@ def _with_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
     return title
 
 
-def limits(run: xr.Dataset) -> tuple[float, float]:
-    """Lowest and highest position drawn: the slipped part and a margin, within the samples."""
+def drawn_range(run: xr.Dataset) -> tuple[float, float]:
+    """Return the lowest and highest position to draw.
+
+    They enclose the slipped part with a margin, within the sampled positions.
+    """
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
     slipped = slipped if slipped.size else run["x"].values
-    margin = max(MARGIN * (slipped[-1] - slipped[0]), run.attrs["dx"])
+    margin = max(MARGIN_FRACTION * (slipped[-1] - slipped[0]), run.attrs["dx"])
     if run.sizes.get("sample_position", 0) < 2:
         return float(slipped[0] - margin), float(slipped[-1] + margin)
     first, last = run["sample_position"].values[[0, -1]]
@@ -89,18 +106,21 @@ def limits(run: xr.Dataset) -> tuple[float, float]:
     return float(lower), float(upper)
 
 
-def velocity_map(run: xr.Dataset) -> pd.DataFrame:
-    """Sampled slip velocity where it is not 0 (role map), and its largest value (role largest)."""
-    lower, upper = limits(run)
+def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
+    """Return the sampled slip velocity (role map), and its largest value (role largest).
+
+    Samples that are 0 are left out.
+    """
+    lower, upper = drawn_range(run)
     x, times = run["sample_position"].values, run["sample_time"].values
     velocity = run["sample_velocity"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     columns = inside[spaced_indices(inside.size, MAP_SAMPLES)]
     rows = spaced_indices(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
-    # Four digits of the largest velocity are more than a colour shows, and keep the table small.
+    # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
     kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.nanmax(velocity)))))
-    # A sample that is left out is 0; the first of each row and column keeps the grid complete.
+    # Samples that are 0 are left out, except in the first row and column, which define the grid.
     written = kept != 0.0
     written[0], written[:, 0] = True, True
     grid = {"time": time[written], "position": position[written], "value": kept[written]}
@@ -108,25 +128,28 @@ def velocity_map(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat([pd.DataFrame({"role": "map", **grid}), largest])
 
 
-def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
-    """Pre-stress over the positions that are drawn (role prestress)."""
-    # The lattice ends where the fronts do, and the pre-stress does not.
-    lower, upper = limits(run)
+def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
+    """Return the pre-stress at the positions that are drawn (role prestress)."""
+    # The run ends near the fronts, but its pre-stress is known everywhere.
+    lower, upper = drawn_range(run)
     x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
     profile = prestress_from(run.attrs)
     if profile.points:
-        # The lines end at the points. At a jump both values are drawn.
+        # The pre-stress is piecewise linear between the points. At a jump both values are drawn.
         positions = np.unique([position for position, _ in profile.points])
         positions = positions[(positions > lower) & (positions < upper)]
         positions = positions[spaced_indices(positions.size, TABLE_POINTS)]
-        nearby = JUMP * (upper - lower)
+        nearby = JUMP_WIDTH * (upper - lower)
         x = np.unique(np.concatenate([x, positions - nearby, positions, positions + nearby]))
     tau = profile(x)
     return pd.DataFrame({"role": "prestress", "position": x, "value": tau})
 
 
-def edges(run: xr.Dataset) -> list[pd.DataFrame]:
-    """Times of first release (role front) and of last stick (role trailing; NaN where none)."""
+def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
+    """Return the times of first release (role front) and of last stick (role trailing).
+
+    The stick time is NaN for blocks that did not stick.
+    """
     x = run["x"].values
     slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
     kept = np.union1d(slipped[spaced_indices(slipped.size, FRONT_POINTS)], slipped[-1:])
@@ -137,7 +160,7 @@ def edges(run: xr.Dataset) -> list[pd.DataFrame]:
 
 
 def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw the pre-stress to the right and the position upwards."""
+    """Draw the pre-stress on the horizontal axis and the position on the vertical axis."""
     rows, in_si = roles["prestress"], "unit" in roles
     if in_si:
         _mark_strengths(axes, roles["strength"])
@@ -153,9 +176,14 @@ def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
 
 def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
     """Mark static and kinetic friction on the axis of stresses."""
-    look: Look = {"rotation": 90, "color": GREY, "fontsize": SMALL, "path_effects": HALO}
+    look: Look = {
+        "rotation": 90,
+        "color": GREY,
+        "fontsize": SMALL_TEXT,
+        "path_effects": TEXT_OUTLINE,
+    }
     look["transform"] = axes.get_xaxis_transform()
-    # Both names stand between the two lines, at different heights.
+    # Both names are written between the two lines, at different heights.
     places: list[Look] = [
         {"y": 0.98, "ha": "left", "va": "top"},
         {"y": 0.02, "ha": "right", "va": "bottom"},
@@ -166,9 +194,9 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw the slip velocity in colour, cut along both edges."""
+    """Draw the slip velocity in colour between the front and the trailing edge."""
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
-    look = MAP | {"shading": "gouraud", "vmax": roles["largest"]["value"].iloc[0]}
+    look = MAP_STYLE | {"shading": "gouraud", "vmax": roles["largest"]["value"].iloc[0]}
     image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
     draw_edges(axes, roles, grid.columns[-1])
     label = with_unit(r"slip velocity $\dot u$", roles, "slip_velocity")
@@ -178,10 +206,13 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
 
 
 def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
-    """Draw two maps, one above x = 0 and one below, of the values of a column."""
-    look = MAP | {"shading": "nearest", "vmax": rows["slip_velocity"].max()}
+    """Draw one map of slip velocity above x = 0 and another one below.
+
+    The column ``half`` separates the rows of the two maps.
+    """
+    look = MAP_STYLE | {"shading": "nearest", "vmax": rows["slip_velocity"].max()}
     for _, part in rows.groupby(half):
-        # Positions that do not slide stay white.
+        # Positions at rest stay white.
         grid = part.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
@@ -190,7 +221,10 @@ def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
 
 
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
-    """Draw both edges, and hide what the map has before the release and after the stick."""
+    """Draw the front and the trailing edge.
+
+    The map is hidden before the release and after the stick.
+    """
     front = roles["front"].sort_values("position")
     trailing = roles["trailing"].sort_values("position")
     axes.set(xlim=(0.0, end), xlabel=with_unit(r"time $t$", roles, "time"))
@@ -202,7 +236,7 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     axes.fill_betweenx(drawn, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()
-    # Single blocks that stick between two releases of an arresting front make no edge.
+    # Near an arresting front, single blocks stick between two releases. They are not an edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
-        axes.fill_betweenx(x, stick, end, color=STUCK, linewidth=0.0, label="stuck again")
+        axes.fill_betweenx(x, stick, end, color=STUCK_COLOUR, linewidth=0.0, label="stuck again")
         axes.plot(stick, x, "--", color=BLACK, linewidth=0.8, label="trailing edge")

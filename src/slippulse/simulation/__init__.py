@@ -1,1 +1,1 @@
-"""Scenes in, Datasets out: one scene, or a sweep of many."""
+"""Simulation of scenes: one scene, or a sweep of many, returned as an xarray Dataset."""

@@ -1,10 +1,13 @@
-"""Spacing, step and order of a scene for a largest relative error of its numbers.
+"""Spacing, step and order that keep the numbers of a scene within a largest relative error.
 
-The error of each number is a constant times dx over a length of the scene, in the continuum limit
-at fixed beta/dx. Each constant stands below once. Where no derivation is given, a constant is an
-upper bound over runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and
-gamma W^2 = 0.001 to 64 under a displacement boundary; levels -0.1 to -10 under a stress boundary.
-`slippulse.measurement.promise` says which numbers are promised.
+In the continuum limit, at fixed beta/dx, the relative error of each number is a constant times dx
+divided by a length of the scene (or the square of this ratio). Solving for dx gives one spacing for
+each number, and `settings_for` returns the smallest of them.
+
+The constants are defined below. If no derivation is given, a constant is an upper bound that was
+measured in runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and gamma W^2 =
+0.001 to 64 under a displacement boundary, and levels of -0.1 to -10 under a stress boundary.
+`slippulse.measurement.promise` lists the numbers that are covered.
 """
 
 import math
@@ -21,51 +24,60 @@ from ..model.stability import choose_step
 from ..theory.closed_pulse import pulse_at_speed
 from ..theory.front_speeds import front_speed
 
-# The constants below were found for beta/dx up to 1. At 10 the longest stable step alone errs by
-# 3e-3 in the front speed at any spacing, and a grid study does not see that.
-STRONGEST_DAMPING = 1.0
-# The spacing may take this fraction of the promise. The step takes a part of the rest, and so does
-# the scatter of a grid study: with factors of 1.5 and 2 it finds up to a third more than the error.
+# The constants below were measured for damping ratios beta/dx up to 1. At 10, the longest stable
+# step alone causes an error of 3e-3 in the front speed at any spacing, and a grid study cannot find
+# this error.
+MAX_DAMPING_RATIO = 1.0
+# Fraction of the promised error that the spacing may use. The step uses a part of the rest. The
+# other part is for the scatter of a grid study, which with factors of 1.5 and 2 finds up to a third
+# more than the true error.
 SPACING_FRACTION = 0.7
-# Blocks across the narrowest length, at least: a lattice four times coarser still has 8.
-BLOCKS = 32
-# The largest step in units of dx, and the order. `studies.accuracy_cost` finds errors of 4e-6 with
-# them at any spacing, in the worst of its numbers, and 2e-5 with the next cheaper pair.
-STEP, ORDER = 1.0, 8
+# Smallest number of blocks across the narrowest length. A lattice four times coarser still has 8.
+MIN_BLOCKS = 32
+# The largest step, in units of dx, and the order. The study `accuracy_cost` finds errors of at most
+# 4e-6 with them at any spacing, and of 2e-5 with the next cheaper pair.
+LARGEST_STEP, TAYLOR_ORDER = 1.0, 8
 
-# Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its fraction of the
-# width from slip and peak velocity (steady pulse to first order in beta). The front takes blocks
-# from the width: at most 1/(2 tau_0 v^2).
-LAYER, FRONT_BLOCKS = 0.25 * math.pi**2, 0.5
-# Front speed with leaf springs, second order in dx over the pulse width: transient, layer times v.
-SPEED, SPEED_LAYER = 7.0, 4.0
-# T_trans and L_trans under a displacement boundary: blocks of the nucleation, a slow first front.
-NUCLEATION, SLOW_FRONT = 0.1, 0.2
-# T_trans and slip velocity under a stress boundary with level 0 on the right, over the distance to
-# where the pre-stress falls to 0 on the left: without damping, and what beta/dx adds.
-TRANSITION, TRANSITION_DAMPED = 2.2, 1.0
-VELOCITY, VELOCITY_DAMPED = 0.6, 0.6
-# Front speed without leaf springs, over the width of the Gaussian.
-FREE_SPEED = 0.25
+# Slip and peak velocity of a pulse. Damping makes a boundary layer of (beta/dx) v/(v^2 - 1) blocks,
+# where v is the front speed. It reduces slip and peak velocity by pi^2/4 times its fraction of the
+# pulse width (steady pulse to first order in beta).
+PULSE_PER_LAYER = 0.25 * math.pi**2
+# Pulse width. The front itself covers at most 1/(2 tau_0 v^2) blocks of it.
+PULSE_PER_FRONT = 0.5
+# Front speed with leaf springs, of second order in dx divided by the pulse width: a transient, and
+# a part in proportion to the boundary layer times v.
+SPEED_ERROR, SPEED_ERROR_PER_LAYER = 7.0, 4.0
+# Front speed without leaf springs, in proportion to dx divided by the width of the Gaussian.
+FREE_SPEED_ERROR = 0.25
 
-# A table is looked at in this number of levels. A front that crosses less pre-stress than this is
-# not covered by a promise (`slippulse.measurement.promise`).
-LEVELS, LOWEST_PRESTRESS = 9, 0.05
+# T_trans and L_trans under a displacement boundary: the blocks of the nucleation, and a front that
+# is slow at first.
+NUCLEATION_ERROR, SLOW_FRONT_ERROR = 0.1, 0.2
+# T_trans and slip velocity under a stress boundary with level 0 on the right, in proportion to dx
+# divided by the distance to the position on the left where the pre-stress falls to 0. The first
+# constant holds without damping, and beta/dx times the second is added.
+TRANSITION_ERROR, TRANSITION_ERROR_DAMPED = 2.2, 1.0
+VELOCITY_ERROR, VELOCITY_ERROR_DAMPED = 0.6, 0.6
 
-# The runs of a sweep share their speeds, and one speed takes milliseconds.
+# Number of levels that represent a table of pre-stress.
+TABLE_LEVELS = 9
+# A front that crosses less pre-stress is not covered (see `slippulse.measurement.promise`).
+LOWEST_PRESTRESS = 0.05
+
+# Each front speed takes milliseconds, and many runs of a sweep have the same one.
 cached_front_speed = lru_cache(maxsize=4096)(front_speed)
 
 
 class Demand(NamedTuple):
-    """A largest relative error, and what it takes of a scene; its narrowest Gaussian."""
+    """The error that the spacing may cause, and the properties of the scene that decide it."""
 
-    error: float
-    levels: list[float]
-    peak_width: float
+    error: float  # largest relative error
+    levels: list[float]  # of the pre-stress
+    peak_width: float  # of the narrowest Gaussian
     gamma: float
     damping_ratio: float
     release: str
-    fields: bool
+    fields: bool  # width, slip and peak velocity at the end must keep the error, too
 
 
 def settings_for(
@@ -78,7 +90,7 @@ def settings_for(
     release: str = "total",
     fields: bool = True,
 ) -> dict[str, Any]:
-    """Spacing, step and order that keep a scene's numbers within a largest relative error.
+    """Return the spacing, step and order that keep a scene's numbers within a relative error.
 
     Parameters
     ----------
@@ -95,7 +107,7 @@ def settings_for(
     release : {"total", "elastic"}
         Release rule, as in `Scene`.
     fields : bool
-        Whether width, slip and peak velocity of the pulse at the end must keep the error, too.
+        If true, width, slip and peak velocity of the pulse at the end keep the error, too.
 
     Returns
     -------
@@ -105,12 +117,12 @@ def settings_for(
     Raises
     ------
     ValueError
-        If an argument is outside of its range: one line with its name, its value and the range.
+        If an argument is outside its range. The message has its name, its value and the range.
 
     Notes
     -----
-    Source: `slippulse.simulation.accuracy`, where each constant is derived or measured; the
-    paper promises no error. `slippulse.measurement.promise` lists the numbers that are covered.
+    Source: `slippulse.simulation.accuracy`, where each constant is derived or measured. The paper
+    makes no statement about errors. `slippulse.measurement.promise` lists the covered numbers.
 
     Examples
     --------
@@ -123,8 +135,8 @@ def settings_for(
     check_kind("prestress", prestress, Prestress)
     check_that(isinstance(fields, bool), "fields", fields, "true or false")
     check_number("gamma", gamma, at_least=0.0)
-    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
-    # Numbers of other types would be computed with as such.
+    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=MAX_DAMPING_RATIO)
+    # Convert numbers of other types, such as integers or NumPy scalars.
     gamma, damping_ratio = float(gamma), float(damping_ratio)
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     peak_width = prestress.narrowest
@@ -132,30 +144,44 @@ def settings_for(
         levels += _levels_of_table(prestress)
         peak_width = min(peak_width, _nucleation_width(prestress))
     error = SPACING_FRACTION * float(accuracy)
-    demand = Demand(error, levels, peak_width, gamma, damping_ratio, release, fields)
+    demand = Demand(
+        error=error,
+        levels=levels,
+        peak_width=peak_width,
+        gamma=gamma,
+        damping_ratio=damping_ratio,
+        release=release,
+        fields=fields,
+    )
     if gamma:
         spacings = _spacings_with_springs(demand)
     else:
         spacings = _spacings_without_springs(demand, prestress)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    step = min(STEP, choose_step("localised", ORDER, damping_ratio, gamma * dx**2))
+    step = min(LARGEST_STEP, choose_step("localised", TAYLOR_ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
-    settings["order"] = ORDER
-    # The scene refuses a wrong boundary, and a gamma that does not go with it.
+    settings["order"] = TAYLOR_ORDER
+    # The scene itself refuses a wrong boundary, and a gamma that does not fit the boundary.
     Scene(boundary, prestress, duration=1.0, gamma=gamma, release=release, **settings)
     return settings
 
 
 def _levels_of_table(prestress: Prestress) -> list[float]:
-    """Levels from the lowest to the highest of a table that the promise covers."""
+    """Return levels from the lowest to the highest pre-stress of a table that is covered."""
     tau = np.array([tau for _, tau in prestress.points])
-    # Less pre-stress is not promised, and at 1 there is no front.
+    # Lower pre-stress is not covered by the promise, and at 1 there is no front.
     covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
-    return np.quantile(covered, np.linspace(0.0, 1.0, LEVELS)).tolist() if covered.size else []
+    if not covered.size:
+        return []
+    return np.quantile(covered, np.linspace(0.0, 1.0, TABLE_LEVELS)).tolist()
 
 
 def _nucleation_width(prestress: Prestress) -> float:
-    """Distance from the nucleation in a table to where as much of it is left as at W of a peak."""
+    """Return the width of the nucleation in a table, inf if there is none.
+
+    Like the width W of a Gaussian, it is the distance at which the pre-stress above the far level
+    has fallen to exp(-1/2) of its maximum.
+    """
     x, tau = np.array(prestress.points).T
     start, outside = int(np.argmax(tau)), max(prestress.left, prestress.right)
     if tau[start] < 1.0:
@@ -166,28 +192,29 @@ def _nucleation_width(prestress: Prestress) -> float:
 
 
 def _spacings_with_springs(demand: Demand) -> list[float]:
-    """Spacings that the numbers of a scene with leaf springs allow, one for each number."""
+    """Return the largest spacing for each number of a scene with leaf springs."""
     nucleation = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
-    start = NUCLEATION * (1.0 + demand.damping_ratio) / nucleation
-    spacings = [nucleation / BLOCKS, demand.error / start]
+    start_error = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation
+    spacings = [nucleation / MIN_BLOCKS, demand.error / start_error]
     for level in demand.levels:
         if level <= 0.0:
             continue
         speed = cached_front_speed(level, demand.damping_ratio, demand.release)
-        # In the limit dx -> 0 damping acts through the speed alone.
+        # In the limit dx -> 0, damping affects the pulse only through the front speed.
         width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
         layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
-        speed_error = math.sqrt(demand.error / (SPEED + SPEED_LAYER * layer * speed))
-        spacings += [width / BLOCKS, width * speed_error]
-        spacings.append(demand.error / (start + SLOW_FRONT / width))
+        # The error of the front speed is this constant times (dx/width)^2.
+        constant = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
+        spacings += [width / MIN_BLOCKS, width * math.sqrt(demand.error / constant)]
+        spacings.append(demand.error / (start_error + SLOW_FRONT_ERROR / width))
         if demand.fields:
-            loss = max(FRONT_BLOCKS / (level * speed**2), LAYER * layer)
-            spacings.append(demand.error * width / loss)
+            constant = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
+            spacings.append(demand.error * width / constant)
     return spacings
 
 
 def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
-    """Distances from the nucleation to where the pre-stress falls to 0, if it does."""
+    """Return the distances from the nucleation at which the pre-stress falls to 0, if it does."""
     if prestress.points:
         x, tau = np.array(prestress.points).T
         start = 0.0 if prestress.width is not None else x[np.argmax(tau)]
@@ -200,15 +227,17 @@ def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]
 
 
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
-    """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
+    """Return the largest spacing for each number of a scene under a stress boundary."""
     error, ratio = demand.error, demand.damping_ratio
     distances = _distances_to_zero(demand.levels, prestress)
-    spacings = [length / BLOCKS for length in (demand.peak_width, *distances)]
+    spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
-        spacings.append(error * demand.peak_width / FREE_SPEED)
+        spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
     if prestress.left < 0.0 == prestress.right and distances:
         if not prestress.steps:
-            spacings.append(error * distances[0] / (TRANSITION + TRANSITION_DAMPED * ratio))
+            constant = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * ratio
+            spacings.append(error * distances[0] / constant)
         if demand.fields:
-            spacings.append(error * distances[0] / (VELOCITY + VELOCITY_DAMPED * ratio))
+            constant = VELOCITY_ERROR + VELOCITY_ERROR_DAMPED * ratio
+            spacings.append(error * distances[0] / constant)
     return spacings

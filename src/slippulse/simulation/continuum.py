@@ -1,4 +1,8 @@
-"""The exact solution of a scene in the continuum limit, in the form of a lattice's."""
+"""The exact solution of a scene in the continuum limit.
+
+It has the form of a solution on a lattice (the same fields at multiples of dx, and the same
+numbers), so that everything that measures or draws a run takes either.
+"""
 
 import math
 from collections.abc import Callable
@@ -8,33 +12,38 @@ import numpy as np
 from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..solver.solution import MARGIN, Solution
+from ..solver.solution import MARGIN_BLOCKS, Solution
 from ..theory.prestress_pieces import nucleations
 from ..theory.rupture import Rupture
 from .exact_rupture import exact_rupture
 
-# The acceleration at the end is the slope of slip velocity over this fraction of the duration.
-LAST_FRACTION = 1e-5
-# Each position takes some 300 bytes.
-MOST_POSITIONS = 10**6
+# The acceleration at the end is the change of slip velocity in this last fraction of the duration.
+ACCELERATION_INTERVAL = 1e-5
+# Each position takes about 300 bytes.
+MAX_POSITIONS = 10**6
 
 
 def solve_exactly(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
-    """Solve a scene exactly as dx -> 0 at its damping ratio, or raise ValueError; NaN is not known.
+    """Solve a scene exactly in the limit dx -> 0 at its damping ratio.
 
-    The numbers ``limit_position``, ``limit_time`` and ``limit_reason`` tell where this ended.
+    Values that the construction of the solution does not reach are NaN. The numbers
+    ``limit_position``, ``limit_time`` and ``limit_reason`` report where and why it ended. Raises
+    ValueError if the theory does not cover the scene.
     """
     if progress is not None:
         progress(0.0)
     # Without a nucleation everything stays at rest.
     rupture = exact_rupture(scene) if nucleations(scene.prestress) else None
-    # Multiples of dx over all that is released until the end, and a margin.
+    # The positions are the multiples of dx in the part that is released, and a margin.
     ends = [end.x for pair in rupture.front_ends for end in pair] if rupture else [0.0]
     first, last = min(ends), max(ends)
-    check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
-    start, end = math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN
+    check_number("dx", scene.dx, at_least=(last - first) / MAX_POSITIONS)
+    start, end = (
+        math.floor(first / scene.dx) - MARGIN_BLOCKS,
+        math.ceil(last / scene.dx) + MARGIN_BLOCKS,
+    )
     x = np.arange(start, end + 1) * scene.dx
     fields = _fields(rupture, x, scene.duration)
     numbers = _numbers(rupture, fields, scene.duration)
@@ -44,11 +53,12 @@ def solve_exactly(
 
 
 def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
+    """Return release and stick times, and slip, slip velocity and acceleration at the end."""
     if rupture is None:
         motion = ("slip", "slip_velocity", "slip_acceleration")
         times = dict.fromkeys(("release_time", "stick_time"), np.full(x.size, np.nan))
         return times | dict.fromkeys(motion, np.zeros(x.size))
-    interval = LAST_FRACTION * end
+    interval = ACCELERATION_INTERVAL * end
     velocity = rupture.slip_velocity(x, end)
     change = velocity - rupture.slip_velocity(x, end - interval)
     return {
@@ -62,6 +72,7 @@ def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.
 
 
 def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]:
+    """Return the samples of slip and slip velocity."""
     if rupture is None:
         rest = np.zeros((samples.times.size, samples.positions.size))
         return {"sample_slip": rest, "sample_velocity": rest}
@@ -70,8 +81,10 @@ def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]
 
 
 def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float) -> dict:
-    stick, limit = rupture and rupture.first_stick, rupture and rupture.limit
-    # Where nothing is known, NaN, something may slide.
+    """Return the numbers of the solution, with the same keys as on a lattice."""
+    stick = rupture.first_stick if rupture else None
+    limit = rupture.limit if rupture else None
+    # A point may be sliding if its slip velocity is not known (NaN).
     sliding = not np.all(fields["slip_velocity"] <= 0.0)
     # The stress of a stuck point between the waves and the threshold is not computed.
     unknown = "min_stuck_stress", "friction_ratio_needed", "energy_residual"

@@ -1,11 +1,16 @@
-"""The exact rupture of a scene."""
+"""The exact rupture of a scene, constructed by the theory."""
 
 from ..model.scene import Scene
 from ..theory.rupture import Rupture
 
 
 def exact_rupture(scene: Scene) -> Rupture:
-    """The exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
-    rule = scene.damping_ratio, scene.release
-    alpha = scene.friction.traits.linear_rate
-    return Rupture(scene.prestress, scene.gamma, *rule, scene.duration, rate_strengthening=alpha)
+    """Return the exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
+    return Rupture(
+        scene.prestress,
+        scene.gamma,
+        scene.damping_ratio,
+        scene.release,
+        scene.duration,
+        rate_strengthening=scene.friction.traits.linear_rate,
+    )

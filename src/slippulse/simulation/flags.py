@@ -1,4 +1,8 @@
-"""Flags of a solution: the reasons why its numbers are not those of the model."""
+"""Flags of a run: reasons why its numbers are not those of the model.
+
+`flags_of` checks a solution for each of them. The other functions of this module decide single
+flags.
+"""
 
 import math
 
@@ -9,27 +13,29 @@ from ..model.scene import Scene
 from ..model.stability import accurate_step
 from ..solver.solution import Solution
 
-# A velocity this far below zero, as a fraction of the largest, shows a stick that was stepped over.
-# The textbook scheme steps over each, by the deceleration of one step.
-NEGATIVE_VELOCITY = {"localised": 1e-9, "fixed_step": 1e-2}
-# An energy balance that misses this fraction of its largest part shows a step too long for the
-# damping.
-ENERGY_RESIDUAL = 1e-2
-# A Taylor step that errs by this fraction of the fastest mode is flagged. Front speeds err by up to
-# 7 per cent of it, and of chains with rough pre-stress none moved by 2 per cent below ten times it.
-LONG_STEP = 2e-2
+# A negative velocity beyond this fraction of the largest velocity shows that a step missed a stick.
+# The textbook scheme misses every stick, by the deceleration of one step.
+MAX_NEGATIVE_VELOCITY = {"localised": 1e-9, "fixed_step": 1e-2}
+# If more than this fraction of the largest energy is missing from the balance, the step is too long
+# for the damping.
+MAX_ENERGY_RESIDUAL = 1e-2
+# A Taylor step is flagged if its relative error in the fastest mode is larger than this. The error
+# of front speeds is at most 7 per cent of that error. In chains with rough pre-stress, no front
+# speed changed by 2 per cent even at ten times this value.
+MAX_STEP_ERROR = 2e-2
 
 # Below this damping ratio, waves of a few blocks do not die out behind a front that the pre-stress
-# holds back, however fine the lattice is. Where slip velocity tends to 0 they stop a block within
-# this number of blocks of the front.
-WEAK_DAMPING, AT_FRONT = 0.1, 5
+# holds back, even on the finest lattice. Where slip velocity tends to 0 they stop a block within a
+# few blocks of the front.
+MIN_DAMPING_RATIO_OF_FRONTS = 0.1
+MAX_BLOCKS_BEHIND_FRONT = 5
 
-# Positions within the reach of waves at which pre-stress is looked at.
-REACHED = 10_001
+# Number of positions within the reach of the waves at which the lowest pre-stress is searched for.
+PRESTRESS_POSITIONS = 10_001
 
 
 def flags_of(scene: Scene, solution: Solution) -> dict:
-    """The blocks across the narrowest pulse, and the names of the flags, separated by commas."""
+    """Return the blocks across the narrowest pulse, and the flags of a run, separated by commas."""
     blocks, numbers = narrowest_pulse(scene, solution), solution.numbers
     if numbers["releases"] == 0:
         return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
@@ -39,62 +45,68 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         "first_stick_undone": first_stick_undone(scene, solution),
     }
     if scene.scheme == "localised":
-        longest = accurate_step(LONG_STEP, scene.order, *scene.ratios)
+        longest = accurate_step(MAX_STEP_ERROR, scene.order, *scene.ratios)
         flags["long_step"] = scene.max_step > longest
     if scene.scheme != "continuum":
         fastest = max(1.0, float(np.max(solution.slip_velocity)))
-        lowest_velocity = -NEGATIVE_VELOCITY[scene.scheme] * fastest
+        lowest_velocity = -MAX_NEGATIVE_VELOCITY[scene.scheme] * fastest
         flags |= {
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
             "first_stick_at_front": first_stick_at_front(scene, solution),
             "negative_velocity": numbers["min_velocity"] < lowest_velocity,
-            # A residual of NaN is flagged, too.
-            "energy": not numbers["energy_residual"] <= ENERGY_RESIDUAL,
+            # This form of the condition also flags a residual that is NaN.
+            "energy": not numbers["energy_residual"] <= MAX_ENERGY_RESIDUAL,
         }
     names = [*filter(flags.get, flags), *solution.flags]
     return {"pulse_blocks": blocks, "run_flags": ",".join(names)}
 
 
 def lowest_stress(scene: Scene, solution: Solution) -> float:
-    """Lowest stress at rest; of the exact solution, the lowest pre-stress that its waves reach."""
+    """Return the lowest stress of a stuck block.
+
+    For an exact solution, return the lowest pre-stress that its waves reach.
+    """
     if scene.scheme != "continuum":
         return solution.numbers["min_stuck_stress"]
     first, last = solution.x[0] - scene.duration, solution.x[-1] + scene.duration
-    return float(np.min(scene.prestress(np.linspace(first, last, REACHED))))
+    return float(np.min(scene.prestress(np.linspace(first, last, PRESTRESS_POSITIONS))))
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:
-    """True if the first block to stick was released again, as beside an undamped slow front."""
-    # Under a stress boundary the first stick is no transition.
+    """Return True if the first block to stick was released again, as near a slow undamped front."""
+    # Under a stress boundary the first stick is not a transition, and the flag has no meaning.
     undone = scene.boundary == "displacement" and solution.numbers["re_releases"] > 0
     return undone and solution.numbers["first_stick_time"] not in solution.stick_time
 
 
 def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
-    """True if waves of a few blocks may have stopped the first block, right behind a slow front.
+    """Return True if waves of a few blocks may have stopped the first block, just behind a front.
 
-    In the continuum something else sticks first, and later. Under a stress boundary only a rupture
-    between two negative levels sticks at all.
+    The front must be slow and the damping weak. In the continuum another position sticks first, and
+    later. Under a stress boundary, only a rupture between two negative levels sticks at all.
     """
     numbers, profile = solution.numbers, scene.prestress
     time, position = numbers["first_stick_time"], numbers["first_stick_position"]
-    sticks = scene.boundary == "displacement" or max(profile.left, profile.right) < 0.0
-    if scene.damping_ratio >= WEAK_DAMPING or not sticks or math.isnan(time):
+    can_stick = scene.boundary == "displacement" or max(profile.left, profile.right) < 0.0
+    if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not can_stick or math.isnan(time):
         return False
     if first_stick_undone(scene, solution):
         return False
     side = math.copysign(1.0, position)
     front = np.max(side * solution.x, where=solution.release_time <= time, initial=0.0)
-    held_back = bool(profile(side * front) < 0.0)
-    return held_back and front - abs(position) <= AT_FRONT * scene.dx
+    is_held_back = bool(profile(side * front) < 0.0)
+    return is_held_back and front - abs(position) <= MAX_BLOCKS_BEHIND_FRONT * scene.dx
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:
-    """True if another law of friction than the paper's let nothing stick for 2 pi/sqrt(gamma)."""
+    """Return True if no block stuck in the last 2 pi/sqrt(gamma), the period of the leaf springs.
+
+    Only scenes with leaf springs and another law of friction than that of the paper are flagged.
+    """
     if scene.friction == COULOMB or scene.gamma == 0.0:
         return False
-    # The velocity is NaN where the exact solution does not know it.
+    # The slip velocity is NaN where the exact solution does not know it.
     if not np.any(solution.slip_velocity > 0.0) or np.isnan(solution.slip_velocity).any():
         return False
     last = np.max(solution.stick_time, initial=0.0, where=np.isfinite(solution.stick_time))
@@ -102,9 +114,10 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
 
 
 def narrowest_pulse(scene: Scene, solution: Solution) -> int:
-    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation.
+    """Return the number of blocks across the narrowest pulse at the end.
 
-    It is 0 without a pulse, and where the exact solution does not know all of the end.
+    Under a stress boundary, return the number of blocks across the nucleation. The number is 0
+    without a pulse, and if the exact solution does not know the whole state at the end.
     """
     if scene.boundary == "stress":
         return int(_nucleation_width(scene, solution) / scene.dx)
@@ -113,12 +126,15 @@ def narrowest_pulse(scene: Scene, solution: Solution) -> int:
     sliding = np.isfinite(solution.release_time) & ~np.isfinite(solution.stick_time)
     edges = np.flatnonzero(np.diff(sliding, prepend=False, append=False))
     lengths = edges[1::2] - edges[0::2]
-    # The pulses are the outermost segments. Those between them are remains of the nucleation.
+    # The pulses are the outermost segments. Other segments are remains of the nucleation.
     return int(min(lengths[0], lengths[-1])) if lengths.size else 0
 
 
 def _nucleation_width(scene: Scene, solution: Solution) -> float:
-    """Width of the Gaussian at x = 0, or the shorter distance to where the pre-stress turns < 0."""
+    """Return the width of the Gaussian at x = 0.
+
+    If the pre-stress falls below 0 at a shorter distance, return that distance.
+    """
     profile = scene.prestress
     width = solution.x.size * scene.dx if profile.width is None else profile.width
     if profile.points:
@@ -132,11 +148,11 @@ def _nucleation_width(scene: Scene, solution: Solution) -> float:
 
 
 def died_out(solution: Solution) -> bool:
-    """True if a front stands still although the pre-stress ahead of it would drive it on."""
+    """Return True if a front stopped although the pre-stress ahead of it is positive."""
     released = np.isfinite(solution.release_time)
     sliding = released & ~np.isfinite(solution.stick_time)
     for side in (1, -1):
-        # The blocks of one side, from x = 0 outwards.
+        # Look at the blocks of one side, in order from x = 0 outwards.
         start = np.searchsorted(side * solution.x[::side], 0.0)
         reached = np.flatnonzero(released[::side][start:])
         if reached.size and not np.any(sliding[::side][start:]):

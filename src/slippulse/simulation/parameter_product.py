@@ -1,4 +1,7 @@
-"""A sweep over every combination of lists of parameters."""
+"""Sweeps over every combination of parameters.
+
+`sweep` makes a scene of each combination and simulates all of them with `run_sweep`.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
@@ -15,9 +18,12 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from .simulate import run_sweep
 
-PROFILE = ("left", "right", "width", "peak")
-OTHER_PARTS = ("steps", "bumps")
-SCENE = (*(field.name for field in fields(Scene)), "damping_ratio")
+# Parameters of the pre-stress that may be lists of values, and others that are one value each.
+LISTED_PROFILE_NAMES = ("left", "right", "width", "peak")
+SINGLE_PROFILE_NAMES = ("steps", "bumps")
+SCENE_NAMES = (*(field.name for field in fields(Scene)), "damping_ratio")
+PROFILE_NAMES = (*LISTED_PROFILE_NAMES, *SINGLE_PROFILE_NAMES)
+ALLOWED_NAMES = (*SCENE_NAMES, *PROFILE_NAMES)
 
 
 def sweep(
@@ -32,24 +38,25 @@ def sweep(
     Parameters
     ----------
     samples : Samples, optional
-        What is sampled in each run, if ``record`` has "samples".
+        Times and positions that are sampled in each run, if ``record`` contains "samples".
     record, threads, progress
         As in `run_sweep`.
     **parameters
-        Parameters of `Scene`, each a value or a list of values. In place of ``prestress`` stand
-        those of `Prestress`: ``left``, ``right`` (as ``left`` if it is left out), ``width`` and
-        ``peak``, each a value or a list, and ``steps`` and ``bumps``, the same in each run.
+        Parameters of `Scene`, each a value or a list of values. Instead of ``prestress``, the
+        parameters of `Prestress` can be given: ``left``, ``right`` (by default equal to ``left``),
+        ``width`` and ``peak``, each a value or a list, and ``steps`` and ``bumps``, which are the
+        same in each run.
 
     Returns
     -------
     xarray.Dataset
-        As `run_sweep` returns it, the last list varying fastest: ``sel`` selects runs by their
-        parameters, and `as_grid` makes the lists axes.
+        The same as from `run_sweep`. The last list varies fastest. ``sel`` selects runs by their
+        parameters, and `as_grid` turns the lists into axes.
 
     Raises
     ------
     ValueError
-        In one line that names the parameter and what is allowed.
+        If a parameter is invalid. The message names the parameter and what is allowed.
 
     Examples
     --------
@@ -61,7 +68,7 @@ def sweep(
     Frozen({'gamma': 2, 'left': 2})
     """
     for name in parameters:
-        check_that(name in (*SCENE, *PROFILE, *OTHER_PARTS), "parameter", name, ", ".join(_NAMES))
+        check_that(name in ALLOWED_NAMES, "parameter", name, ", ".join(ALLOWED_NAMES))
     lists = {name: _values(name, value) for name, value in parameters.items()}
     scenes = [*_scenes(lists)]
     data = run_sweep(
@@ -72,27 +79,27 @@ def sweep(
         progress=progress,
     )
     axes = [name for name, values in lists.items() if len(values) > 1]
-    # A listed pre-stress is no coordinate, but its levels and width are.
-    known = bool(axes) and all(name in data.coords for name in axes)
-    return data.assign_attrs({AXES_ATTRIBUTE: " ".join(axes)}) if known else data
-
-
-_NAMES = (*SCENE, *PROFILE, *OTHER_PARTS)
+    # A list of pre-stresses is not a coordinate, although their levels and widths are.
+    is_grid = bool(axes) and all(name in data.coords for name in axes)
+    return data.assign_attrs({AXES_ATTRIBUTE: " ".join(axes)}) if is_grid else data
 
 
 def _values(name: str, value: Any) -> list:
-    """Return the values of a parameter; one if it is no list."""
-    listed = isinstance(value, list | tuple | range | np.ndarray) and name not in OTHER_PARTS
-    values = np.asarray(value).tolist() if isinstance(value, np.ndarray) else value
-    values = list(values) if listed else [value]
+    """Return the values of a parameter as a list, with one value if the parameter is no list."""
+    is_sequence = isinstance(value, list | tuple | range | np.ndarray)
+    is_list = is_sequence and name not in SINGLE_PROFILE_NAMES
+    # Elements of an array are converted to Python numbers.
+    values = value.tolist() if isinstance(value, np.ndarray) else value
+    values = list(values) if is_list else [value]
     check_that(len(values) > 0, name, value, "a value, or a list of at least one")
     return values
 
 
 def _scenes(lists: dict[str, list]) -> Iterator[Scene]:
-    profile = [name for name in lists if name in (*PROFILE, *OTHER_PARTS)]
-    together = "prestress" in lists and bool(profile)
-    check_that(not together, "prestress", profile, "prestress, or left, right, width and peak")
+    """Yield a scene for each combination of values."""
+    profile = [name for name in lists if name in PROFILE_NAMES]
+    has_both = "prestress" in lists and bool(profile)
+    check_that(not has_both, "prestress", profile, "prestress, or left, right, width and peak")
     for combination in product(*lists.values()):
         values = dict(zip(lists, combination, strict=True))
         parts = {name: values.pop(name) for name in profile}

@@ -3,20 +3,20 @@
 import sys
 from collections.abc import Callable
 
-LOOK = "{percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
+BAR_FORMAT = "{percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 
 
-def bar(total: float = 1.0) -> Callable[..., None] | None:
-    """Return a function of what is done, up to a total, that draws a bar; None without tqdm.
+def make_bar(total: float = 1.0) -> Callable[..., None] | None:
+    """Return a function that draws a bar when it is called with the amount done, up to a total.
 
-    The bar is drawn on standard error, in a notebook as a widget.
+    The bar appears on standard error, or as a widget in a notebook. None if tqdm is not installed.
     """
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        print("progress: tqdm is not installed, so that no bar is drawn", file=sys.stderr)
+        print("progress: no bar is drawn, since tqdm is not installed", file=sys.stderr)
         return None
-    drawn = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=LOOK)
+    drawn = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=BAR_FORMAT)
 
     def draw(done: float, _: float = total) -> None:
         drawn.update(done - drawn.n)

@@ -1,4 +1,8 @@
-"""Simulation of one scene, or of a sweep of many, each by the scheme that it names."""
+"""Simulation of one scene (`simulate`), or of a sweep of many (`run_sweep`).
+
+Each scene names the scheme that solves it. Both functions check their arguments, solve, and return
+a Dataset with the flags of each run.
+"""
 
 import os
 from collections.abc import Callable, Sequence
@@ -15,13 +19,13 @@ from ..solver.compile_notice import announced_compilation
 from ..solver.fixed_step import solve_by_scheme
 from ..solver.solution import Solution
 from .continuum import solve_exactly
-from .flags import ENERGY_RESIDUAL
-from .progress_bar import bar
+from .flags import MAX_ENERGY_RESIDUAL
+from .progress_bar import make_bar
 from .sweep import recorded, solve_sweep
 
 
 class UnresolvedRun(RuntimeError):
-    """A run whose numbers are not those of the model; raised by `simulate` if it is strict."""
+    """Raised by `simulate` if it is strict and the numbers of a run are not those of the model."""
 
 
 def simulate(
@@ -39,22 +43,22 @@ def simulate(
     progress : callable or bool, optional
         Called with the fraction of the duration done; True draws a bar with the time that is left.
     strict : bool
-        Raise UnresolvedRun where a run would be flagged.
+        Raise UnresolvedRun instead of returning a flagged run.
 
     Returns
     -------
     xarray.Dataset
-        Over x: prestress, release_time, stick_time, and at the end slip, slip_velocity and
-        slip_acceleration. Attributes: every parameter of the scene, counters, the energy balance,
-        run_flags ("" or names separated by commas), versions.
+        Variables with the dimension x: prestress, release_time, stick_time, and slip,
+        slip_velocity and slip_acceleration at the end. Attributes: every parameter of the scene,
+        counters, the energy balance, run_flags ("" or names separated by commas) and versions.
 
     Raises
     ------
     ValueError
-        If an argument is of another type, a sample is after the end, or the run may cost more than
-        days or a small machine has; `run_sweep` takes any.
+        If an argument has another type, if a sample is later than the end, or if the run may take
+        days or more memory than a small machine has. `run_sweep` accepts any cost.
     UnstableRun
-        If slip velocity is not finite or beyond anything the pre-stress can drive.
+        If slip velocity is not finite or larger than the pre-stress can drive.
     UnresolvedRun
         If the run is flagged and ``strict`` is true.
 
@@ -63,32 +67,36 @@ def simulate(
     >>> slip = sp.simulate(sp.Scene("stress", sp.Prestress(0.6, 0.6), 5.0, dx=0.05)).slip
     """
     check_kind("scene", scene, Scene)
-    known = isinstance(progress, bool | None) or callable(progress)
-    check_that(known, "progress", progress, "a function of the fraction done, True, or None")
+    is_valid = isinstance(progress, bool | None) or callable(progress)
+    check_that(is_valid, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
     _check_within(samples, scene.duration)
     exceeded = bound_cost(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
-    # The exact solution refuses what it cannot solve, by the key that is too large.
+    # The exact solution itself refuses scenes that are too large, and names the key.
     if exceeded and scene.scheme != "continuum":
         raise ValueError(exceeded)
     if isinstance(progress, bool):
-        progress = bar() if progress else None
+        progress = make_bar() if progress else None
     with announced_compilation():
         data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
-    numbers = data.attrs
-    if strict and numbers["run_flags"]:
-        facts = (
-            f" (lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding"
-            f" at {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
-            f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
-            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
-            f" allowed {ENERGY_RESIDUAL:g})"
+    if strict and data.attrs["run_flags"]:
+        raise UnresolvedRun(
+            f"the run is flagged: {data.attrs['run_flags']}{_flag_details(scene, data.attrs)}"
         )
-        if scene.scheme == "continuum":
-            # These are numbers of a lattice.
-            facts = f" ({numbers['limit_reason']})" if numbers["limit_reason"] else ""
-        raise UnresolvedRun(f"the run is flagged: {numbers['run_flags']}{facts}")
     return data
+
+
+def _flag_details(scene: Scene, numbers: dict) -> str:
+    """Return the numbers on which the flags of a run depend, in parentheses."""
+    if scene.scheme == "continuum":
+        return f" ({numbers['limit_reason']})" if numbers["limit_reason"] else ""
+    return (
+        f" (lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding"
+        f" at {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
+        f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
+        f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
+        f" allowed {MAX_ENERGY_RESIDUAL:g})"
+    )
 
 
 def run_sweep(
@@ -103,31 +111,31 @@ def run_sweep(
     Parameters
     ----------
     scenes : sequence of Scene
-        One for each point of the sweep; by the scheme "continuum" all or none.
+        One for each point of the sweep. Either all or none have the scheme "continuum".
     samples : sequence of Samples, optional
-        One for each scene, all of one shape.
+        One for each scene, all with the same numbers of times and positions.
     record : sequence of {"fronts", "fields", "samples"}
-        What is kept: release and stick times; slip, slip velocity and acceleration at the end;
-        the recorded samples.
+        Fields to keep: "fronts" are release and stick times, "fields" are slip, slip velocity and
+        acceleration at the end, and "samples" are the recorded samples.
     threads : int, optional
-        Number of scenes at a time, 1 to 1024, by default the number of cores that this process may
-        use; the result does not depend on it.
+        Number of scenes that are solved at a time, from 1 to 1024. The default is the number of
+        cores that this process may use. The result does not depend on it.
     progress : callable or bool, optional
-        Called with (done, all) after each scene; for a single scene, with the fraction done. True
-        draws a bar with the time that is left.
+        Called with (number done, number of scenes) after each scene; for a single scene, with the
+        fraction done and 1. True draws a bar with the time that is left.
 
     Returns
     -------
     xarray.Dataset
-        Every number over ``point``, with the parameters as coordinates: ``sel`` selects runs by
-        any of them, and `as_grid` makes those of a full product axes. Contiguous ragged arrays over
-        ``block``: the ``row_size`` blocks of a run begin at ``row_start``. Samples over
-        (point, time, position).
+        Numbers have the dimension ``point``, with the parameters as coordinates: ``sel`` selects
+        runs by any of them, and `as_grid` turns the parameters of a full product into axes. Arrays
+        of blocks have the dimension ``block`` and are contiguous ragged arrays: the ``row_size``
+        blocks of a run begin at ``row_start``. Samples have the dimensions (point, time, position).
 
     Raises
     ------
     ValueError
-        In one line that names the argument and what is allowed.
+        If an argument is invalid. The message names the argument and what is allowed.
 
     Examples
     --------
@@ -138,30 +146,31 @@ def run_sweep(
     """
     _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
-    listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
-    allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
-    check_that(listed, "samples", samples, allowed)
+    is_valid = isinstance(samples, Sequence) and len(samples) == len(scenes)
+    allowed = f"a list of {len(scenes)} Samples, one for each scene, or None"
+    check_that(is_valid, "samples", samples, allowed)
     for scene, samples_of_scene in zip(scenes, samples, strict=True):
         _check_within(samples_of_scene, scene.duration)
     _check_record(record, samples)
     threads = _usable_cores() if threads is None else threads
     check_number("threads", threads, integer=True, at_least=1, at_most=1024)
-    known = isinstance(progress, bool | None) or callable(progress)
-    check_that(known, "progress", progress, "a function of (done, all), True, or None")
+    is_valid = isinstance(progress, bool | None) or callable(progress)
+    check_that(is_valid, "progress", progress, "a function of (done, all), True, or None")
     if isinstance(progress, bool):
-        progress = bar(len(scenes)) if progress else None
+        progress = make_bar(len(scenes)) if progress else None
     with announced_compilation():
         data = solve_sweep(_solve, scenes, samples, record, int(threads), progress)
     return with_parameters(described(data))
 
 
 def _check_scenes(scenes: Sequence[Scene]) -> None:
-    listed = isinstance(scenes, Sequence) and len(scenes) > 0
-    known = listed and all(isinstance(scene, Scene) for scene in scenes)
-    check_that(known, "scenes", scenes, "a list of Scenes, at least one")
+    """Raise ValueError unless the argument is a list of Scenes that can be solved together."""
+    is_list = isinstance(scenes, Sequence) and len(scenes) > 0
+    is_valid = is_list and all(isinstance(scene, Scene) for scene in scenes)
+    check_that(is_valid, "scenes", scenes, "a list of Scenes, at least one")
     schemes = sorted({scene.scheme for scene in scenes})
-    alike = "continuum" not in schemes or len(schemes) == 1
-    check_that(alike, "scheme", schemes, "'continuum' for all, or for none")
+    is_compatible = "continuum" not in schemes or len(schemes) == 1
+    check_that(is_compatible, "scheme", schemes, "'continuum' for all scenes, or for none")
 
 
 def _usable_cores() -> int:
@@ -172,6 +181,7 @@ def _usable_cores() -> int:
 
 
 def _check_within(samples: Samples | None, duration: float) -> None:
+    """Raise ValueError if a sample is later than the end of the scene."""
     if samples is not None:
         check_kind("samples", samples, Samples)
         last = float(samples.times.max(initial=0.0))
@@ -180,9 +190,10 @@ def _check_within(samples: Samples | None, duration: float) -> None:
 
 
 def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:
-    listed = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
-    known = listed and all(isinstance(word, str) and word in RECORD_GROUPS for word in record)
-    check_that(known, "record", record, f"a list of {', '.join(RECORD_GROUPS)}")
+    """Raise ValueError if the fields to keep are unknown, or if their samples are missing."""
+    is_list = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
+    is_valid = is_list and all(isinstance(word, str) and word in RECORD_GROUPS for word in record)
+    check_that(is_valid, "record", record, f"a list of {', '.join(RECORD_GROUPS)}")
     if "samples" not in record:
         return
     given = [item for item in samples if item is not None]
@@ -190,11 +201,14 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
         allowed = "Samples for each scene, the second argument"
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
     shapes = {(item.times.shape, item.positions.shape) for item in given}
-    check_that(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
+    check_that(
+        len(shapes) == 1, "samples", samples, "equal numbers of times and positions for all scenes"
+    )
 
 
 def _solve(
     scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None
 ) -> Solution:
+    """Solve a scene by the scheme that it names."""
     solve = solve_exactly if scene.scheme == "continuum" else solve_by_scheme
     return solve(scene, samples, progress)

@@ -1,4 +1,4 @@
-"""Solutions as Datasets: one, or those of many scenes, solved in threads and joined."""
+"""Solutions as Datasets: of one scene, or of many scenes that are solved in threads and joined."""
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -16,8 +16,8 @@ from .flags import flags_of
 Solver = Callable[[Scene, Samples | None, Callable[[float], None]], Solution]
 
 
-class Stopped(Exception):
-    """Another scene of the sweep failed, or the user stopped it."""
+class SweepStopped(Exception):
+    """Raised in a scene if another scene of the sweep failed, or if the user stopped the sweep."""
 
 
 def solve_sweep(
@@ -28,27 +28,31 @@ def solve_sweep(
     threads: int = 1,
     progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
-    """Solve scenes by a solver, long ones on fine lattices first; otherwise as `run_sweep` does."""
+    """Solve scenes by a solver and join their solutions, as `run_sweep` returns them.
+
+    Long scenes on fine lattices are solved first, so that no thread is left with one at the end.
+    """
     results: dict[int, Recorded] = {}
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
     stopped = Event()
 
     def check(done: float) -> None:
         if stopped.is_set():
-            raise Stopped
+            raise SweepStopped
         if progress is not None and len(scenes) == 1:
             progress(done, 1)
 
     def solve_one(i: int) -> None:
         results[i] = recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
 
-    # Exact solutions are computed by Python, one at a time, and only the main thread stops at once.
-    alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
+    # Exact solutions are computed in Python, which runs only one thread at a time. The main thread
+    # solves them itself, because only the main thread can be interrupted at once.
+    in_main_thread = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
-            # Calls of this thread, or futures of those of the pool, as they are done.
+            # Items are None if this thread solves the scenes, and futures if the pool does.
             finished: Iterable = map(solve_one, order)
-            if not alone:
+            if not in_main_thread:
                 finished = as_completed([pool.submit(solve_one, i) for i in order])
             for count, future in enumerate(finished, start=1):
                 if future is not None:
@@ -63,12 +67,12 @@ def solve_sweep(
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
-    """The Dataset of one scene by the localised scheme."""
+    """Return the Dataset of one scene, solved by the localised scheme."""
     return recorded(scene, samples, solve_on_lattice(scene, samples)).dataset()
 
 
 def recorded(scene: Scene, samples: Samples | None, solution: Solution) -> Recorded:
-    """The arrays of a solution, with the parameters of its scene, its numbers and its flags."""
+    """Return the arrays of a solution, with the parameters of its scene, its numbers and flags."""
     arrays = solution.arrays()
     if samples is not None:
         arrays |= {"sample_time": samples.times, "sample_position": samples.positions}

@@ -1,1 +1,4 @@
-"""The lattice and its schemes. They know nothing of the theory, so that agreement is evidence."""
+"""The lattice and the schemes that solve it.
+
+Nothing here uses the theory, so agreement with the theory is evidence.
+"""

@@ -1,8 +1,9 @@
-"""Arrays, constants and counters of the kernels, in groups.
+"""Arrays, constants and counters that the kernels share, in named groups.
 
-Shapes: K = order + 2 derivatives of slip (rows 0 to order + 1), N blocks of the lattice, with the
-ghost block at each end. Lengths are in units of H, times in units of H over the wave speed,
-stresses in units of the stress drop.
+Each group is a NamedTuple, which the kernels read by field name. Shapes: K = order + 2 time
+derivatives of slip (rows 0 to order + 1), and N blocks of the lattice, with one ghost block at each
+end. Lengths are in units of H, times in units of H divided by the wave speed, and stresses in units
+of the stress drop.
 """
 
 from typing import NamedTuple
@@ -11,28 +12,33 @@ import numpy as np
 
 from ..model.friction_laws.law import LawKink
 
-# At order 8, the highest, an event reaches this far on either side: one block for each derivative
-# from the third on.
-REACH = 7
-# The difference that an event makes has its reach on either side of its centre, and a block at rest
-# at each end.
-CENTRE = REACH + 1
-COLUMNS = 2 * CENTRE + 1
-# After this number of events, a step ends early at the next one.
-MOST_EVENTS = 64
-# The events of one step need this number of blocks beyond the outermost sliding one.
-ROOM = COLUMNS + MOST_EVENTS
+# Rows of `Motion.w`: time derivatives of slip.
+SLIP, VELOCITY, ACCELERATION = 0, 1, 2
+# At the end of a step, row 2 holds the change of slip in the step instead.
+SLIP_INCREMENT = 2
 
-# A kernel returns the reason why it stopped. CONTINUE: all steps of the call are done.
-DONE = 0
-CONTINUE = 1
-GROW = 2
-UNSTABLE = 3
+# An event reaches this number of blocks on either side at order 8, the highest: one block for each
+# derivative from the third on.
+EVENT_REACH = 7
+# The change that an event makes is stored in columns: its reach on either side of the block of the
+# event, and one block at rest at each end.
+CENTRE_COLUMN = EVENT_REACH + 1
+COLUMN_COUNT = 2 * CENTRE_COLUMN + 1
+# After this number of events, a step ends early at the next event.
+MAX_EVENTS_PER_STEP = 64
+# The events of one step need this number of blocks beyond the outermost sliding block.
+EDGE_BLOCKS = COLUMN_COUNT + MAX_EVENTS_PER_STEP
+
+# Reasons why a kernel stopped, which it returns.
+END_REACHED = 0
+STEPS_DONE = 1  # the largest number of steps of one call
+LATTICE_TOO_SHORT = 2
+BLOWN_UP = 3
 ALL_STUCK = 4
 
-# Kernels and Python read the fields of these records as attributes. There is one dtype object of
-# each kind: numba recognises it by its address, and would find the type of a copy in each call.
-# The viscous loss of pending_step still lacks the part of the dissipation at its end.
+# Kernels and Python read the fields of these records as attributes. Numba recognises a dtype by its
+# address, so there is one dtype object of each kind: a copy would be looked up in each call.
+# The viscous loss of the last step (pending_step) still lacks the dissipation at the end of it.
 _FLOATS = (
     "time first_stick_time pending_step viscous_loss stick_loss friction_loss min_velocity"
     " min_stuck_stress"
@@ -41,15 +47,16 @@ _COUNTS = (
     "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
 )
 _TYPES = dict.fromkeys(_FLOATS.split(), "f8") | dict.fromkeys(_COUNTS.split(), "i8")
-TALLY = np.dtype((np.record, [*_TYPES.items()]))
-COUNT = np.dtype((np.record, [("n", np.int64)]))
-# The event at time s of a step changes dD/dt, where D is the dissipation, by k. These are the sums
-# over the events of k, k s and k s^2.
-KINKS = np.dtype((np.record, [("k", np.float64), ("ks", np.float64), ("kss", np.float64)]))
+TALLY_DTYPE = np.dtype((np.record, [*_TYPES.items()]))
+COUNT_DTYPE = np.dtype((np.record, [("n", np.int64)]))
+# An event at time s of a step changes the slope of the dissipation by k. The three moments are the
+# sums of k, k s and k s^2 over the events of the step.
+_MOMENTS = ("moment_0", "moment_1", "moment_2")
+SLOPE_CHANGES_DTYPE = np.dtype((np.record, [(name, np.float64) for name in _MOMENTS]))
 
 
-def record(kind: np.dtype) -> np.record:
-    """One record of zeros."""
+def new_record(kind: np.dtype) -> np.record:
+    """Return one record whose fields are all 0."""
     return np.zeros(1, dtype=kind)[0]
 
 
@@ -57,137 +64,172 @@ class Medium(NamedTuple):
     """Constants of the equation of motion and of the release rule."""
 
     dx: float
-    per_dx: float  # 1/dx
-    per_dx2: float  # 1/dx^2
-    leaf: float  # Gamma gamma
+    inverse_dx: float  # 1/dx
+    inverse_dx2: float  # 1/dx^2
+    leaf_stiffness: float  # Gamma gamma
     beta: float
     damping: float  # beta/dx^2
-    alpha: float  # friction that is linear in slip rate
-    law: int  # number of another law of friction, 0: none
-    first: float  # its parameters
-    second: float
-    bend: LawKink | None  # friction that is piecewise linear, in the Taylor step
-    mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
-    total: bool  # the stress that is compared with 1 includes the damping force
+    alpha: float  # friction per unit slip velocity, if friction is linear in it
+    law_number: int  # position of any other law of friction in the list of laws, 0 if there is none
+    law_parameter_1: float
+    law_parameter_2: float
+    law_kink: LawKink | None  # piecewise linear friction, which the Taylor step solves
+    is_mirrored: bool  # block 1 lies at x = 0, and block 0 is the mirror image of block 2
+    damping_counts_for_release: bool  # the damping force is part of the stress compared with 1
 
 
 class Motion(NamedTuple):
-    """State of the blocks; everything at rest is 0."""
+    """State of the blocks. All values of a block at rest without slip are 0."""
 
-    # (K, N), time derivatives of slip at the start of the step: slip w[0], velocity w[1], ...
+    # (K, N), time derivatives of slip at the start of the step, from slip w[0] on
     w: np.ndarray
     offset: np.ndarray  # (N,), change of w[0] by the events of this step, added at its end
     velocity: np.ndarray  # (N,), slip velocity at the end of the step
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
     tau: np.ndarray  # (N,), pre-stress
-    # Of laws of friction other than those of no and of linear rate dependence:
-    falls: np.ndarray  # (N,), slope of the friction of a block before its bend, 0 beyond
-    resists: np.ndarray  # (N,), 1 where the law holds, 0 where the rupture is nucleated without it
-    released: np.ndarray  # (N,), slip at the last release
+    # The next three are used only by laws of friction that are not linear in slip velocity.
+    weakening_slope: np.ndarray  # (N,), decrease of friction per unit slip or slip rate
+    law_factor: np.ndarray  # (N,), 0 where the rupture is nucleated without friction, 1 elsewhere
+    slip_at_release: np.ndarray  # (N,), slip at the last release
 
 
 class Segments(NamedTuple):
-    """Contiguous stretches of sliding blocks [start, end), in order; ``count.n`` of them."""
+    """Contiguous stretches [start, end) of sliding blocks, in order. Their number is count.n."""
 
     edges: np.ndarray  # (N,), start, end, start, end, ...
     count: np.record  # type: ignore[assignment]
 
 
 class Event(NamedTuple):
-    """The release of a block, its stick or the bend of its friction, and when in the step."""
+    """One event of a block: its release, its stick, or its friction at the kink of the law."""
 
     block: int
-    time: float
-    stick: bool
-    bends: bool
+    time: float  # since the step began
+    is_stick: bool
+    is_law_kink: bool
 
 
-class Forecast(NamedTuple):
-    """Events foreseen within the step."""
+class EventEffect(NamedTuple):
+    """Changes that an event made, for the counters and for the energy balance."""
 
-    # (N,), release time of each stuck neighbour of a segment; inf: none, or a mirror image
-    release: np.ndarray
-    stick_block: np.ndarray  # (2 N,), blocks that stick, the first ``sticks.n`` entries
-    stick_time: np.ndarray  # (2 N,)
-    bends: np.ndarray  # (2 N,), True where friction bends instead
-    sticks: np.record
+    is_finite: bool  # velocities are finite
+    first: int  # first block that changed
+    last: int  # block after the last one that changed
+    velocity_before: float  # velocity of a block that sticks, which should be 0
+    lowest_stress: float  # of the stuck blocks next to the changed ones
+    # Changes of the slope of the dissipation: sum of (v_{i+1} - v_i) times the change of
+    # a_{i+1} - a_i, where a is the acceleration, and friction times the change of a
+    loss_slope_change: float
+    work_slope_change: float
+
+
+class EventPrediction(NamedTuple):
+    """Events predicted within the step: releases of stuck blocks, and events of sliding blocks."""
+
+    # (N,), release time of each stuck neighbour of a segment; inf if it is not released in the
+    # step, or if it is a mirror image
+    release_time: np.ndarray
+    # Sticks and kinks of the law: the first event_count.n entries of the next three arrays.
+    event_block: np.ndarray  # (2 N,)
+    event_time: np.ndarray  # (2 N,)
+    is_law_kink: np.ndarray  # (2 N,), False for a stick
+    event_count: np.record
     coefficients: np.ndarray  # (K,), scratch: a polynomial
     slopes: np.ndarray  # (K,), scratch: its derivative
 
 
 class Difference(NamedTuple):
-    """Scratch of an event: the change that it makes in the blocks within its reach."""
+    """Scratch of one event: the change that it makes in the blocks within its reach."""
 
-    rows: np.ndarray  # (K, COLUMNS), time derivatives at the event of the change of slip
-    centre: np.ndarray  # (K + 2,), those of the block of the event
-    values: np.ndarray  # (COLUMNS,)
+    rows: np.ndarray  # (K, COLUMN_COUNT), time derivatives of the change of slip, at the event
+    centre: np.ndarray  # (K + 2,), the same for the block of the event alone
+    values: np.ndarray  # (COLUMN_COUNT,)
 
 
-class Changed(NamedTuple):
-    """Blocks changed by each event of a step; ``count.n`` events."""
+class StepEvents(NamedTuple):
+    """Events of the present step, and the blocks that each changed. Their number is count.n."""
 
-    first: np.ndarray
-    last: np.ndarray  # the one after the last
-    stuck: np.ndarray  # the block that stuck, -1: a release
+    first: np.ndarray  # first block that changed
+    last: np.ndarray  # block after the last one that changed
+    stuck_block: np.ndarray  # block that stuck, -1 if the event is no stick
     count: np.record  # type: ignore[assignment]
-    kinks: np.record
-    work_kinks: np.record  # those of the work against friction with a bend
+    loss_slope_changes: np.record
+    work_slope_changes: np.record  # changes of the work against piecewise linear friction
 
 
 class Scratch(NamedTuple):
     """Everything that lasts for one step."""
 
     moved: Segments  # all blocks that slid at any time of the step
-    forecast: Forecast
+    prediction: EventPrediction
     difference: Difference
-    changed: Changed
+    step_events: StepEvents
 
 
 class History(NamedTuple):
     """Releases and sticks until now, and counters."""
 
-    release_time: np.ndarray  # (N,), first release; NaN: none
-    stick_time: np.ndarray  # (N,), last stick; NaN: none, or released again
+    release_time: np.ndarray  # (N,), first release; NaN if never released
+    stick_time: np.ndarray  # (N,), last stick; NaN if there is none, or if released again
     tally: np.record
 
 
 class Recorder(NamedTuple):
-    """Samples of slip and slip velocity: T times, P blocks."""
+    """Samples of slip and slip velocity, at T times and P blocks."""
 
     times: np.ndarray  # (T,)
-    blocks: np.ndarray  # (P,), -1: outside the lattice, at rest
+    blocks: np.ndarray  # (P,), -1 outside the lattice, where everything is at rest
     slip: np.ndarray  # (T, P)
     velocity: np.ndarray  # (T, P)
 
 
 class Limits(NamedTuple):
-    """The step, and the end of a call."""
+    """Size of the step, and the conditions that end a call."""
 
     order: int
     largest_step: float
     end_time: float
-    largest_force: float  # largest |tau|
-    steps: int  # most steps of one call
+    largest_force: float  # bound on the force that drives a block
+    max_steps: int  # of one call
 
 
 def make_motion(rows: int, size: int) -> Motion:
-    """Blocks at rest. All rows lie in one piece of memory, equally spaced: see `lattice.PAGE`."""
+    """Return blocks at rest. All rows lie in one piece of memory at equal distances.
+
+    `lattice.PAGE_BLOCKS` explains why their distance matters.
+    """
     memory = np.zeros((rows + len(Motion._fields) - 1, size))
     return Motion(memory[:rows], *memory[rows:])
 
 
 def make_segments(size: int) -> Segments:
-    """No segments, on a lattice of ``size`` blocks."""
-    return Segments(np.zeros(size, dtype=np.int64), record(COUNT))
+    """Return an empty list of segments for a lattice of ``size`` blocks."""
+    return Segments(np.zeros(size, dtype=np.int64), new_record(COUNT_DTYPE))
 
 
 def make_scratch(size: int, order: int) -> Scratch:
-    """Scratch arrays of a lattice of ``size`` blocks, without events."""
-    release, stick_time = np.full(size, np.inf), np.zeros(2 * size)
-    stick_block, bends = np.zeros(2 * size, dtype=np.int64), np.zeros(2 * size, dtype=bool)
-    polynomials, values = np.zeros((2, order + 2)), np.zeros(COLUMNS)
-    forecast = Forecast(release, stick_block, stick_time, bends, record(COUNT), *polynomials)
-    difference = Difference(np.zeros((order + 2, COLUMNS)), np.zeros(order + 4), values)
-    first, last, stuck = np.zeros((3, MOST_EVENTS), dtype=np.int64)
-    changed = Changed(first, last, stuck, record(COUNT), record(KINKS), record(KINKS))
-    return Scratch(make_segments(size), forecast, difference, changed)
+    """Return scratch arrays without events for a lattice of ``size`` blocks."""
+    prediction = EventPrediction(
+        release_time=np.full(size, np.inf),
+        event_block=np.zeros(2 * size, dtype=np.int64),
+        event_time=np.zeros(2 * size),
+        is_law_kink=np.zeros(2 * size, dtype=bool),
+        event_count=new_record(COUNT_DTYPE),
+        coefficients=np.zeros(order + 2),
+        slopes=np.zeros(order + 2),
+    )
+    difference = Difference(
+        rows=np.zeros((order + 2, COLUMN_COUNT)),
+        centre=np.zeros(order + 4),
+        values=np.zeros(COLUMN_COUNT),
+    )
+    first, last, stuck_block = np.zeros((3, MAX_EVENTS_PER_STEP), dtype=np.int64)
+    step_events = StepEvents(
+        first=first,
+        last=last,
+        stuck_block=stuck_block,
+        count=new_record(COUNT_DTYPE),
+        loss_slope_changes=new_record(SLOPE_CHANGES_DTYPE),
+        work_slope_changes=new_record(SLOPE_CHANGES_DTYPE),
+    )
+    return Scratch(make_segments(size), prediction, difference, step_events)

@@ -1,4 +1,4 @@
-"""Compiles kernels into the cache."""
+"""Compilation of the kernels into the cache, before the first simulation needs them."""
 
 from collections.abc import Iterable
 
@@ -9,7 +9,7 @@ from .layer import LayerScene, simulate_layer
 
 
 def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
-    """Compile the kernels of schemes, and of the layer."""
+    """Compile the kernels of the given schemes. The name "layer" stands for the elastic layer."""
     prestress = Prestress(0.5, 0.5)
     for scheme in schemes:
         if scheme == "layer":

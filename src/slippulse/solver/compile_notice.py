@@ -1,4 +1,4 @@
-"""One line that says that kernels are being compiled, which takes a while once."""
+"""One line on standard error when the kernels are compiled, which takes half a minute once."""
 
 import sys
 from collections.abc import Iterator
@@ -6,35 +6,35 @@ from contextlib import contextmanager
 
 from numba.core import event
 
-NOTICE = (
-    "slippulse: compiling the kernels of the lattice, once and for about half a minute;"
+NOTICE_TEXT = (
+    "slippulse: compiling the kernels of the lattice, which takes about half a minute once;"
     " later calls load them"
 )
-PACKAGE = __name__.partition(".")[0]
+PACKAGE_NAME = __name__.partition(".")[0]
 
 
 class CompileNotice(event.Listener):
-    """Prints the notice when the first kernel of this package is compiled in a process."""
+    """Listener that prints the notice when a process compiles the first kernel of this package."""
 
     def __init__(self) -> None:
         self.printed = False
 
     def on_start(self, event: event.Event) -> None:
-        """Print the notice; machine code that is loaded from the cache starts no such event."""
+        """Print the notice. Loading machine code from the cache does not start this event."""
         function = getattr(event.data["dispatcher"], "py_func", None)
-        if not self.printed and getattr(function, "__module__", "").startswith(f"{PACKAGE}."):
+        if not self.printed and getattr(function, "__module__", "").startswith(f"{PACKAGE_NAME}."):
             self.printed = True
-            print(NOTICE, file=sys.stderr, flush=True)
+            print(NOTICE_TEXT, file=sys.stderr, flush=True)
 
     def on_end(self, event: event.Event) -> None:
-        """Do nothing."""
+        """Do nothing at the end of a compilation."""
 
 
-LISTENER = CompileNotice()
+COMPILE_LISTENER = CompileNotice()
 
 
 @contextmanager
 def announced_compilation() -> Iterator[None]:
-    """Announce the first compilation of a kernel, if there is one inside."""
-    with event.install_listener("numba:compile", LISTENER):
+    """Announce the first compilation of a kernel inside this context, if there is one."""
+    with event.install_listener("numba:compile", COMPILE_LISTENER):
         yield

@@ -1,189 +1,228 @@
-"""The change that an event makes: a difference that spreads one block a derivative.
+"""Change of the motion by an event: a release, a stick, or a kink in the law of friction.
 
-The sliding lattice is linear, so an event adds a polynomial to the present ones. The lowest
-derivative of this difference that is not zero is the second, or the third where friction bends, at
-the block of the event. Each further derivative reaches one block more, since damping couples
-neighbours through their velocities (without damping, one block more takes two derivatives). The
-difference is cut off at the order of the step, so the few blocks within reach change as in a new
-expansion of the whole lattice.
+The sliding lattice is linear. An event therefore adds a polynomial in time, the difference, to the
+Taylor polynomial of each block. At the block of the event, the first derivative of the difference
+that is not zero is the second one (the third if the event is a kink of the law). Each further
+derivative reaches one block further, since damping couples neighbours through their velocities:
+
+    derivative 2            x
+    derivative 3          x x x
+    derivative 4        x x x x x
+
+Without damping, two derivatives are needed for each block. The difference ends at the order of the
+step, so only a few blocks change, and they change exactly as in a new expansion of the whole
+lattice.
 """
 
 import numpy as np
 
-from .arrays import CENTRE, COLUMNS
-from .foresight import RECIPROCAL, find_bends, find_sticks, foresee_releases, forget_sticks
-from .friction_terms import begin_to_fall, fall, resistance_at_rest, strengthen, turn
-from .jit import inner, once
-from .segments import sliding_beside
-from .stencils import blocks, derivative
+from .arrays import ACCELERATION, CENTRE_COLUMN, COLUMN_COUNT, SLIP, VELOCITY, EventEffect
+from .event_prediction import (
+    RECIPROCALS,
+    drop_predicted_events,
+    predict_law_kinks,
+    predict_releases,
+    predict_sticks,
+)
+from .friction_terms import (
+    add_weakening,
+    begin_weakening,
+    friction_at_stick,
+    subtract_rate_strengthening,
+    switch_weakening,
+)
+from .jit import inlined_kernel, kernel_function
+from .segments import count_sliding_neighbours
+from .stencils import block_range, next_derivative
 
 
-@inner()
-def taylor_shift(derivatives, lowest, last, top, s):
-    """Shift derivatives lowest..last of a polynomial of degree ``top`` by a time s."""
+@kernel_function()
+def shift_polynomial(derivatives, lowest, last, top, s):
+    """Shift derivatives lowest..last of a polynomial of degree ``top`` by a time s, in place."""
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):
-            value = derivatives[j] + s * RECIPROCAL[j - m + 1] * value
+            value = derivatives[j] + s * RECIPROCALS[j - m + 1] * value
         derivatives[m] = value
 
 
-@inner(inline=True)
-def later_velocity(w, i, top, s):
-    """Velocity of a block a time s after the step began."""
+@kernel_function(inline=True)
+def velocity_at(w, i, top, s):
+    """Return the velocity of a block at a time s after the step began."""
     value = w[top, i]
     for k in range(top - 1, 0, -1):
-        value = w[k, i] + s * RECIPROCAL[k] * value
+        value = w[k, i] + s * RECIPROCALS[k] * value
     return value
 
 
-@inner(inline=True)
-def start(centre, medium, motion, block, now, top):
-    """Derivatives of the slip of a block released at ``now``. Returns its friction."""
+@kernel_function(inline=True)
+def start_sliding(centre, medium, motion, block, now, top):
+    """Release a block at the time ``now``, and return its friction.
+
+    ``centre`` receives the time derivatives of its slip.
+    """
     w, offset = motion.w, motion.offset
     strain = motion.strain
-    per_dx2, damping = medium.per_dx2, medium.damping
-    ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
-    force = (strain[block] - strain[block - 1]) / medium.dx + per_dx2 * ahead + motion.tau[block]
-    force -= medium.leaf * (w[0, block] + offset[block])
-    centre[2] = force + damping * (w[1, block - 1] + w[1, block + 1])
-    friction = begin_to_fall(motion, medium.bend, block)
-    centre[2] -= friction
-    # Between the start of the step and ``now``, two derivatives more than are kept contribute.
+    inverse_dx2, damping = medium.inverse_dx2, medium.damping
+    curvature = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
+    elastic = (strain[block] - strain[block - 1]) / medium.dx + inverse_dx2 * curvature
+    force = elastic + motion.tau[block]
+    force -= medium.leaf_stiffness * (w[SLIP, block] + offset[block])
+    centre[ACCELERATION] = force + damping * (w[VELOCITY, block - 1] + w[VELOCITY, block + 1])
+    friction = begin_weakening(motion, medium.law_kink, block)
+    centre[ACCELERATION] -= friction
+    # The shift in time from the start of the step needs two more derivatives than the step keeps.
     for k in range(1, top + 1):
-        centre[k + 2] = per_dx2 * (w[k, block - 1] + w[k, block + 1])
+        centre[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
             centre[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
-    taylor_shift(centre, np.int64(2), top, top + 2, now)
+    shift_polynomial(centre, np.int64(2), top, top + 2, now)
     return friction
 
 
-@inner(inline=True)
-def stop(centre, w, offset, block, now, top):
-    """Hold a block at ``now``; ``centre`` gets minus its derivatives. Returns its velocity."""
-    centre[0] = 0.0
+@kernel_function(inline=True)
+def hold_block(centre, w, offset, block, now, top):
+    """Stop a block at the time ``now``, and return the velocity that it had.
+
+    ``centre`` receives minus the time derivatives of its slip.
+    """
+    centre[SLIP] = 0.0
     for k in range(1, top + 1):
         centre[k] = w[k, block]
         w[k, block] = 0.0
-    taylor_shift(centre, np.int64(0), top, top, now)
-    offset[block] += centre[0]
+    shift_polynomial(centre, np.int64(0), top, top, now)
+    offset[block] += centre[SLIP]
     for k in range(2, top + 1):
         centre[k] = -centre[k]
-    return centre[1]
+    return centre[VELOCITY]
 
 
-@inner(inline=True)
-def bend_course(centre, motion, bend, block, now, top):
-    """Derivatives of the change that a bend of friction makes. Returns that of friction times v."""
-    if bend is not None:
+@kernel_function(inline=True)
+def change_weakening(centre, motion, law_kink, block, now, top):
+    """Change the slope of a block's friction at a kink of its law.
+
+    ``centre`` receives the time derivatives of the change of slip. Returns the change of the time
+    derivative of friction times velocity.
+    """
+    if law_kink is not None:
         for k in range(1, top + 1):
             centre[k] = motion.w[k, block]
-        taylor_shift(centre, np.int64(1), top, top, now)
-        velocity, before = centre[1], motion.falls[block]
-        turn(motion, bend, block)
-        change = motion.falls[block] - before
+        shift_polynomial(centre, np.int64(1), top, top, now)
+        velocity, before = centre[VELOCITY], motion.weakening_slope[block]
+        switch_weakening(motion, law_kink, block)
+        change = motion.weakening_slope[block] - before
         for k in range(top, 2, -1):
-            centre[k] = change * centre[k - 2 + bend.rate]
-        centre[2] = 0.0
+            centre[k] = change * centre[k - 2 + law_kink.rate]
+        centre[ACCELERATION] = 0.0
         return -centre[3] * velocity
     return 0.0
 
 
-@inner(inline=True)
-def spread(difference, medium, motion, event, left, right, top):
-    """Derivatives of the difference from those of its centre, over the sliding blocks beside it."""
+@kernel_function(inline=True)
+def spread_difference(difference, medium, motion, event, left, right, top):
+    """Compute the derivatives of the difference from its derivatives at the centre.
+
+    The numbers of sliding blocks to the left and to the right of the event limit its reach.
+    """
     rows, centre = difference.rows, difference.centre
-    column = np.uint64(event.block) - np.uint64(CENTRE)
+    column = np.uint64(event.block) - np.uint64(CENTRE_COLUMN)
     for k in range(2, top + 1):
-        for p in range(np.uint64(COLUMNS)):
+        for p in range(np.uint64(COLUMN_COUNT)):
             rows[k, p] = 0.0
         reach = k - 2 if medium.damping != 0.0 else (k - 2) // 2
-        first, last = CENTRE - min(left, reach), CENTRE + min(right, reach) + 1
-        for p in blocks(first, last):
-            rows[k, p] = derivative(rows, k, p, medium.per_dx2, medium.leaf, medium.damping)
+        first, last = CENTRE_COLUMN - min(left, reach), CENTRE_COLUMN + min(right, reach) + 1
+        for p in block_range(first, last):
+            rows[k, p] = next_derivative(
+                rows, k, p, medium.inverse_dx2, medium.leaf_stiffness, medium.damping
+            )
         if medium.alpha != 0.0:
-            strengthen(rows, k, first, last, medium.alpha)
-        fall(rows, k, first, last, column, motion, medium.bend)
-        rows[k, CENTRE] = centre[k] + (0.0 if event.stick else rows[k, CENTRE])
+            subtract_rate_strengthening(rows, k, first, last, medium.alpha)
+        add_weakening(rows, k, first, last, column, motion, medium.law_kink)
+        rows[k, CENTRE_COLUMN] = centre[k] + (0.0 if event.is_stick else rows[k, CENTRE_COLUMN])
 
 
-@inner(inline=True)
-def evaluate(out, rows, lowest, top, s):
-    """Derivative ``lowest`` of the difference at time s, in all columns but the last."""
-    columns = np.uint64(COLUMNS - 1)
+@kernel_function(inline=True)
+def evaluate_difference(out, rows, lowest, top, s):
+    """Compute derivative ``lowest`` of the difference at time s, in all columns except the last."""
+    columns = np.uint64(COLUMN_COUNT - 1)
     for p in range(columns):
         out[p] = rows[top, p]
     for k in range(top - 1, lowest - 1, -1):
-        weight = s * RECIPROCAL[k + 1 - lowest]
+        weight = s * RECIPROCALS[k + 1 - lowest]
         for p in range(columns):
             out[p] = rows[k, p] + weight * out[p]
 
 
-@inner(inline=True)
+@kernel_function(inline=True)
 def add_difference(motion, difference, first, last, block, now, h, top):
-    """Add the difference to the polynomials of blocks first..last-1 and their velocities at h."""
+    """Add the difference to the motion of the blocks first..last-1.
+
+    It changes their polynomials and their velocities at time h.
+    """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     rows, values = difference.rows, difference.values
-    column = np.uint64(CENTRE) - np.uint64(block)
-    evaluate(values, rows, 1, top, h - now)
-    for i in blocks(first, last):
+    column = np.uint64(CENTRE_COLUMN) - np.uint64(block)
+    evaluate_difference(values, rows, 1, top, h - now)
+    for i in block_range(first, last):
         velocity[i] += values[i + column]
-    evaluate(values, rows, 0, top, -now)
-    for i in blocks(first, last):
+    evaluate_difference(values, rows, 0, top, -now)
+    for i in block_range(first, last):
         offset[i] += values[i + column]
     for m in range(1, top + 1):
-        evaluate(values, rows, m, top, -now)
-        for i in blocks(first, last):
+        evaluate_difference(values, rows, m, top, -now)
+        for i in block_range(first, last):
             w[m, i] += values[i + column]
 
 
-@once
-def change_course(medium, motion, segments, forecast, difference, event, h, top):
-    """Change the polynomials within reach of an event, and foresee further events there until h.
+@inlined_kernel
+def apply_event(medium, motion, segments, prediction, difference, event, h, top):
+    """Change the motion within reach of an event, and predict the next events there until time h.
 
-    Returns: velocities are finite; first block that changed and the one after the last; velocity
-    of the block before; lowest stress of a stuck block; sum of dv times the change of da; change
-    of the time derivative of friction times velocity.
+    Returns an `EventEffect`.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
-    block, now, stick, bends = event
-    speed = kink = bent = friction = 0.0
-    left, right = sliding_beside(segments, block)
-    middle = medium.mirror and block == 1
-    if middle:
+    centre, law_kink = difference.centre, medium.law_kink
+    block, now, is_stick, at_law_kink = event
+    velocity_before = loss_change = work_change = friction = 0.0
+    left, right = count_sliding_neighbours(segments, block)
+    is_on_axis = medium.is_mirrored and block == 1
+    if is_on_axis:
         left = right
-    if stick:
-        speed = stop(difference.centre, w, offset, block, now, top)
+    if is_stick:
+        velocity_before = hold_block(centre, w, offset, block, now, top)
         velocity[block] = 0.0
-        friction = resistance_at_rest(motion, medium.bend, block)
-    elif bends:
-        bent = bend_course(difference.centre, motion, medium.bend, block, now, top)
+        friction = friction_at_stick(motion, law_kink, block)
+    elif at_law_kink:
+        work_change = change_weakening(centre, motion, law_kink, block, now, top)
     else:
-        friction = start(difference.centre, medium, motion, block, now, top)
+        friction = start_sliding(centre, medium, motion, block, now, top)
     if medium.beta > 0.0:
-        # Only the block of the event changes its acceleration, and it is at rest.
-        neighbours = later_velocity(w, block + 1, top, now)
-        if not middle:
-            neighbours += later_velocity(w, block - 1, top, now)
-        kink = -difference.centre[2] * neighbours
-    bent += friction * difference.centre[2]
-    spread(difference, medium, motion, event, left, right, top)
-    if stick:
-        # `stop` has changed the block of the event already.
+        # Only the block of the event changes its acceleration, and its velocity is 0.
+        neighbours = velocity_at(w, block + 1, top, now)
+        if not is_on_axis:
+            neighbours += velocity_at(w, block - 1, top, now)
+        loss_change = -centre[ACCELERATION] * neighbours
+    work_change += friction * centre[ACCELERATION]
+    spread_difference(difference, medium, motion, event, left, right, top)
+    if is_stick:
+        # The polynomial of the block of the event was changed when the block was stopped.
         for k in range(2, top + 1):
-            difference.rows[k, CENTRE] = 0.0
+            difference.rows[k, CENTRE_COLUMN] = 0.0
 
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
-    with_ghost = medium.mirror and first <= 2
+    with_ghost = medium.is_mirrored and first <= 2
     if with_ghost:
         offset[0] = offset[2]
         for m in range(1, top + 1):
             w[m, 0] = w[m, 2]
 
-    lowest = foresee_releases(medium, motion, segments, forecast, first - 1, last + 1, now, h)
-    forget_sticks(forecast, first, last)
-    finite = find_sticks(motion, forecast, first, last, last - first, now, h, top)
-    find_bends(motion, medium.bend, forecast, first, last, now, h, top)
-    return finite, 0 if with_ghost else first, last, speed, lowest, kink, bent
+    lowest = predict_releases(medium, motion, segments, prediction, first - 1, last + 1, now, h)
+    drop_predicted_events(prediction, first, last)
+    is_finite = predict_sticks(motion, prediction, first, last, last - first, now, h, top)
+    predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
+    first_changed = 0 if with_ghost else first
+    return EventEffect(
+        is_finite, first_changed, last, velocity_before, lowest, loss_change, work_change
+    )

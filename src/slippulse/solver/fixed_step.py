@@ -1,6 +1,9 @@
-"""The textbook scheme, for comparison: symplectic Euler, with events checked once a step.
+"""The textbook scheme, for comparison: symplectic Euler, with events checked once per step.
 
-It is of first order in the step, and its front speed locks to dx / (n dt) with an integer n.
+Each step computes the forces, advances the velocities with them, and then the slip with the new
+velocities. A block is released or stopped at the step at which its stress or velocity passes the
+threshold. The scheme is of first order in the step. Its front speed can lock to dx/(n dt) with an
+integer n.
 """
 
 import math
@@ -13,90 +16,117 @@ from ..model.friction import LAWS
 from ..model.friction_laws.law import Friction
 from ..model.samples import Samples
 from ..model.scene import Scene
-from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
-from .jit import entry, inner
+from .arrays import (
+    ACCELERATION,
+    ALL_STUCK,
+    BLOWN_UP,
+    EDGE_BLOCKS,
+    END_REACHED,
+    LATTICE_TOO_SHORT,
+    SLIP,
+    STEPS_DONE,
+    VELOCITY,
+    Limits,
+)
+from .jit import kernel_entry, kernel_function
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
-from .taylor import BLOW_UP, note_release, note_stick
+from .taylor import BLOW_UP_FACTOR, record_release, record_stick
 
-# A front of the textbook scheme that repeats a cycle of so few blocks this often, up to its end, in
-# equally many steps, runs at a fraction of dx/dt. In cycles of fewer steps than this, that speed
-# errs by up to 13 per cent.
-LONGEST_CYCLE, REPEATS, FEW_STEPS = 6, 30, 50
+# A front is locked to a fraction of dx/dt if it repeats the same cycle until its end: each time, a
+# few blocks are released after the same numbers of steps. If such a cycle takes fewer steps than
+# the last of these constants, the front speed is wrong by up to 13 per cent.
+MAX_CYCLE_BLOCKS = 6
+MIN_CYCLE_REPEATS = 30
+MIN_UNBIASED_CYCLE_STEPS = 50
 
 
-def choose(laws: Sequence[type[Friction]]):
-    """Compiled function of the number of a law among ``laws`` and of what the law depends on."""
+def combine_laws(laws: Sequence[type[Friction]]):
+    """Return a compiled function that computes the friction of any of some laws.
+
+    Its arguments are the position of the law in the list, the slip since the release, the slip
+    velocity and the two parameters of the law.
+    """
     if not laws:
-        return inner()(lambda law, slip, velocity, one, two: 0.0)
-    first, rest = register_jitable(laws[0].friction), choose(laws[1:])
+        return kernel_function()(lambda law, slip, velocity, parameter_1, parameter_2: 0.0)
+    first, rest = register_jitable(laws[0].friction), combine_laws(laws[1:])
 
-    @inner()
-    def chosen(law, slip, velocity, one, two):
+    @kernel_function()
+    def friction(law, slip, velocity, parameter_1, parameter_2):
         if law == 0:
-            return first(slip, velocity, one, two)
-        return rest(law - 1, slip, velocity, one, two)
+            return first(slip, velocity, parameter_1, parameter_2)
+        return rest(law - 1, slip, velocity, parameter_1, parameter_2)
 
-    return chosen
-
-
-law_of_friction = choose(LAWS)
+    return friction
 
 
-@inner()
-def forces(medium, motion, sliding, history, t):
-    """Force on each block, in w[2], and releases at the threshold. Returns how many slide."""
-    slip, velocity = motion.w[0], motion.w[1]
-    force, tau = motion.w[2], motion.tau
-    per_dx2, damping = medium.per_dx2, medium.damping
+friction_by_law_number = combine_laws(LAWS)
+
+
+@kernel_function()
+def compute_forces(medium, motion, sliding, history, t):
+    """Compute the force on each block, and release blocks whose stress reaches the threshold.
+
+    The forces are written into row 2 of w. Returns the number of sliding blocks.
+    """
+    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    force, tau = motion.w[ACCELERATION], motion.tau
+    inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
     moving, lowest = 0, tally.min_stuck_stress
     for i in range(1, tau.shape[0] - 1):
-        elastic = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
-        stress = elastic - medium.leaf * slip[i] + tau[i]
+        elastic = inverse_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
+        stress = elastic - medium.leaf_stiffness * slip[i] + tau[i]
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
         force[i] = stress + drag - medium.alpha * velocity[i]
         if not sliding[i]:
-            if not medium.total:
+            if not medium.damping_counts_for_release:
                 drag = 0.0
             lowest = min(lowest, stress + drag)
             if stress + drag >= 1.0:
                 sliding[i] = True
-                note_release(history, i, t)
+                record_release(history, i, t)
         moving += sliding[i]
     tally.min_stuck_stress = lowest
     return moving
 
 
-@inner()
-def move(medium, motion, sliding, history, dt, end):
-    """Advance velocity, then slip, never backwards.
+@kernel_function()
+def advance_blocks(medium, motion, sliding, history, dt, end):
+    """Advance velocities, then slip. A block whose velocity would be negative sticks.
 
-    Returns: the largest velocity, or inf; the work against friction, except alpha v.
+    Returns the largest velocity (inf if one is not finite), and the work against friction without
+    the part of alpha v.
     """
-    slip, velocity = motion.w[0], motion.w[1]
-    force, tally = motion.w[2], history.tally
+    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    force, tally = motion.w[ACCELERATION], history.tally
     fastest = 0.0
     friction, work = 0.0, 0.0
     for i in range(1, slip.shape[0] - 1):
         if not sliding[i]:
             continue
         before = velocity[i]
-        if medium.law > 0:
-            since = slip[i] - motion.released[i]
-            value = law_of_friction(medium.law, since, before, medium.first, medium.second)
-            friction = motion.resists[i] * value
+        if medium.law_number > 0:
+            slip_since_release = slip[i] - motion.slip_at_release[i]
+            value = friction_by_law_number(
+                medium.law_number,
+                slip_since_release,
+                before,
+                medium.law_parameter_1,
+                medium.law_parameter_2,
+            )
+            friction = motion.law_factor[i] * value
             force[i] -= friction
         after = before + dt * force[i]
-        weight = 2.0 if medium.mirror and i > 1 else 1.0
+        weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
         if after <= 0.0:
-            # A block that stops works against nothing: its kinetic energy is a loss of its own.
+            # A block that stops does no work in this step. Its kinetic energy is a separate loss.
             tally.stick_loss += weight * 0.5 * before * before * medium.dx
             tally.min_velocity = min(tally.min_velocity, after)
             after = 0.0
             sliding[i] = False
-            motion.released[i] = slip[i]
-            note_stick(history, i, end)
+            motion.slip_at_release[i] = slip[i]
+            record_stick(history, i, end)
         else:
             work += weight * friction * 0.5 * (before + after)
         velocity[i] = after
@@ -107,21 +137,24 @@ def move(medium, motion, sliding, history, dt, end):
     return fastest, medium.dx * dt * work
 
 
-@inner()
+@kernel_function()
 def viscous_loss(medium, velocity, dt):
-    """Viscous loss of a step and that to rate strengthening, from the velocities at its end."""
-    square, motion = 0.0, 0.0
-    for i in range(1 if medium.mirror else 0, velocity.shape[0] - 1):
+    """Return the energy that damping and friction alpha v dissipate in a step.
+
+    It is computed with the velocities at the end of the step.
+    """
+    strain_rate_sum, velocity_sum = 0.0, 0.0
+    for i in range(1 if medium.is_mirrored else 0, velocity.shape[0] - 1):
         dv = velocity[i + 1] - velocity[i]
-        square += dv * dv
-        motion += (0.5 if medium.mirror and i == 1 else 1.0) * velocity[i] * velocity[i]
-    loss = medium.beta / medium.dx * square + medium.alpha * medium.dx * motion
-    return (2.0 if medium.mirror else 1.0) * dt * loss
+        strain_rate_sum += dv * dv
+        velocity_sum += (0.5 if medium.is_mirrored and i == 1 else 1.0) * velocity[i] * velocity[i]
+    loss = medium.beta / medium.dx * strain_rate_sum + medium.alpha * medium.dx * velocity_sum
+    return (2.0 if medium.is_mirrored else 1.0) * dt * loss
 
 
-@inner()
+@kernel_function()
 def take_samples(recorder, motion, tally, end):
-    """Take the samples that are due by ``end``, with the velocity at that time."""
+    """Take the samples that are due by the time ``end``, with the velocities at that time."""
     times, blocks = recorder.times, recorder.blocks
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
@@ -129,80 +162,86 @@ def take_samples(recorder, motion, tally, end):
         for p in range(blocks.shape[0]):
             i = blocks[p]
             if i >= 0:
-                recorder.slip[n, p] = motion.w[0, i] - since * motion.w[1, i]
-                recorder.velocity[n, p] = motion.w[1, i]
+                recorder.slip[n, p] = motion.w[SLIP, i] - since * motion.w[VELOCITY, i]
+                recorder.velocity[n, p] = motion.w[VELOCITY, i]
         tally.samples_taken += 1
 
 
-@entry
+@kernel_entry
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
-    """Advance until a limit; w has slip, velocity, force. Returns the reason why it stopped."""
+    """Advance until a limit, and return the reason why it stopped.
+
+    The rows of w are slip, velocity and force.
+    """
     size, tally = motion.tau.shape[0], history.tally
-    slip, velocity = motion.w[0], motion.w[1]
-    for _ in range(limits.steps):
+    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    for _ in range(limits.max_steps):
         t = tally.time
         if t >= limits.end_time:
-            return DONE
-        if sliding[size - ROOM] or (sliding[ROOM - 1] and not medium.mirror):
-            return GROW
+            return END_REACHED
+        if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
+            return LATTICE_TOO_SHORT
         dt = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if dt == limits.end_time - t else t + dt
-        if medium.mirror:
+        if medium.is_mirrored:
             slip[0], velocity[0] = slip[2], velocity[2]
-        moving = forces(medium, motion, sliding, history, t)
+        moving = compute_forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
-        fastest, work = move(medium, motion, sliding, history, dt, end)
+        fastest, work = advance_blocks(medium, motion, sliding, history, dt, end)
         if fastest == math.inf:
-            return UNSTABLE
+            return BLOWN_UP
         tally.friction_loss += work
-        if medium.mirror:
+        if medium.is_mirrored:
             velocity[0] = velocity[2]
         if medium.beta > 0.0 or medium.alpha != 0.0:
             tally.viscous_loss += viscous_loss(medium, velocity, dt)
         tally.steps += 1
         tally.block_updates += moving
         tally.time = end
-        if not fastest <= BLOW_UP * (1.0 + limits.largest_force * end):
-            return UNSTABLE
+        if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
+            return BLOWN_UP
         take_samples(recorder, motion, tally, end)
-    return CONTINUE
+    return STEPS_DONE
 
 
 class FixedStepLattice(Lattice):
-    """The state of a scene that is solved by this scheme."""
+    """The state of a scene that the textbook scheme solves."""
 
     localised = False
 
     def _advance(self, limits: Limits) -> int:
+        """Call the kernel, and return the reason why it stopped."""
         state = (self.medium, self.motion, self.sliding, self.history, self.recorder)
         return advance_fixed(*state, limits)
 
 
-# The lattice of each scheme.
+# Type of lattice of each scheme.
 LATTICES = {"localised": Lattice, "fixed_step": FixedStepLattice}
 
 
 def solve_by_scheme(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
-    """Solve a scene on the lattice by its scheme."""
+    """Solve a scene on the lattice by the scheme that it names."""
     solution = solve_on_lattice(scene, samples, progress, kind=LATTICES[scene.scheme])
-    if scene.scheme == "fixed_step" and locked_front(solution):
+    if scene.scheme == "fixed_step" and has_locked_front(solution):
         solution.flags = ("locked_front",)
     return solution
 
 
-def locked_front(solution: Solution) -> bool:
-    """True if a front of the textbook scheme is locked to a fraction of dx/dt."""
+def has_locked_front(solution: Solution) -> bool:
+    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt."""
     step = solution.numbers["end_time"] / max(solution.numbers["steps"], 1)
     for side in (-1.0, 1.0):
         released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
         times = np.sort(solution.release_time[released])
         counts = np.rint(np.diff(times) / step)
-        for cycle in range(1, LONGEST_CYCLE + 1):
-            last = counts[-REPEATS * cycle :]
-            repeats = last.size == REPEATS * cycle and (last[cycle:] == last[:-cycle]).all()
-            if repeats and last[:cycle].sum() < FEW_STEPS:
+        for cycle in range(1, MAX_CYCLE_BLOCKS + 1):
+            last = counts[-MIN_CYCLE_REPEATS * cycle :]
+            repeats = (
+                last.size == MIN_CYCLE_REPEATS * cycle and (last[cycle:] == last[:-cycle]).all()
+            )
+            if repeats and last[:cycle].sum() < MIN_UNBIASED_CYCLE_STEPS:
                 return True
     return False

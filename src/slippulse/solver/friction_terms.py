@@ -1,102 +1,129 @@
-"""Friction in the kernels of the Taylor step, which is piecewise linear.
+"""Friction in the kernels of the Taylor step: laws that are linear or piecewise linear.
 
-The dissipation by a term -alpha v belongs to the viscous loss. Friction with a bend falls with the
-slip or slip rate of a block until that is at the bend, which is an event, as is the way back.
-Kernels are compiled anew for it: where ``bend`` is None, its functions are empty.
+Friction that is linear in slip velocity, alpha v, dissipates energy like damping, and its
+dissipation is part of the viscous loss. Piecewise linear friction falls with the slip or slip rate
+of a block until it reaches a kink, beyond which friction is constant. Passing the kink, in either
+direction, is an event. Kernels are compiled separately for laws with a kink: where ``law_kink`` is
+None, the functions below are empty and cost nothing.
 """
+
+from typing import NamedTuple
 
 from ..model.friction import LAWS
 from ..model.friction_laws.law import Friction, LawKink
-from .jit import inner
-from .stencils import blocks
+from .arrays import ACCELERATION, SLIP, VELOCITY
+from .jit import kernel_function
+from .stencils import block_range
 
 
-def constants_of(
-    friction: Friction, localised: bool
-) -> tuple[float, int, float, float, LawKink | None]:
-    """The constants alpha, law, first, second and bend of `Medium`."""
+class FrictionConstants(NamedTuple):
+    """The constants of friction in `Medium`."""
+
+    alpha: float
+    law_number: int
+    law_parameter_1: float
+    law_parameter_2: float
+    law_kink: LawKink | None
+
+
+def friction_constants(friction: Friction, localised: bool) -> FrictionConstants:
+    """Return the constants of a law of friction for the kernels of a scheme."""
     if localised or "continuum" in friction.schemes:
-        return friction.traits.linear_rate, 0, 0.0, 0.0, friction.traits.law_kink
-    return 0.0, LAWS.index(type(friction)), *friction.kernel_parameters, None
+        traits = friction.traits
+        return FrictionConstants(traits.linear_rate, 0, 0.0, 0.0, traits.law_kink)
+    return FrictionConstants(0.0, LAWS.index(type(friction)), *friction.kernel_parameters, None)
 
 
-@inner()
-def begin_to_fall(motion, bend, block):
-    """Let the friction of a block that is released fall. Returns its friction."""
-    if bend is not None:
-        if bend.rate == 0:
-            motion.released[block] = motion.w[0, block] + motion.offset[block]
-        motion.falls[block] = motion.resists[block] * bend.fall
-        return bend.lowest + motion.falls[block] * bend.end
+@kernel_function()
+def begin_weakening(motion, law_kink, block):
+    """Start the weakening of a block that is released, and return its friction."""
+    if law_kink is not None:
+        if law_kink.rate == 0:
+            motion.slip_at_release[block] = motion.w[SLIP, block] + motion.offset[block]
+        motion.weakening_slope[block] = motion.law_factor[block] * law_kink.fall
+        return law_kink.lowest + motion.weakening_slope[block] * law_kink.end
     return 0.0
 
 
-@inner(inline=True)
-def resistance(motion, bend, block, reached):
-    """Friction of a block with a bend, at its slip or slip rate."""
-    return bend.lowest + motion.falls[block] * (motion.released[block] + bend.end - reached)
+@kernel_function(inline=True)
+def friction_of_block(motion, law_kink, block, reached):
+    """Return the piecewise linear friction of a block that reached a slip or slip rate."""
+    return law_kink.lowest + motion.weakening_slope[block] * (
+        motion.slip_at_release[block] + law_kink.end - reached
+    )
 
 
-@inner()
-def resistance_at_rest(motion, bend, block):
-    """Friction of a block that sticks; laws of slip rate have none."""
-    if bend is not None and bend.rate == 0:
-        return resistance(motion, bend, block, motion.w[0, block] + motion.offset[block])
+@kernel_function()
+def friction_at_stick(motion, law_kink, block):
+    """Return the friction of a block when it sticks. For a law of slip rate it is 0 then."""
+    if law_kink is not None and law_kink.rate == 0:
+        return friction_of_block(
+            motion, law_kink, block, motion.w[SLIP, block] + motion.offset[block]
+        )
     return 0.0
 
 
-@inner()
-def turn(motion, bend, block):
-    """Let the friction of a block at the bend cease to fall, or fall again."""
-    if bend is not None:
-        motion.falls[block] = bend.fall - motion.falls[block]
+@kernel_function()
+def switch_weakening(motion, law_kink, block):
+    """Stop the weakening of a block that passes the kink, or start it again on the way back."""
+    if law_kink is not None:
+        motion.weakening_slope[block] = law_kink.fall - motion.weakening_slope[block]
 
 
-@inner(inline=True)
-def fall(w, k, first, last, column, motion, bend):
-    """Add to time derivative k of slip what friction loses; columns may be shifted."""
-    if bend is not None:
-        for i in blocks(first, last):
-            w[k, i] += motion.falls[i + column] * w[k - 2 + bend.rate, i]
+@kernel_function(inline=True)
+def add_weakening(w, k, first, last, column, motion, law_kink):
+    """Add the decrease of friction to time derivative k of slip.
+
+    Block i of ``w`` is block i + ``column`` of the lattice.
+    """
+    if law_kink is not None:
+        for i in block_range(first, last):
+            w[k, i] += motion.weakening_slope[i + column] * w[k - 2 + law_kink.rate, i]
 
 
-@inner(inline=True)
-def resist(motion, first, last, bend):
-    """Subtract friction with a bend from the accelerations of blocks."""
-    if bend is not None:
+@kernel_function(inline=True)
+def subtract_friction(motion, first, last, law_kink):
+    """Subtract piecewise linear friction from the accelerations of blocks."""
+    if law_kink is not None:
         w = motion.w
-        for i in blocks(first, last):
-            w[2, i] -= resistance(motion, bend, i, w[bend.rate, i])
+        for i in block_range(first, last):
+            w[ACCELERATION, i] -= friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
 
 
-@inner(inline=True)
-def power(medium, motion, segments, bend):
-    """Work against friction with a bend in unit time, and its time derivative."""
+@kernel_function(inline=True)
+def friction_power(medium, motion, segments, law_kink):
+    """Return the power that piecewise linear friction dissipates, and its time derivative."""
     total, change = 0.0, 0.0
-    if bend is not None:
-        w, falls = motion.w, motion.falls
+    if law_kink is not None:
+        w, weakening_slope = motion.w, motion.weakening_slope
         for r in range(segments.count.n):
-            for i in blocks(segments.edges[2 * r], segments.edges[2 * r + 1]):
-                weight = 2.0 if medium.mirror and i > 1 else 1.0
-                friction = resistance(motion, bend, i, w[bend.rate, i])
-                total += weight * friction * w[1, i]
-                growth = friction * w[2, i] - falls[i] * w[bend.rate + 1, i] * w[1, i]
+            for i in block_range(segments.edges[2 * r], segments.edges[2 * r + 1]):
+                weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
+                friction = friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
+                total += weight * friction * w[VELOCITY, i]
+                growth = (
+                    friction * w[ACCELERATION, i]
+                    - weakening_slope[i] * w[law_kink.rate + 1, i] * w[VELOCITY, i]
+                )
                 change += weight * growth
     return medium.dx * total, medium.dx * change
 
 
-@inner()
-def strengthen(w, k, first, last, alpha):
-    """Subtract from time derivative k of slip the growth of friction with slip rate."""
-    for i in blocks(first, last):
+@kernel_function()
+def subtract_rate_strengthening(w, k, first, last, alpha):
+    """Subtract friction alpha v, with its time derivatives, from time derivative k of slip."""
+    for i in block_range(first, last):
         w[k, i] -= alpha * w[k - 1, i]
 
 
-@inner(reorder=True)
-def sums_of_motion(w, first, last):
-    """Sums of v^2 and v a over blocks: dissipation by rate strengthening, and half its slope."""
+@kernel_function(reorder=True)
+def sum_velocity_products(w, first, last):
+    """Return the sums of v^2 and of v a over blocks, with velocities v and accelerations a.
+
+    They give the dissipation by friction alpha v, and half of its time derivative.
+    """
     square, product = 0.0, 0.0
-    for i in blocks(first, last):
-        square += w[1, i] * w[1, i]
-        product += w[1, i] * w[2, i]
+    for i in block_range(first, last):
+        square += w[VELOCITY, i] * w[VELOCITY, i]
+        product += w[VELOCITY, i] * w[ACCELERATION, i]
     return square, product

@@ -1,18 +1,22 @@
-"""Flags of the compiler, and the folder of its cache.
+"""Decorators that compile the kernels, with their compiler flags, and the folder of the cache.
 
-What each flag gains, measured in turns with and without it:
+Each flag was chosen by timing runs with and without it in alternation:
 
-- ``_nrt=False`` counts no references to arrays, which is an atomic operation for each array in each
-  call: a pulse runs 1.4 times as fast. No kernel makes or returns an array. See the docstring of
-  ``numba.extending.register_jitable``.
-- ``forceinline`` hands on no group of arrays: a pulse runs 1.2 to 1.35 times as fast. It is for
-  functions that are called in each step or event; for all, it would gain up to a tenth more and
-  compile a third longer.
-- ``inline="always"``, for functions with one caller, is done before compiling: a seventh less time.
-- ``reassoc`` and ``nsz`` in the sums over many blocks: a damped crack runs 1.1 times as fast.
-- ``contract``: 1.00 to 1.07 times as fast. ``error_model="numpy"``: nothing. Both change last bits.
+- ``_nrt=False`` switches off the counting of references to arrays, which costs an atomic operation
+  for each array in each call. A pulse runs 1.4 times as fast. It is allowed because no kernel
+  makes or returns an array.
+- ``forceinline`` avoids passing groups of arrays from function to function. A pulse runs 1.2 to
+  1.35 times as fast. It is used for functions that are called in each step or event. For all
+  functions, it would gain up to another tenth, and compilation would take a third longer.
+- ``inline="always"``, for functions with one caller, is done before compilation and makes it a
+  seventh shorter.
+- ``reassoc`` and ``nsz`` allow sums over many blocks to be reordered. A damped crack runs 1.1 times
+  as fast.
+- ``contract`` makes runs 1.00 to 1.07 times as fast, and ``error_model="numpy"`` has no effect on
+  speed. Both change the last bits of results.
 
-``tests/unit/test_kernel_cache.py`` fails where numba changes those of these that are private.
+Some of these flags are private to numba. ``tests/unit/test_kernel_cache.py`` fails if a new version
+of numba changes them.
 """
 
 import hashlib
@@ -25,23 +29,27 @@ from typing import Any
 import numba
 from numba.extending import register_jitable
 
-SOURCES = Path(__file__).resolve().parent
-# Laws of friction, which the kernels compile too.
-LAWS = SOURCES.parent / "model" / "friction_laws"
+SOLVER_FOLDER = Path(__file__).resolve().parent
+# Laws of friction, which are compiled into the kernels.
+LAWS_FOLDER = SOLVER_FOLDER.parent / "model" / "friction_laws"
 
 
-def source_digest(folder: Path = SOURCES) -> str:
-    """Digest of every source of kernels; numba looks only at the file of the compiled function."""
+def source_digest(folder: Path = SOLVER_FOLDER) -> str:
+    """Return a digest of all source files of the kernels.
+
+    Numba itself checks only the file of the compiled function, and not the files of its callees.
+    """
     digest = hashlib.sha256()
-    for path in [*sorted(folder.glob("*.py")), *sorted(LAWS.glob("*.py"))]:
+    for path in [*sorted(folder.glob("*.py")), *sorted(LAWS_FOLDER.glob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 
 
 def cache_folder() -> Path:
-    """Folder of compiled kernels, named by the digest of their sources.
+    """Return the folder of compiled kernels, whose name contains the digest of their sources.
 
-    It is below the first of SLIPPULSE_CACHE, NUMBA_CACHE_DIR and the user's cache that is given.
+    It lies in the folder given by SLIPPULSE_CACHE, otherwise by NUMBA_CACHE_DIR, otherwise in the
+    cache folder of the user.
     """
     given = os.environ.get("SLIPPULSE_CACHE") or os.environ.get("NUMBA_CACHE_DIR")
     caches = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
@@ -49,9 +57,13 @@ def cache_folder() -> Path:
 
 
 def writable_cache() -> str:
-    """Return the folder of the cache, or one beside the sources, with a warning; empty if none."""
+    """Return a folder for compiled kernels in which files can be written.
+
+    If the usual folder is read-only, warn and use one next to the sources. The result is empty if
+    that is read-only, too.
+    """
     chosen, reason = cache_folder(), ""
-    for folder in (chosen, SOURCES / "__pycache__" / chosen.name):
+    for folder in (chosen, SOLVER_FOLDER / "__pycache__" / chosen.name):
         try:
             folder.mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=folder):
@@ -62,28 +74,31 @@ def writable_cache() -> str:
         folder = None
     if reason:
         instead = f"they go to {folder}" if folder else "each process compiles its own"
-        remedy = "a folder that can be written in SLIPPULSE_CACHE avoids it"
+        remedy = "to avoid this, set SLIPPULSE_CACHE to a folder that can be written"
         warnings.warn(f"compiled kernels: {reason}; {instead}; {remedy}", stacklevel=2)
     return str(folder or "")
 
 
-# Without a folder, numba would look for one whose machine code may be of other sources.
-CACHE = writable_cache()
-numba.config.CACHE_DIR = CACHE  # type: ignore[attr-defined]
+# Without this setting, numba would choose a folder whose machine code may be of other sources.
+CACHE_FOLDER = writable_cache()
+numba.config.CACHE_DIR = CACHE_FOLDER  # type: ignore[attr-defined]
 
-# Sums may be reordered so that they vectorise. NaN keeps its meaning, since it shows a blow-up.
-REORDER = {"reassoc", "contract", "nsz"}
-FLAGS: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "fastmath": {"contract"}}
+# Sums may be reordered so that they vectorise. NaN keeps its meaning, because it shows a blow-up.
+REORDERING_FLAGS = {"reassoc", "contract", "nsz"}
+COMPILER_FLAGS: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "fastmath": {"contract"}}
 
-# The decorator of functions that Python calls. Only they are cached: their machine code holds all
-# that they call.
-entry = numba.njit(cache=bool(CACHE), nogil=True, **FLAGS)
+# Decorator of the functions that Python calls. Only these are cached: their machine code contains
+# all functions that they call.
+kernel_entry = numba.njit(cache=bool(CACHE_FOLDER), nogil=True, **COMPILER_FLAGS)
 
-# The decorator of functions that one kernel calls, in one place.
-once = numba.njit(inline="always", **FLAGS)
+# Decorator of functions that one kernel calls in one place.
+inlined_kernel = numba.njit(inline="always", **COMPILER_FLAGS)
 
 
-def inner(*, inline: bool = False, reorder: bool = False):
-    """Decorator of functions inside kernels. If inlined, they hand on no groups of arrays."""
-    flags = FLAGS | {"fastmath": REORDER} if reorder else FLAGS
+def kernel_function(*, inline: bool = False, reorder: bool = False):
+    """Return the decorator of functions that kernels call.
+
+    With ``inline`` they are always inlined, and with ``reorder`` their sums may be reordered.
+    """
+    flags = COMPILER_FLAGS | {"fastmath": REORDERING_FLAGS} if reorder else COMPILER_FLAGS
     return register_jitable(forceinline=inline, **flags)

@@ -1,17 +1,23 @@
 """The elastic layer in the plane, without the average over its height that the paper takes.
 
-Plane strain, 0 <= y <= 1: lengths in units of the thickness H, times in H over the compressional
-wave speed, stresses in (mu_s - mu_k) sigma_n. All fields are changes from the state of rest under
-the pre-stress. Velocities v and stresses s obey
+Plane strain, 0 <= y <= 1. Lengths are in units of the thickness H, times in units of H divided by
+the compressional wave speed, and stresses in units of (mu_s - mu_k) sigma_n. All fields are changes
+from the state of rest under the pre-stress. Velocities v and stresses s obey
 
     dv_x/dt = ds_xx/dx + ds_xy/dy        ds_xx/dt = dv_x/dx + (1 - gamma) dv_y/dy
     dv_y/dt = ds_xy/dx + ds_yy/dy        ds_yy/dt = (1 - gamma) dv_x/dx + dv_y/dy
                                          ds_xy/dt = (gamma/2) (dv_x/dy + dv_y/dx)
 
-with gamma = 2G/(lambda + 2G). On the staggered grid v_x, s_xx and s_yy stand on rows y = j h from
-boundary to boundary, v_y and s_xy between two rows; s_xx, s_yy and v_y lie half a cell to the right
-of v_x and s_xy; velocities stand at half steps of time. The two outer rows have half the height of
-a cell. The scheme conserves a discrete energy, so that friction loses what it should, to rounding.
+with gamma = 2G/(lambda + 2G). They are solved on a grid that is staggered in space and time:
+
+    row j + 1    v_x         s_xx, s_yy
+    between      s_xy        v_y
+    row j        v_x         s_xx, s_yy
+
+The left column is at x = i h and the right one half a cell further. Rows lie at y = j h from the
+bottom to the top, and the two outer rows have half the height of a cell. Velocities are known half
+a step of time before and after the stresses. The scheme conserves a discrete energy, so the energy
+that friction dissipates is exact to rounding.
 """
 
 import math
@@ -22,12 +28,13 @@ import numpy as np
 
 from ..model.checks import check_choice, check_number, check_that
 from ..model.prestress import Prestress
-from .jit import entry, inner
+from .jit import kernel_entry, kernel_function
 
-# Fraction of the largest stable time step, h / sqrt(2).
-COURANT = 0.85
-# Only precursors of the grid outrun the compressional wave: cells kept for them.
-MARGIN = 32
+# Time step as a fraction of the largest stable one, h / sqrt(2).
+COURANT_FRACTION = 0.85
+# On a grid, small precursors run ahead of the compressional wave. This number of cells is kept for
+# them.
+PRECURSOR_CELLS = 32
 
 
 @dataclass(frozen=True)
@@ -39,12 +46,12 @@ class LayerScene:
     prestress: Prestress  # shear stress tau(x) at the bottom before the rupture, as in `Scene`
     weakening: float  # slip d_c over which the strength falls from 1 to 0 (units of U)
     duration: float
-    cells: int = 40  # over the thickness
-    nucleation: float = 2.0  # friction is 0 for |x| <= this from t = 0 on
-    top: str = "held"  # normal displacement, or "free": no change of normal stress
-    coupling: float = 0.0  # friction coefficient mu of a strength - mu s_yy that follows pressure
-    # Columns farther than this behind the compressional wave from x = 0 are no longer advanced.
-    # That alters no event at x until the time x + trail, since no wave is faster.
+    cells: int = 40  # across the thickness
+    nucleation: float = 2.0  # friction is 0 at |x| <= nucleation from t = 0 on
+    top: str = "held"  # normal displacement is held, or "free": normal stress does not change
+    coupling: float = 0.0  # friction coefficient mu, if the strength follows pressure: - mu s_yy
+    # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. No
+    # wave is faster, so this changes no event at x until the time x + trail.
     trail: float = math.inf
 
     def __post_init__(self) -> None:
@@ -62,12 +69,12 @@ class LayerScene:
 
     @property
     def slip_scale(self) -> float:
-        """U over H (mu_s - mu_k) sigma_n/(lambda + 2G), by appendix B of the paper."""
+        """Unit U of slip (appendix B), divided by H (mu_s - mu_k) sigma_n/(lambda + 2G)."""
         return 2.0 if self.boundary == "displacement" else 1.0
 
     @property
     def symmetric(self) -> bool:
-        """True where the half x >= 0 is enough."""
+        """True if it is enough to solve the half x >= 0."""
         return self.prestress.symmetric and self.coupling == 0.0
 
 
@@ -78,22 +85,23 @@ class LayerRun:
     x: np.ndarray  # (N,) position
     slip: np.ndarray  # (N,) slip at the end, in units of U
     velocity: np.ndarray  # (cells + 1, N) v_x at the end, from the bottom to the top
-    release_time: np.ndarray  # (N,) first release, NaN where never
-    stick_time: np.ndarray  # (N,) first stick, NaN where never
-    # Unbalanced energy divided by the work of the pre-stress; NaN if columns were left behind.
+    release_time: np.ndarray  # (N,) first release, NaN if never released
+    stick_time: np.ndarray  # (N,) first stick, NaN if it never sticks
+    # Missing energy divided by the work of the pre-stress; NaN if columns were no longer advanced.
     energy_residual: float
 
 
 class Elastic(NamedTuple):
-    """Constants of the layer and of its grid; arrays have one number a row y = j h."""
+    """Constants of the layer and of its grid. Arrays have one value for each row y = j h."""
 
     ratio: float  # dt/h
     shear: float  # gamma/2
-    mirror: bool  # node 1 lies on an axis of symmetry
+    is_mirrored: bool  # node 1 lies on an axis of symmetry
     moving_rows: int  # rows whose v_x is not held
     coupling: float  # mu
     weakening: float  # d_c in units of H (mu_s - mu_k) sigma_n/(lambda + 2G)
-    above: np.ndarray  # weights of what stands above a row, and below it: an outer row has one side
+    # Weights of the values above and below a row, which are (2, 0) and (0, 2) at the outer rows
+    above: np.ndarray
     below: np.ndarray
     direct: np.ndarray  # modulus of s_xx, less on a free row
     lateral: np.ndarray  # 1 - gamma, 0 on a free row
@@ -101,7 +109,7 @@ class Elastic(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """Velocities and stresses; column 0 is a ghost, which is at rest or a mirror image."""
+    """Velocities and stresses. Column 0 is a ghost, which is at rest or a mirror image."""
 
     vx: np.ndarray  # (cells + 1, N)
     vy: np.ndarray  # (cells, N)
@@ -111,22 +119,31 @@ class Fields(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """State of the bottom, each of shape (N,); its slip is in units of the weakening above."""
+    """State of the bottom; arrays of shape (N,). Slip has the unit of `Elastic.weakening`."""
 
     tau: np.ndarray
-    nucleus: np.ndarray  # whether friction is 0
+    nucleus: np.ndarray  # True where friction is 0
     sliding: np.ndarray
     slip: np.ndarray
     slip_at_release: np.ndarray
     release_time: np.ndarray
     stick_time: np.ndarray
-    excess: np.ndarray  # load less strength at the last step, of nodes at rest
-    work: np.ndarray  # (2,): by the pre-stress, and by the pre-stress less friction; over h
+    excess: np.ndarray  # load minus strength at the last step, of nodes at rest
+    # (2,), both divided by h: work of the pre-stress, and work of the pre-stress minus friction
+    work: np.ndarray
 
 
-@inner()
+class Columns(NamedTuple):
+    """The columns of the grid that are advanced."""
+
+    centre: int  # node at x = 0
+    nucleation: int  # number of columns without friction on each side of it
+    trail: int  # number of columns behind the compressional wave from x = 0 that are advanced
+
+
+@kernel_function()
 def update_stresses(elastic, fields, first, last):
-    """Advance the stresses of columns first to last by one step."""
+    """Advance the stresses of columns first..last-1 by one step."""
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
     for j in range(rows + 1):
@@ -140,7 +157,7 @@ def update_stresses(elastic, fields, first, last):
             along, across = right[i] - v[i], over * above[i] - under * below[i]
             s_xx[i] += direct * along + lateral * across
             s_yy[i] += lateral * along + normal * across
-        if elastic.mirror:
+        if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
     factor = ratio * elastic.shear
     for j in range(rows):
@@ -151,9 +168,9 @@ def update_stresses(elastic, fields, first, last):
             s[i] += factor * (high[i] - low[i] + right[i] - left[i])
 
 
-@inner()
+@kernel_function()
 def update_velocities(elastic, fields, first, last):
-    """Advance the velocities of columns first to last by one step, except v_x at the bottom."""
+    """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom."""
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
     for j in range(rows):
@@ -162,7 +179,7 @@ def update_velocities(elastic, fields, first, last):
         v = vy[j, first:last]
         for i in range(v.shape[0]):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
-        if elastic.mirror:
+        if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
     for j in range(1, elastic.moving_rows):
         over, under = elastic.above[j], elastic.below[j]
@@ -173,9 +190,9 @@ def update_velocities(elastic, fields, first, last):
             v[i] += ratio * (right[i] - left[i] + over * high[i] - under * low[i])
 
 
-@inner()
-def strength(elastic, fields, fault, i):
-    """Strength of one node, by the slip since its release and by the normal stress on it."""
+@kernel_function()
+def compute_strength(elastic, fields, fault, i):
+    """Return the strength of one node, from its slip since the release and its normal stress."""
     if fault.nucleus[i]:
         return 0.0
     weakening = 0.0
@@ -185,11 +202,11 @@ def strength(elastic, fields, fault, i):
     return max(0.0, 1.0 - weakening) - elastic.coupling * normal
 
 
-@inner()
-def slide(elastic, fields, fault, i, dt, time):
-    """Advance v_x of one node at the bottom by one step, and add up the work."""
+@kernel_function()
+def advance_node(elastic, fields, fault, i, dt, time):
+    """Advance v_x and the slip of one node at the bottom by one step, and add the work done."""
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
-    resistance = strength(elastic, fields, fault, i)
+    resistance = compute_strength(elastic, fields, fault, i)
     if not fault.sliding[i]:
         excess, before = load - resistance, fault.excess[i]
         fault.excess[i] = excess
@@ -198,14 +215,14 @@ def slide(elastic, fields, fault, i, dt, time):
         fault.sliding[i] = True
         fault.slip_at_release[i] = fault.slip[i]
         if np.isnan(fault.release_time[i]):
-            # The load is taken as linear in time between two steps.
-            late = excess / (excess - before) if before < 0.0 else 0.0
-            fault.release_time[i] = time - late * dt
+            # The load is interpolated linearly in time between two steps.
+            delay = excess / (excess - before) if before < 0.0 else 0.0
+            fault.release_time[i] = time - delay * dt
     earlier = fields.vx[0, i]
     later = earlier + 2.0 * elastic.ratio * (load - resistance)
     if later <= 0.0:
         if np.isnan(fault.stick_time[i]):
-            # Velocities stand half a step before and after, and are taken as linear between.
+            # The velocity is interpolated linearly from half a step before to half a step after.
             turn = earlier / (earlier - later) if earlier > 0.0 else 0.5
             fault.stick_time[i] = time + (turn - 0.5) * dt
         later = 0.0
@@ -213,65 +230,75 @@ def slide(elastic, fields, fault, i, dt, time):
     fields.vx[0, i] = later
     fault.slip[i] += dt * later
     moved = 0.5 * dt * (earlier + later)
-    if elastic.mirror and i == 1:
+    if elastic.is_mirrored and i == 1:
         moved *= 0.5
-    # The friction that acted, at a stick too, follows from the change of velocity.
+    # The friction that acted follows from the change of velocity, also when the node sticks.
     friction = load - (later - earlier) / (2.0 * elastic.ratio)
     fault.work[0] += abs(fault.tau[i]) * moved
     fault.work[1] += (fault.tau[i] - friction) * moved
 
 
-@entry
+@kernel_entry
 def advance_layer(elastic, fields, fault, dt, steps, columns):
-    """Advance between two steps.
-
-    ``columns``: the node at x = 0, the number of columns without friction on each side of it, and
-    the number that are advanced behind the compressional wave from it.
-    """
-    centre, frictionless, trail = columns
+    """Advance from step ``steps[0]`` to step ``steps[1]``, in some columns of the grid."""
+    centre = columns.centre
     for number in range(steps[0], steps[1]):
         wave = int(number * elastic.ratio)
-        reach = frictionless + wave + MARGIN
+        reach = columns.nucleation + wave + PRECURSOR_CELLS
         first, last = max(1, centre - reach), min(fault.tau.shape[0] - 1, centre + reach)
-        first = max(first, centre + wave - trail)
+        first = max(first, centre + wave - columns.trail)
         update_stresses(elastic, fields, first, last)
         update_velocities(elastic, fields, first, last)
         for i in range(first, last):
-            slide(elastic, fields, fault, i, dt, number * dt)
+            advance_node(elastic, fields, fault, i, dt, number * dt)
 
 
 def simulate_layer(scene: LayerScene) -> LayerRun:
-    """Simulate a rupture; the grid is so long that no wave reaches its ends."""
+    """Simulate a rupture on a grid that is so long that no wave reaches its ends."""
     h = 1.0 / scene.cells
-    dt = COURANT * h / np.sqrt(2.0)
+    dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
-    reach = int(scene.nucleation / h + 0.5)
-    half = reach + int(steps * dt / h) + 2 * MARGIN
+    nucleation = int(scene.nucleation / h + 0.5)
+    half = nucleation + int(steps * dt / h) + 2 * PRECURSOR_CELLS
     centre = 1 if scene.symmetric else half
     x = (np.arange(centre + half) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
-    # Without a trail, all columns behind are advanced, also those left of x = 0.
-    columns = centre, reach, int(min(scene.trail / h + MARGIN, x.size))
+    # Without a trail, all columns behind the wave are advanced, including those at x < 0.
+    trail = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
+    columns = Columns(centre, nucleation, trail)
     advance_layer(elastic, fields, fault, dt, (0, steps - 1), columns)
-    # The energy is balanced at velocities between two instants of the stresses.
+    # The energy is balanced at the time of the velocities, between two times of the stresses.
     earlier = Fields._make(array.copy() for array in fields)
-    given, kept = fault.work.tolist()
+    work_of_prestress, work_without_friction = fault.work.tolist()
     advance_layer(elastic, fields, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
+    residual = float(abs(energy - work_without_friction) / work_of_prestress)
     return LayerRun(
         x=x[1:-1],
         slip=fault.slip[1:-1] / scene.slip_scale,
         velocity=fields.vx[:, 1:-1] / scene.slip_scale,
         release_time=fault.release_time[1:-1],
         stick_time=fault.stick_time[1:-1],
-        energy_residual=float(abs(energy - kept) / given) if math.isinf(scene.trail) else math.nan,
+        energy_residual=residual if math.isinf(scene.trail) else math.nan,
     )
 
 
-def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elastic, Fields, Fault]:
-    """A scene's layer at nodes x before t = 0, for steps of ``ratio`` times the spacing."""
-    inside = np.ones(scene.cells + 1)
-    inside[-1] = scene.top == "held"
+class LayerState(NamedTuple):
+    """Everything that the kernel needs of a layer."""
+
+    elastic: Elastic
+    fields: Fields
+    fault: Fault
+
+
+def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
+    """Return the layer of a scene at nodes x before t = 0.
+
+    The time step is ``ratio`` times the spacing.
+    """
+    # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
+    normal = np.ones(scene.cells + 1)
+    normal[-1] = scene.top == "held"
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[[0, -1]] = 2.0, 0.0
     below[[0, -1]] = 0.0, 2.0
@@ -279,15 +306,15 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elast
     elastic = Elastic(
         ratio=ratio,
         shear=0.5 * scene.gamma,
-        mirror=scene.symmetric,
+        is_mirrored=scene.symmetric,
         moving_rows=scene.cells + (scene.boundary == "stress"),
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         above=above,
         below=below,
-        direct=np.where(inside, 1.0, 1.0 - lateral**2),
-        lateral=lateral * inside,
-        normal=inside,
+        direct=np.where(normal, 1.0, 1.0 - lateral**2),
+        lateral=lateral * normal,
+        normal=normal,
     )
     rows = {name: scene.cells + (name not in ("vy", "sxy")) for name in Fields._fields}
     fields = Fields(**{name: np.zeros((count, x.size)) for name, count in rows.items()})
@@ -303,21 +330,25 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> tuple[Elast
         excess=tau - np.where(nucleus, 0.0, 1.0),
         work=np.zeros(2),
     )
-    return elastic, fields, fault
+    return LayerState(elastic, fields, fault)
 
 
 def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
-    """Energy of the velocities between two instants of the stresses, over h^2."""
-    outer = np.ones((earlier.vx.shape[0], 1))
-    outer[[0, -1]] = 0.5
-    axis = np.ones(earlier.vx.shape[1])
-    axis[0] = 0.0
-    nodes = axis.copy()
-    nodes[1] = 0.5 if elastic.mirror else 1.0
-    kinetic = 0.5 * (np.sum(outer * nodes * earlier.vx**2) + np.sum(axis * earlier.vy**2))
+    """Return the energy of the layer divided by h^2, at the time of the velocities.
+
+    The elastic energy is a product of the stresses half a step earlier and half a step later.
+    """
+    # Weights of the rows, of the columns half a cell right of the nodes, and of the nodes.
+    rows = np.ones((earlier.vx.shape[0], 1))
+    rows[[0, -1]] = 0.5
+    columns = np.ones(earlier.vx.shape[1])
+    columns[0] = 0.0
+    nodes = columns.copy()
+    nodes[1] = 0.5 if elastic.is_mirrored else 1.0
+    kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
     lateral = elastic.lateral.max()
     direct = earlier.sxx * later.sxx + earlier.syy * later.syy
     crossed = earlier.sxx * later.syy + earlier.syy * later.sxx
     normal = (direct - lateral * crossed) / (1.0 - lateral**2)
     shear = earlier.sxy * later.sxy / elastic.shear
-    return float(kinetic + 0.5 * (np.sum(outer * axis * normal) + np.sum(nodes * shear)))
+    return float(kinetic + 0.5 * (np.sum(rows * columns * normal) + np.sum(nodes * shear)))

@@ -1,13 +1,17 @@
-"""The sliding blocks as a sorted list of segments, contiguous stretches [start, end)."""
+"""The sliding blocks as a sorted list of segments: contiguous stretches [start, end).
 
-from .jit import inner
+The list is edited in place when a block begins or ceases to slide.
+"""
+
+from .jit import kernel_function
 
 
-@inner(inline=True)
-def flip(segments, block):
-    """Let a block at rest slide, or a sliding one rest.
+@kernel_function(inline=True)
+def toggle_block(segments, block):
+    """Add a block at rest to the segments, or remove a sliding block from them.
 
-    A side of the block that was an edge of a segment ceases to be one; a side that was none is one.
+    Either way, each side of the block that was an edge of a segment no longer is one, and each
+    other side becomes an edge.
     """
     edges, n = segments.edges, 2 * segments.count.n
     q = 0
@@ -29,18 +33,18 @@ def flip(segments, block):
         segments.count.n += 1
 
 
-@inner(inline=True)
-def contain(segments, block):
-    """True if a block is in one of the segments."""
+@kernel_function(inline=True)
+def contains_block(segments, block):
+    """Return True if a block is in one of the segments."""
     for r in range(segments.count.n):
         if segments.edges[2 * r] <= block < segments.edges[2 * r + 1]:
             return True
     return False
 
 
-@inner(inline=True)
-def sliding_beside(segments, block):
-    """Number of blocks that slide without a gap to the left of a block, and to its right."""
+@kernel_function(inline=True)
+def count_sliding_neighbours(segments, block):
+    """Return the numbers of adjacent sliding blocks to the left and to the right of a block."""
     left, right = 0, 0
     for r in range(segments.count.n):
         if segments.edges[2 * r] < block <= segments.edges[2 * r + 1]:

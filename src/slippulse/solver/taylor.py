@@ -1,34 +1,54 @@
 """The localised scheme: Taylor steps over the sliding blocks, with releases and sticks inside them.
 
-Between events the sliding lattice is linear with constant coefficients, so its Taylor polynomial is
-cheap to compute and gives the motion at any time of the step. The stress of a stuck neighbour and
-the velocity of a sliding block are polynomials in the time since the step began; the next event is
-the first root of these (`foresight`). The change that an event makes is added to the polynomials
-within its reach (`events`). Only segments of sliding blocks and their neighbours are touched: the
-derivatives of all other blocks are zero.
+Between events the sliding lattice is linear with constant coefficients. Its Taylor polynomial is
+therefore cheap to compute, and it gives the motion at any time of the step. One step of `advance`:
+
+1. Compute the time derivatives of slip of all sliding blocks (`fill_derivatives`).
+2. The stress of a stuck neighbour and the velocity of a sliding block are polynomials in the time
+   since the step began. Find their first root, which is the next event (`event_prediction`).
+3. Add the change that the event makes to the polynomials of the blocks within its reach, predict
+   the events of these blocks again (`events`), and go back to 2 until no event is left.
+4. Advance slip, velocity and strain to the end of the step (`finish_step`).
+
+Two events so close that each would change the other end the step early, and happen together at its
+end. Only segments of sliding blocks and their neighbours are touched, since the derivatives of all
+other blocks are zero.
 """
 
 import math
 
 import numpy as np
 
-from . import foresight, stencils
+from . import event_prediction, stencils
 from . import friction_terms as friction
-from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
-from .events import change_course
-from .jit import entry, inner, once
-from .segments import contain, flip
+from .arrays import (
+    ACCELERATION,
+    ALL_STUCK,
+    BLOWN_UP,
+    EDGE_BLOCKS,
+    END_REACHED,
+    LATTICE_TOO_SHORT,
+    MAX_EVENTS_PER_STEP,
+    SLIP,
+    SLIP_INCREMENT,
+    STEPS_DONE,
+    VELOCITY,
+)
+from .event_prediction import find_next_event, has_simultaneous_event
+from .events import apply_event
+from .jit import inlined_kernel, kernel_entry, kernel_function
+from .segments import contains_block, toggle_block
 
-# Events closer than this fraction of the largest step are one, as where the fronts of a symmetric
-# scene meet.
-SIMULTANEOUS = 1e-11
-# A velocity beyond this many times the largest that the pre-stress can have driven is a blow-up.
-BLOW_UP = 100.0
+# Neighbouring events closer in time than this fraction of the largest step happen together. The
+# fronts of a symmetric scene, for example, meet at one instant.
+SIMULTANEITY_TOLERANCE = 1e-11
+# A velocity above this multiple of the largest one that the pre-stress can drive is a blow-up.
+BLOW_UP_FACTOR = 100.0
 
 
-@inner()
-def note_release(history, block, time):
-    """Keep the time of a first release. A later release removes the stick."""
+@kernel_function()
+def record_release(history, block, time):
+    """Record the time of a first release. A later release removes the stick time."""
     if math.isnan(history.release_time[block]):
         history.release_time[block] = time
     else:
@@ -37,9 +57,9 @@ def note_release(history, block, time):
     history.tally.releases += 1
 
 
-@inner()
-def note_stick(history, block, time):
-    """Keep the time of a stick, and the block of the first one."""
+@kernel_function()
+def record_stick(history, block, time):
+    """Record the time of a stick, and of the first stick also its block."""
     history.stick_time[block] = time
     if history.tally.sticks == 0:
         history.tally.first_stick_time = time
@@ -47,9 +67,9 @@ def note_stick(history, block, time):
     history.tally.sticks += 1
 
 
-@inner()
+@kernel_function()
 def take_samples(recorder, motion, tally, start, end, order):
-    """Take the samples that are due by ``end``, from polynomials about ``start``."""
+    """Take the samples due by ``end`` from the Taylor polynomials around ``start``."""
     times, blocks = recorder.times, recorder.blocks
     w = motion.w
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
@@ -64,278 +84,315 @@ def take_samples(recorder, motion, tally, start, end, order):
                 u = s / k * (w[k, i] + u)
             for k in range(order, 0, -1):
                 v = s / k * (w[k + 1, i] + v)
-            recorder.slip[n, p] = w[0, i] + motion.offset[i] + u
-            recorder.velocity[n, p] = w[1, i] + v
+            recorder.slip[n, p] = w[SLIP, i] + motion.offset[i] + u
+            recorder.velocity[n, p] = w[VELOCITY, i] + v
         tally.samples_taken += 1
 
 
-@once
-def dissipation(medium, motion, segments):
-    """Dissipation D = beta dx sum of ((v_{i+1} - v_i)/dx)^2, with that by slip rate, and dD/dt."""
+@inlined_kernel
+def compute_dissipation(medium, motion, segments):
+    """Return the dissipation D of energy and its slope dD/dt.
+
+    Damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2, and friction that is linear
+    in slip velocity dissipates alpha dx times the sum of v_i^2.
+    """
     square, product = 0.0, 0.0
     rate, change = 0.0, 0.0
     for r in range(segments.count.n):
         start, end = segments.edges[2 * r], segments.edges[2 * r + 1]
-        at_axis = medium.mirror and start == 1
-        s, p = stencils.stretching(motion.w, start if at_axis else start - 1, end)
+        at_axis = medium.is_mirrored and start == 1
+        s, p = stencils.sum_strain_rate_products(motion.w, start if at_axis else start - 1, end)
         square += s
         product += p
         if medium.alpha != 0.0:
             # The block at x = 0 has no mirror image.
             half, w = 0.5 if at_axis else 0.0, motion.w
-            s, p = friction.sums_of_motion(w, start, end)
-            rate += s - half * w[1, 1] * w[1, 1]
-            change += p - half * w[1, 1] * w[2, 1]
-    sides = 2.0 if medium.mirror else 1.0
+            s, p = friction.sum_velocity_products(w, start, end)
+            rate += s - half * w[VELOCITY, 1] * w[VELOCITY, 1]
+            change += p - half * w[VELOCITY, 1] * w[ACCELERATION, 1]
+    sides = 2.0 if medium.is_mirrored else 1.0
     viscous, drag = sides * medium.beta / medium.dx, sides * medium.alpha * medium.dx
     return viscous * square + drag * rate, 2.0 * (viscous * product + drag * change)
 
 
-@inner()
-def add_kink(kinks, k, s):
-    """Add the change k of a derivative of the dissipation at a time s."""
-    kinks.k += k
-    kinks.ks += k * s
-    kinks.kss += k * s * s
+@kernel_function()
+def clear_slope_changes(slope_changes):
+    """Remove all changes of the slope of a dissipation."""
+    slope_changes.moment_0 = 0.0
+    slope_changes.moment_1 = 0.0
+    slope_changes.moment_2 = 0.0
 
 
-@inner()
-def loss_of_step(h, rate, change, kinks):
-    """Energy lost in a step h to damping, or to friction with a bend, but for its part h D_1/3.
+@kernel_function()
+def add_slope_change(slope_changes, change, time):
+    """Add a change of the slope of a dissipation at a time since the step began."""
+    slope_changes.moment_0 += change
+    slope_changes.moment_1 += change * time
+    slope_changes.moment_2 += change * time * time
 
-    The loss h (2 D_0 + D_1)/3 + h^2 D_0'/6 is of third order in h. It is made of the dissipation
-    D_0 and its derivative D_0' at the start, and D_1 at the end. D_1 is known at the next start,
-    since velocities are continuous, and its part is added then. An event at s that changes D' by k
-    adds k (h - s)^2/2, and subtracts h k (h - s)/3, its part of h D_1/3.
+
+@kernel_function()
+def loss_of_step(h, rate, change, slope_changes):
+    """Return the energy lost in a step of length h, without the part from the end of the step.
+
+    The loss is h (2 D_0 + D_1)/3 + h^2 D_0'/6, correct to third order in h, where D_0 and D_0' are
+    the dissipation and its slope at the start of the step and D_1 is the dissipation at its end.
+    Velocities are continuous, so D_1 is computed at the start of the next step, and the part
+    h D_1/3 is added there. An event at time s that changes the slope by k adds k (h - s)^2/2 to the
+    loss. Since D_1 contains the event already, h k (h - s)/3 is subtracted again.
     """
     without_events = h * 2.0 * rate / 3.0 + h * h * change / 6.0
-    first = kinks.k * h - kinks.ks
-    second = kinks.k * h * h - 2.0 * kinks.ks * h + kinks.kss
+    first = slope_changes.moment_0 * h - slope_changes.moment_1
+    second = (
+        slope_changes.moment_0 * h * h - 2.0 * slope_changes.moment_1 * h + slope_changes.moment_2
+    )
     return without_events + second / 2.0 - h * first / 3.0
 
 
-@inner(inline=True)
-def derivatives(medium, motion, segments, alpha, top):
-    """Fill w[2..top] with the time derivatives of slip on all segments."""
-    w, mirror = motion.w, medium.mirror
-    leaf, damping = medium.leaf, medium.damping
+@kernel_function(inline=True)
+def fill_derivatives(medium, motion, segments, alpha, top):
+    """Compute the time derivatives 2 to ``top`` of slip on all segments, in the rows of w."""
+    w, is_mirrored = motion.w, medium.is_mirrored
+    leaf_stiffness, damping = medium.leaf_stiffness, medium.damping
     for r in range(segments.count.n):
         a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        if mirror and a == 1:
-            w[1, 0] = w[1, 2]
+        if is_mirrored and a == 1:
+            w[VELOCITY, 0] = w[VELOCITY, 2]
         strain, tau = motion.strain, motion.tau
-        stencils.first_acceleration(w, strain, tau, a, b, medium.per_dx, leaf, damping)
+        stencils.compute_accelerations(
+            w, strain, tau, a, b, medium.inverse_dx, leaf_stiffness, damping
+        )
         if alpha != 0.0:
-            friction.strengthen(w, 2, a, b, alpha)
-        friction.resist(motion, a, b, medium.bend)
+            friction.subtract_rate_strengthening(w, 2, a, b, alpha)
+        friction.subtract_friction(motion, a, b, medium.law_kink)
         for k in range(3, top + 1):
-            if mirror and a == 1:
+            if is_mirrored and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            for i in stencils.blocks(a, b):
-                w[k, i] = stencils.derivative(w, k, i, medium.per_dx2, leaf, damping)
+            for i in stencils.block_range(a, b):
+                w[k, i] = stencils.next_derivative(
+                    w, k, i, medium.inverse_dx2, leaf_stiffness, damping
+                )
             if alpha != 0.0:
-                friction.strengthen(w, k, a, b, alpha)
-            friction.fall(w, k, a, b, np.uint64(0), motion, medium.bend)
-    if mirror:
+                friction.subtract_rate_strengthening(w, k, a, b, alpha)
+            friction.add_weakening(w, k, a, b, np.uint64(0), motion, medium.law_kink)
+    if is_mirrored:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
 
 
-@inner()
-def strengthened_derivatives(medium, motion, segments, top):
-    """Fill w[2..top] with rate-dependent friction, in a function apart so that others are fast."""
-    derivatives(medium, motion, segments, medium.alpha, top)
+@kernel_function()
+def fill_rate_strengthened_derivatives(medium, motion, segments, top):
+    """Compute the time derivatives with friction that is linear in slip velocity.
+
+    A separate function keeps the common case without this friction fast.
+    """
+    fill_derivatives(medium, motion, segments, medium.alpha, top)
 
 
-@once
-def foresee(medium, motion, segments, forecast, tally, h, top):
-    """Velocity of all segments at h, sticks and releases until then. Returns False at a blow-up."""
-    forecast.sticks.n = 0
+@inlined_kernel
+def predict_events(medium, motion, segments, prediction, tally, h, top):
+    """Compute all velocities at time h and predict the events until then; False at a blow-up."""
+    prediction.event_count.n = 0
     for r in range(segments.count.n):
         a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        suspects = stencils.velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
-        if suspects > 0 and not foresight.find_sticks(
-            motion, forecast, a, b, suspects, 0.0, h, top
+        suspects = stencils.compute_velocities(motion.velocity, motion.w, a, b, h, top - 1)
+        if suspects > 0 and not event_prediction.predict_sticks(
+            motion, prediction, a, b, suspects, 0.0, h, top
         ):
             return False
-        foresight.find_bends(motion, medium.bend, forecast, a, b, 0.0, h, top)
+        event_prediction.predict_law_kinks(motion, medium.law_kink, prediction, a, b, 0.0, h, top)
     first, last = np.int64(0), motion.tau.shape[0]
-    lowest = foresight.foresee_releases(medium, motion, segments, forecast, first, last, 0.0, h)
+    lowest = event_prediction.predict_releases(
+        medium, motion, segments, prediction, first, last, 0.0, h
+    )
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     return True
 
 
-@once
-def end_early(motion, scratch, h, order):
-    """Velocities of all blocks that moved, where the step ends early at h."""
-    moved, changed = scratch.moved, scratch.changed
+@inlined_kernel
+def set_velocities_at_early_end(motion, scratch, h, order):
+    """Compute the velocities of all blocks that moved, for a step that ends early at time h."""
+    moved, step_events = scratch.moved, scratch.step_events
     for r in range(moved.count.n):
         a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.velocity_after(motion.velocity, motion.w, a, b, h, order)
-    for q in range(changed.count.n):
-        # A block that was released a moment ago is below 0 only by rounding.
-        for i in range(changed.first[q], changed.last[q]):
+        stencils.compute_velocities(motion.velocity, motion.w, a, b, h, order)
+    for q in range(step_events.count.n):
+        # The velocity of a block that was just released can be negative by rounding.
+        for i in range(step_events.first[q], step_events.last[q]):
             motion.velocity[i] = max(motion.velocity[i], 0.0)
 
 
-@once
+@inlined_kernel
 def take_event(medium, motion, segments, scratch, history, event, instant, h):
-    """Let one event happen. Returns False where a velocity is not finite."""
+    """Let one event happen and count it. Returns False if a velocity is not finite."""
     top = motion.w.shape[0] - 1
-    changed, tally = scratch.changed, history.tally
-    block, stick = event.block, event.stick
-    if stick:
-        flip(segments, block)
-        note_stick(history, block, instant)
-    elif not event.bends:
-        flip(segments, block)
-        if not contain(scratch.moved, block):
-            flip(scratch.moved, block)
-        note_release(history, block, instant)
-    finite, first, last, speed, lowest, kink, bent = change_course(
-        medium, motion, segments, scratch.forecast, scratch.difference, event, h, top
+    step_events, tally = scratch.step_events, history.tally
+    block, is_stick = event.block, event.is_stick
+    if is_stick:
+        toggle_block(segments, block)
+        record_stick(history, block, instant)
+    elif not event.is_law_kink:
+        toggle_block(segments, block)
+        if not contains_block(scratch.moved, block):
+            toggle_block(scratch.moved, block)
+        record_release(history, block, instant)
+    effect = apply_event(
+        medium, motion, segments, scratch.prediction, scratch.difference, event, h, top
     )
-    if not finite:
+    if not effect.is_finite:
         return False
-    tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
-    if stick:
-        tally.min_velocity = min(tally.min_velocity, speed)
-    k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
-    add_kink(changed.kinks, k, event.time)
-    weight = 2.0 if medium.mirror and block > 1 else 1.0
-    add_kink(changed.work_kinks, weight * medium.dx * bent, event.time)
-    n = changed.count.n
-    changed.first[n], changed.last[n] = first, last
-    changed.stuck[n] = block if stick else -1
-    changed.count.n = n + 1
-    tally.event_updates += last - first
+    tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
+    if is_stick:
+        tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
+    sides = 2.0 if medium.is_mirrored else 1.0
+    loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
+    add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
+    weight = 2.0 if medium.is_mirrored and block > 1 else 1.0
+    work_slope_change = weight * medium.dx * effect.work_slope_change
+    add_slope_change(step_events.work_slope_changes, work_slope_change, event.time)
+    n = step_events.count.n
+    step_events.first[n], step_events.last[n] = effect.first, effect.last
+    step_events.stuck_block[n] = block if is_stick else -1
+    step_events.count.n = n + 1
+    tally.event_updates += effect.last - effect.first
     return True
 
 
-@once
-def take_over(medium, motion, scratch, tally, order, h):
-    """Advance slip, velocity and strain of all that moved. Returns the largest of some speeds."""
+@inlined_kernel
+def finish_step(medium, motion, scratch, tally, order, h):
+    """Advance slip, velocity and strain of all blocks that moved.
+
+    Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
+    """
     w, offset = motion.w, motion.offset
-    moved, changed = scratch.moved, scratch.changed
-    fastest, first = 0.0, 1 if medium.mirror else 0
+    moved, step_events = scratch.moved, scratch.step_events
+    fastest, first = 0.0, 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
         a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.velocity, a, b, h, order)
         tally.block_updates += b - a
-        fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
-    for q in range(changed.count.n):
-        for i in range(changed.first[q], changed.last[q]):
-            w[0, i] += offset[i]
-            w[2, i] += offset[i]
+        fastest = max(fastest, w[VELOCITY, a], w[VELOCITY, (a + b) // 2], w[VELOCITY, b - 1])
+    for q in range(step_events.count.n):
+        for i in range(step_events.first[q], step_events.last[q]):
+            w[SLIP, i] += offset[i]
+            w[SLIP_INCREMENT, i] += offset[i]
             offset[i] = 0.0
     for r in range(moved.count.n):
         a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        for i in stencils.blocks(max(a - 1, first), b):
-            motion.strain[i] += medium.per_dx * (w[2, i + stencils.ONE] - w[2, i])
-    if medium.mirror:
+        for i in stencils.block_range(max(a - 1, first), b):
+            change = w[SLIP_INCREMENT, i + stencils.UNSIGNED_ONE] - w[SLIP_INCREMENT, i]
+            motion.strain[i] += medium.inverse_dx * change
+    if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    for q in range(changed.count.n):
-        if changed.stuck[q] >= 0:
-            w[2, changed.stuck[q]] = 0.0
+    for q in range(step_events.count.n):
+        if step_events.stuck_block[q] >= 0:
+            w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0
     return fastest
 
 
-@once
-def take_events_at_once(medium, motion, segments, scratch, history, end, latest, top):
-    """Release and hold all blocks that are due until ``latest``, after a step that ended early."""
-    forecast, tally = scratch.forecast, history.tally
-    due = scratch.changed.first
-    count = foresight.due_releases(segments, forecast, latest, due)
-    for q in range(forecast.sticks.n):
-        if forecast.stick_time[q] <= latest:
-            block = forecast.stick_block[q]
-            if forecast.bends[q]:
-                friction.turn(motion, medium.bend, block)
+@inlined_kernel
+def apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top):
+    """Let all events until the time ``latest`` happen together, after a step that ended early."""
+    prediction, tally = scratch.prediction, history.tally
+    due = scratch.step_events.first
+    count = event_prediction.list_due_releases(segments, prediction, latest, due)
+    for q in range(prediction.event_count.n):
+        if prediction.event_time[q] <= latest:
+            block = prediction.event_block[q]
+            if prediction.is_law_kink[q]:
+                friction.switch_weakening(motion, medium.law_kink, block)
                 continue
-            tally.min_velocity = min(tally.min_velocity, motion.w[1, block])
+            tally.min_velocity = min(tally.min_velocity, motion.w[VELOCITY, block])
             for k in range(1, top + 1):
                 motion.w[k, block] = 0.0
-            flip(segments, block)
-            note_stick(history, block, end)
+            toggle_block(segments, block)
+            record_stick(history, block, end)
     for q in range(count):
-        flip(segments, due[q])
-        friction.begin_to_fall(motion, medium.bend, due[q])
-        note_release(history, due[q], end)
+        toggle_block(segments, due[q])
+        friction.begin_weakening(motion, medium.law_kink, due[q])
+        record_release(history, due[q], end)
 
 
-# The branches of this function are the algorithm; parted, they would share all of its state.
-@entry
+# The branches of this function are the algorithm. Smaller functions would share all of its state.
+@kernel_entry
 def advance(  # noqa: C901, PLR0912, PLR0915
     medium, motion, segments, scratch, history, recorder, limits
 ):
-    """Advance until a limit. Returns why; then the loss is complete and w[2] is acceleration."""
+    """Advance until a limit, and return the reason why it stopped.
+
+    When no more steps follow, the loss of energy is complete and row 2 of w is the acceleration.
+    """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
-    instantly = SIMULTANEOUS * limits.largest_step
-    tally, forecast = history.tally, scratch.forecast
-    moved, changed = scratch.moved, scratch.changed
-    kinks, work_kinks = changed.kinks, changed.work_kinks
-    lossy = medium.beta > 0.0 or medium.alpha != 0.0
-    for _ in range(limits.steps):
+    time_tolerance = SIMULTANEITY_TOLERANCE * limits.largest_step
+    tally, prediction = history.tally, scratch.prediction
+    moved, step_events = scratch.moved, scratch.step_events
+    loss_slope_changes = step_events.loss_slope_changes
+    work_slope_changes = step_events.work_slope_changes
+    has_losses = medium.beta > 0.0 or medium.alpha != 0.0
+    for _ in range(limits.max_steps):
         t = tally.time
         if medium.alpha == 0.0:
-            derivatives(medium, motion, segments, 0.0, top)
+            fill_derivatives(medium, motion, segments, 0.0, top)
         else:
-            strengthened_derivatives(medium, motion, segments, top)
+            fill_rate_strengthened_derivatives(medium, motion, segments, top)
         rate, change = 0.0, 0.0
-        if lossy:
-            rate, change = dissipation(medium, motion, segments)
+        if has_losses:
+            rate, change = compute_dissipation(medium, motion, segments)
             tally.viscous_loss += tally.pending_step * rate / 3.0
-        power, growth = friction.power(medium, motion, segments, medium.bend)
+        power, growth = friction.friction_power(medium, motion, segments, medium.law_kink)
         tally.friction_loss += tally.pending_step * power / 3.0
         tally.pending_step = 0.0
         if segments.count.n == 0:
             return ALL_STUCK
         if t >= limits.end_time:
-            return DONE
+            return END_REACHED
         # The events of a step may reach beyond the end of the lattice.
         last = segments.edges[2 * segments.count.n - 1]
-        if last >= size - ROOM or (segments.edges[0] <= ROOM and not medium.mirror):
-            return GROW
-        kinks.k = kinks.ks = kinks.kss = 0.0
-        work_kinks.k = work_kinks.ks = work_kinks.kss = 0.0
+        first = segments.edges[0]
+        if last >= size - EDGE_BLOCKS or (first <= EDGE_BLOCKS and not medium.is_mirrored):
+            return LATTICE_TOO_SHORT
+        clear_slope_changes(loss_slope_changes)
+        clear_slope_changes(work_slope_changes)
 
         h = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if h == limits.end_time - t else t + h
-        if not foresee(medium, motion, segments, forecast, tally, h, top):
-            return UNSTABLE
+        if not predict_events(medium, motion, segments, prediction, tally, h, top):
+            return BLOWN_UP
         for q in range(2 * segments.count.n):
             moved.edges[q] = segments.edges[q]
         moved.count.n = segments.count.n
-        changed.count.n = 0
+        step_events.count.n = 0
 
         early = False
         while True:
-            event = foresight.next_event(segments, forecast)
+            event = find_next_event(segments, prediction)
             if event.time == math.inf:
                 break
-            early = changed.count.n == MOST_EVENTS or foresight.simultaneous(
-                segments, forecast, medium, event.block, event.time + instantly
+            latest = event.time + time_tolerance
+            early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
+                segments, prediction, medium, event.block, latest
             )
             if early:
                 h, end = event.time, min(t + event.time, end)
-                end_early(motion, scratch, h, order)
+                set_velocities_at_early_end(motion, scratch, h, order)
                 break
             instant = min(t + event.time, end)
             take_samples(recorder, motion, tally, t, instant, order)
             if not take_event(medium, motion, segments, scratch, history, event, instant, h):
-                return UNSTABLE
+                return BLOWN_UP
         take_samples(recorder, motion, tally, t, end, order)
 
-        if lossy:
-            tally.viscous_loss += loss_of_step(h, rate, change, kinks)
-        tally.friction_loss += loss_of_step(h, power, growth, work_kinks)
+        if has_losses:
+            tally.viscous_loss += loss_of_step(h, rate, change, loss_slope_changes)
+        tally.friction_loss += loss_of_step(h, power, growth, work_slope_changes)
         tally.pending_step = h
-        fastest = take_over(medium, motion, scratch, tally, order, h)
+        fastest = finish_step(medium, motion, scratch, tally, order, h)
         if early:
-            take_events_at_once(medium, motion, segments, scratch, history, end, h + instantly, top)
+            latest = h + time_tolerance
+            apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top)
         tally.steps += 1
         tally.time = end
-        if not fastest <= BLOW_UP * (1.0 + limits.largest_force * end):
-            return UNSTABLE
-    return CONTINUE
+        if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
+            return BLOWN_UP
+    return STEPS_DONE

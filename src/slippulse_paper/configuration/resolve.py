@@ -8,7 +8,7 @@ import numpy as np
 
 from slippulse.model.cost import bound_front_reach
 from slippulse.model.friction import COULOMB, LinearRate
-from slippulse.simulation.accuracy import ORDER, STEP
+from slippulse.simulation.accuracy import LARGEST_STEP, TAYLOR_ORDER
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 
 from .profiles import expanded, prestress_of
@@ -29,7 +29,7 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
     preset = config.presets[config.preset].plain()
     if config.accuracy is None:
         return preset
-    return preset | {"max_step": STEP, "order": ORDER, "promise": config.accuracy}
+    return preset | {"max_step": LARGEST_STEP, "order": TAYLOR_ORDER, "promise": config.accuracy}
 
 
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:

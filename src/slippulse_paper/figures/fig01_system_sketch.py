@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from slippulse.plotting.style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
+from slippulse.plotting.style import BLACK, BLUE, COLUMN_WIDTH, ORANGE, Look, new_panels
 
 from .shared.sketch import BOTH, MUTED, arrow, label
 
@@ -36,7 +36,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw two panels, one a boundary condition: layer, substrate, strip, friction, and axes."""
-    figure, panels = new_panels(COLUMN, 3.4, "a;b")
+    figure, panels = new_panels(COLUMN_WIDTH, 3.4, "a;b")
     strip = table["strip_width"].iloc[0]
     box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
     cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}

@@ -13,8 +13,8 @@ from slippulse.plotting.selection import spread_values
 from slippulse.plotting.style import (
     BLACK,
     GREY,
-    PAGE,
-    SMALL,
+    PAGE_WIDTH,
+    SMALL_TEXT,
     Look,
     entry,
     legend_below,
@@ -72,7 +72,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
-    figure = Figure(figsize=(PAGE, 5.0), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, 5.0), layout="constrained")
     left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
     above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
     symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
@@ -168,7 +168,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
         axes.axhline(1.5, color=GREY, linewidth=0.6, linestyle=":")
         axes.plot(x, 1.5 + 0.4 * Prestress(*levels)(x), color=BLACK, linewidth=0.8, gid="prestress")
-        axes.set_yticks([1.5, 1.9], ["0", "1"], fontsize=SMALL)
+        axes.set_yticks([1.5, 1.9], ["0", "1"], fontsize=SMALL_TEXT)
         axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
         axes.set_ylim(0.0, 2.6)
         axes.spines[["left", "right", "top"]].set_visible(False)

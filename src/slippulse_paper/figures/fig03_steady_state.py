@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from slippulse.plotting.style import PAGE, new_panels
+from slippulse.plotting.style import PAGE_WIDTH, new_panels
 
 from .shared.pulse_panels import (
     draw_prestress,
@@ -34,7 +34,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the displacement boundary on the left and the stress boundary on the right."""
-    figure, panels = new_panels(PAGE, 3.3, "ab")
+    figure, panels = new_panels(PAGE_WIDTH, 3.3, "ab")
     for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")

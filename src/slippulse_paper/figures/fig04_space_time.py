@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from slippulse.data.point import point
 from slippulse.measurement.front_paths import front_position
 from slippulse.plotting import space_time, style
-from slippulse.plotting.style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look
+from slippulse.plotting.style import BLACK, ORANGE, PAGE_WIDTH, PURPLE, TEXT_OUTLINE, Look
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -36,7 +36,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for panel in PANELS:
         name = f"space_time_{panel}"
         run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
-        rows, numbers = [space_time.run_rows(run)], tables[name].iloc[0]
+        rows, numbers = [space_time.run_table(run)], tables[name].iloc[0]
         time, length = numbers["transition_time"], numbers["transition_length"]
         transitions = {"measured": (time, front_position(run, time, "right") - length, length)}
         length = numbers["paper_transition_length"]
@@ -59,7 +59,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure; the legend has what is drawn in either panel."""
-    figure = Figure(figsize=(PAGE, 3.3))
+    figure = Figure(figsize=(PAGE_WIDTH, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
@@ -73,7 +73,7 @@ def draw(table: pd.DataFrame) -> Figure:
         if "fraction" in roles:
             percent = 100.0 * roles["fraction"]["value"].iloc[0]
             when = rf"left front at {percent:g} % of its way to $x_-$"
-        title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
+        title = f"{space_time.run_title(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
         side.suptitle(title)
     handles = style.labelled(figure.axes)
     style.legend_below(figure, handles, len(handles))
@@ -94,11 +94,11 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
         low -= 0.04 * height
         axes.set_ylim(low - 0.06 * height, high)
         arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
-        arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
+        arrow |= {"mutation_scale": 8.0, "path_effects": TEXT_OUTLINE}
         axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
         for start, stop in (((0.0, low), (time, low)), ((time, left), (time, left + length))):
             axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-        look = {"textcoords": "offset points", "path_effects": HALO}
+        look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
         # The label of T_trans stands above its arrow, clear of the ticks of the axis.
         named = rf"$T_\text{{trans}} = {time:#.3g}$"
         axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)

@@ -6,9 +6,9 @@ from matplotlib.figure import Figure
 
 from slippulse.plotting.selection import spread_values
 from slippulse.plotting.style import (
-    LEVEL,
-    PAGE,
-    SMALL,
+    LEVEL_COLUMNS,
+    PAGE_WIDTH,
+    SMALL_TEXT,
     SYMBOLS,
     Look,
     colour,
@@ -38,9 +38,9 @@ def draw(table: pd.DataFrame) -> Figure:
 
     The last row has the ratio of the length at full size, with a line and a colour for each level.
     """
-    figure, panels = new_panels(PAGE, 7.4, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.6))
+    figure, panels = new_panels(PAGE_WIDTH, 7.4, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.6))
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):
-        level, other = LEVEL[boundary], OTHER[boundary]
+        level, other = LEVEL_COLUMNS[boundary], OTHER[boundary]
         runs = table[table["boundary"] == boundary]
         runs = runs.assign(**{level: runs["left"]})
         few = runs[runs[other].isin(spread_values(runs[other], DRAWN))]
@@ -52,7 +52,7 @@ def draw(table: pd.DataFrame) -> Figure:
         scaling.draw_ratio(ratio, few, "length", level, other)
         ratio.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
         ratio.set_xlim(runs[level].min() - 0.05, runs[level].max() + 0.35 * np.ptp(runs[level]))
-        ratio.legend(loc="center right", fontsize=SMALL)
+        ratio.legend(loc="center right", fontsize=SMALL_TEXT)
         levels = runs["left"].isin(spread_values(runs["left"], DRAWN))
         narrow = runs[levels & (runs["width"] == runs["width"].min())]
         narrow = narrow.assign(colour=[*colour(level, narrow[level])])

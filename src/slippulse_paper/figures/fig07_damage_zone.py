@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from slippulse.plotting.style import BLACK, BLUE, COLUMN, GREY, ORANGE, as_given, new_panels
+from slippulse.plotting.style import BLACK, BLUE, COLUMN_WIDTH, GREY, ORANGE, as_given, new_panels
 
 from .shared.sketch import BOTH, MUTED, arrow, label
 
@@ -20,7 +20,7 @@ WIDTH, ORIGIN = 4.2, 1.95
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the sketch above, and below it the stress drop against G/G_r with its limit."""
-    figure, (above, axes) = new_panels(COLUMN, 4.1, "a;b", height_ratios=[1.0, 1.1])
+    figure, (above, axes) = new_panels(COLUMN_WIDTH, 4.1, "a;b", height_ratios=[1.0, 1.1])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
     curves = table[table["role"] == "curve"]
     groups = curves.groupby("thickness_ratio")

@@ -12,7 +12,7 @@ from slippulse.data.readable_units import readable_unit
 from slippulse.model.layer_units import Layer
 from slippulse.model.si_quantities import QUANTITIES
 from slippulse.plotting.selection import spaced_indices
-from slippulse.plotting.space_time import limits
+from slippulse.plotting.space_time import drawn_range
 from slippulse.plotting.style import BLUE, GREY, ORANGE
 
 FRAMES, PER_SECOND = 61, 12
@@ -30,7 +30,7 @@ def save_animation(
 
     With a layer its axes are in SI units.
     """
-    lower, upper = limits(run)
+    lower, upper = drawn_range(run)
     inside = (run["sample_position"].values >= lower) & (run["sample_position"].values <= upper)
     x, unit_of_x = _drawn(run["sample_position"].values, "length", layer)
     times, unit_of_time = _drawn(run["sample_time"].values, "time", layer)

@@ -12,7 +12,7 @@ from slippulse.model.layer_units import Layer
 from slippulse.plotting import space_time
 from slippulse.plotting.selection import spaced_indices
 from slippulse.plotting.si_tables import table_in_si, with_unit
-from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE, Look, by_role, panel_letter
+from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE_WIDTH, Look, by_role, panel_letter
 
 from ..text.numerals import MOST, number, with_uncertainty
 from .shared.main_numbers import with_symbols
@@ -37,10 +37,10 @@ def table(
     ``theory`` is the row of measured and predicted numbers of the run. With a layer the table is in
     SI units (`shared.si_tables`), and so must be ``numbers``.
     """
-    lower, upper = space_time.limits(run)
+    lower, upper = space_time.drawn_range(run)
     x = run["x"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
-    parts = [pd.DataFrame([{"role": "title", "series": title}]), space_time.run_rows(run)]
+    parts = [pd.DataFrame([{"role": "title", "series": title}]), space_time.run_table(run)]
     # The right pulse is measured; on the left there is one once blocks stick.
     ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
     if math.isfinite(run.attrs["first_stick_time"]):
@@ -68,7 +68,7 @@ def draw(table: pd.DataFrame) -> Figure:
     roles, none = by_role(table), table.iloc[:0]
     numbers, steady = roles.get("number", none), roles.get("steady", none)
     rows = math.ceil(len(numbers) / 2)
-    figure = Figure(figsize=(PAGE, 4.9 + 0.16 * rows), layout="constrained")
+    figure = Figure(figsize=(PAGE_WIDTH, 4.9 + 0.16 * rows), layout="constrained")
     heights = (3.1, 1.6, 0.2 + 0.16 * rows)
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     profile, axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
@@ -77,7 +77,7 @@ def draw(table: pd.DataFrame) -> Figure:
     axes.legend(loc="upper left")
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    upper.suptitle(f"{title}\n{space_time.description(roles)}")
+    upper.suptitle(f"{title}\n{space_time.run_title(roles)}")
     panels = zip(lower.subplots(1, 2), "bc", FIELDS.items(), strict=True)
     for axes, letter, (field, name) in panels:
         ends = roles["profile"][roles["profile"]["series"] == field]

@@ -8,10 +8,10 @@ from slippulse.plotting.style import (
     BLACK,
     BLUE,
     GREY,
-    HALO,
-    OPEN,
+    OPEN_MARKER,
     ORANGE,
-    PAGE,
+    PAGE_WIDTH,
+    TEXT_OUTLINE,
     Look,
     legend_above,
     new_panels,
@@ -56,9 +56,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw four errors against the work, and the speed of the front against the step."""
-    figure, (*trades, speeds) = new_panels(PAGE, 5.0, "aabbcc;dddeee")
+    figure, (*trades, speeds) = new_panels(PAGE_WIDTH, 5.0, "aabbcc;dddeee")
     # The names of the presets stand on the side that is empty.
-    name: Look = {"textcoords": "offset points", "path_effects": HALO}
+    name: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
     for axes, (quantity, (title, boundary)) in zip(trades, PANELS.items(), strict=True):
         rows = table[table["quantity"] == quantity]
         for role, look in LOOKS.items():
@@ -83,7 +83,7 @@ def draw(table: pd.DataFrame) -> Figure:
     lines[0].set_label(r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$")
     speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
     speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
-    look = OPEN | {"color": BLUE, "label": "localised scheme"}
+    look = OPEN_MARKER | {"color": BLUE, "label": "localised scheme"}
     speeds.plot(local["step"], local["front_speed"], "o", **look)
     # The legend stands above the marks.
     speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")

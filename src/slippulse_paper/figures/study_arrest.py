@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from slippulse.data.point import point
 from slippulse.measurement.front_paths import front_path
 from slippulse.plotting import style
-from slippulse.plotting.style import GREY, MARKERS, OPEN, ORANGE, PAGE, Look, entry
+from slippulse.plotting.style import GREY, MARKERS, OPEN_MARKER, ORANGE, PAGE_WIDTH, Look, entry
 
 NEEDS = {
     "data": ["arrest"],
@@ -47,7 +47,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
-    figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, "ab")
+    figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The scale of colours is logarithmic, and has none for 0.
@@ -60,12 +60,12 @@ def draw(table: pd.DataFrame) -> Figure:
         path_axes.plot(last["time"], last["to_go"], marker, label=label, **look)
         runs = rows[rows["role"] == "run"].sort_values("dx")
         spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
-        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN | look)
+        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN_MARKER | look)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
     looks = {"simulation": PALE, "exact": {"linewidth": 0.9}}
     looks["last release (does not converge)"] = {"marker": "o"}
     fraction_label = f"{100.0 * table['fraction'].max():g} % of the way (converges)"
-    looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
+    looks |= {fraction_label: {"marker": "o"} | OPEN_MARKER, "the same, exact": {"marker": "<"}}
     handles = [entry(label, color=GREY, **look) for label, look in looks.items()]
     style.legend_below(figure, [*style.labelled([path_axes]), *handles], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))

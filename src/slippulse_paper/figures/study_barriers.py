@@ -8,7 +8,16 @@ from matplotlib.figure import Figure
 from scipy.interpolate import barycentric_interpolate
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, MARKERS, OPEN, PAGE, SMALL, Look, conditions, few_ticks
+from slippulse.plotting.style import (
+    BLACK,
+    MARKERS,
+    OPEN_MARKER,
+    PAGE_WIDTH,
+    SMALL_TEXT,
+    Look,
+    conditions,
+    few_ticks,
+)
 
 NEEDS = {"studies": ["barriers"]}
 
@@ -52,7 +61,7 @@ def _interpolated(
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above; below curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, convergence) = style.new_panels(PAGE, 5.4, "ab;cd")
+    figure, (*maps, curve_axes, convergence) = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
@@ -66,7 +75,7 @@ def draw(table: pd.DataFrame) -> Figure:
         image = axes.contourf(grid.columns, -grid.index, grid, **filled)
         look: Look = {"levels": CONTOURS, "colors": BLACK, "linewidths": 0.5}
         lines = axes.contour(grid.columns, -grid.index, grid, **look)
-        axes.clabel(lines, fmt="%g", fontsize=SMALL, zorder=2.5)
+        axes.clabel(lines, fmt="%g", fontsize=SMALL_TEXT, zorder=2.5)
         for marker, (gamma, group) in zip(MARKERS, marked.groupby("gamma"), strict=False):
             depth = group["measured"] * np.sqrt(gamma)
             look = {"c": depth, "edgecolors": BLACK, "s": 26.0, "linewidths": 0.9} | shades
@@ -82,7 +91,7 @@ def draw(table: pd.DataFrame) -> Figure:
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
     curve_axes.set_title(conditions(True, damping_ratio=largest))
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look = OPEN | {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7}
+        look = OPEN_MARKER | {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7}
         scenes = rows.sort_values("dx").groupby(["tau0", "barrier", "gamma"])
         for _, line in scenes:
             convergence.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
@@ -103,12 +112,14 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
         for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
             depth = runs["measured"] * np.sqrt(gamma / GAMMA)
-            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN)
+            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN_MARKER)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
-        axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
+        axes.plot(
+            [], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN_MARKER
+        )
     axes.set(xscale="log", yscale="log", ylim=(0.25, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
-    axes.legend(loc="lower left", fontsize=SMALL, ncols=2, borderaxespad=0.2)
+    axes.legend(loc="lower left", fontsize=SMALL_TEXT, ncols=2, borderaxespad=0.2)

@@ -7,7 +7,17 @@ from matplotlib.figure import Figure
 
 from slippulse.plotting import style
 from slippulse.plotting.space_time import draw_halves
-from slippulse.plotting.style import BLACK, BLUE, GREEN, GREY, OPEN, ORANGE, PAGE, SMALL, Look
+from slippulse.plotting.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    OPEN_MARKER,
+    ORANGE,
+    PAGE_WIDTH,
+    SMALL_TEXT,
+    Look,
+)
 
 from ..text.numerals import setting
 
@@ -20,7 +30,9 @@ MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
-    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, "ab;cd")
+    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(
+        PAGE_WIDTH, 5.4, "ab;cd"
+    )
     rows = table[table["scene"] == next(iter(SCENES))]
     draw_halves(map_axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
     exact = rows[rows["role"] == "exact"]
@@ -29,7 +41,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for height, half in ((0.05, "exact"), (0.91, "lattice")):
         map_axes.text(0.03, height, half, transform=map_axes.transAxes)
     map_axes.set_xlim(0.0, None)
-    look: Look = {"markersize": 2.2} | OPEN
+    look: Look = {"markersize": 2.2} | OPEN_MARKER
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
         for role, front, trailing in (("exact", "-", "--"), ("lattice", "o", "s")):
@@ -42,8 +54,8 @@ def draw(table: pd.DataFrame) -> Figure:
     looks["o"] = rf"front, lattice, $\Delta x = {scenes['dx'].iloc[0]:g}$"
     looks["s"] = "trailing edge, lattice"
     for mark, label in looks.items():
-        edge_axes.plot([], [], mark, color=GREY, label=label, **OPEN)
-    edge_axes.legend(loc="upper left", fontsize=SMALL)
+        edge_axes.plot([], [], mark, color=GREY, label=label, **OPEN_MARKER)
+    edge_axes.legend(loc="upper left", fontsize=SMALL_TEXT)
     # Edges have time on the horizontal axis, as in every figure.
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))

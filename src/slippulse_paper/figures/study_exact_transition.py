@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, BLUE, GREY, OPEN, ORANGE, PAGE
+from slippulse.plotting.style import BLACK, BLUE, GREY, OPEN_MARKER, ORANGE, PAGE_WIDTH
 
 from .shared import scaling
 
@@ -41,7 +41,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) distributions of errors, (c) refined lattices, (d) exact T_trans alone."""
-    figure, (*distributions, refined, gaussian) = style.new_panels(PAGE, 5.0, "ab;cd")
+    figure, (*distributions, refined, gaussian) = style.new_panels(PAGE_WIDTH, 5.0, "ab;cd")
     roles = style.by_role(table)
     sweep, runs = roles["sweep"], roles["refinement"]
     for axes, quantity in zip(distributions, QUANTITIES, strict=True):
@@ -57,7 +57,7 @@ def draw(table: pd.DataFrame) -> Figure:
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITIES.items():
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
-        refined.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN)
+        refined.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN_MARKER)
         largest, label = error.groupby(spacing).max(), f"${scaling.QUANTITIES[quantity]}$, largest"
         refined.plot(largest, marker=marker, color=colour, label=label)
     style.draw_first_order(refined, spacing, 0.4, BLACK)

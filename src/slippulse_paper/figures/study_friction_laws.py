@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, SKY
+from slippulse.plotting.style import BLACK, BLUE, GREY, MARKERS, OPEN_MARKER, PAGE_WIDTH, SKY
 
 NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
@@ -21,7 +21,7 @@ COLOURS = (SKY, BLUE)
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
-    figure, (*planes, speeds) = style.new_panels(PAGE, 5.2, "ab;cd")
+    figure, (*planes, speeds) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     roles = style.by_role(table)
     runs, fronts = roles["plane"], roles["selection"]
     for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):
@@ -33,10 +33,12 @@ def draw(table: pd.DataFrame) -> Figure:
         for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
             resolution = points["d_c"] / dx
             speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            speeds.plot(resolution, points["speed"], marker, color=colour, **OPEN)
+            speeds.plot(resolution, points["speed"], marker, color=colour, **OPEN_MARKER)
         speeds.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
     for marker, dx in zip(MARKERS, sorted(fronts["dx"].unique()), strict=False):
-        speeds.plot([], [], marker, color=GREY, label=rf"lattice, $\Delta x = {dx:g}$", **OPEN)
+        speeds.plot(
+            [], [], marker, color=GREY, label=rf"lattice, $\Delta x = {dx:g}$", **OPEN_MARKER
+        )
     speeds.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(speeds.xaxis, (1, 2, 4, 8))

@@ -6,7 +6,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, GREY, HALO, MARKERS, OPEN, PAGE, Look, colour, few_ticks
+from slippulse.plotting.style import (
+    BLACK,
+    GREY,
+    MARKERS,
+    OPEN_MARKER,
+    PAGE_WIDTH,
+    TEXT_OUTLINE,
+    Look,
+    colour,
+    few_ticks,
+)
 
 NEEDS = {
     "measured": {
@@ -58,7 +68,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
-    figure, grid = style.new_panels(PAGE, 5.2, "ab;cd")
+    figure, grid = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     panels = {str(panel): rows for panel, rows in table.groupby("panel")}
     uniform = panels["prestress"]
     uniform = uniform.assign(over=uniform["speed"] * np.sqrt(1.0 - uniform["left"] ** 2))
@@ -89,7 +99,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for level, (dashes, marker) in looks.items():
         springs.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
     springs.plot([], [], "x", color=GREY, label="no front beyond")
-    springs.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN)
+    springs.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN_MARKER)
     springs.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
     springs.set(ylabel="front speed $v$", title=r"$\Gamma = 1$, release by total stress")
     few_ticks(springs.yaxis, (1, 1.5, 2, 3, 4, 5))
@@ -114,7 +124,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
     for value, dashes, name, side in limits:
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=dashes)
         look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side}
-        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
+        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=TEXT_OUTLINE, **look)
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     title = rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$"
@@ -128,5 +138,5 @@ def _points(
     """Mark simulated speeds in colours of damping ratios, open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
-        look: Look = {"label": label} if sound else OPEN
+        look: Look = {"label": label} if sound else OPEN_MARKER
         axes.plot(group[x], group[y], marker, color=colour("damping_ratio", ratio), **look)

@@ -10,11 +10,11 @@ from slippulse.plotting.style import (
     BLACK,
     GREEN,
     GREY,
-    OPEN,
+    OPEN_MARKER,
     ORANGE,
-    PAGE,
+    PAGE_WIDTH,
     PURPLE,
-    SMALL,
+    SMALL_TEXT,
     Look,
     entry,
 )
@@ -29,8 +29,9 @@ MARKERS = ("o", "^", "s", "D")
 BRIGHT = 0.6
 OUTCOMES: dict[str, Look] = {
     "steady": {"marker": "o", "color": GREEN, "label": "steady"},
-    "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"} | OPEN,
-    "not settled": {"marker": "s", "color": PURPLE, "label": "not settled"} | OPEN,
+    "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"}
+    | OPEN_MARKER,
+    "not settled": {"marker": "s", "color": PURPLE, "label": "not settled"} | OPEN_MARKER,
     "growing": {"marker": "^", "color": BLACK, "label": "grows"},
     "dying": {"marker": "x", "color": ORANGE, "label": "dies"},
 }
@@ -57,7 +58,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) velocity, (b-d) speed, width and slip, (e) pulses across a step, (f) the map."""
     figure, panels = style.new_panels(
-        PAGE, 5.6, "aaaaaa;bbccdd;eeefff", height_ratios=(1.0, 2.3, 2.1)
+        PAGE_WIDTH, 5.6, "aaaaaa;bbccdd;eeefff", height_ratios=(1.0, 2.3, 2.1)
     )
     _draw_field(figure, panels[0], table[table["part"] == "field"])
     _draw_pulses(panels[1:4], table[table["part"] == "pulse"])
@@ -109,7 +110,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     panels[2].set_ylabel(r"slip / $(2\tau_0/\gamma)$")
     handles = panels[0].get_legend_handles_labels()[0]
     formula = entry("formula of the paper", **dashed)
-    panels[0].legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL)
+    panels[0].legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL_TEXT)
 
 
 def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
@@ -119,12 +120,12 @@ def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
         uniform = tau0 == before
         look: Look = {"color": style.colour("tau_0", tau0), "linestyle": "-" if uniform else ":"}
         label = rf"$\tau_0 = {tau0:g}$" if uniform else rf"${before:g}$, then ${tau0:g}$"
-        look |= {"marker": "o", "label": label} | ({} if uniform else OPEN)
+        look |= {"marker": "o", "label": label} | ({} if uniform else OPEN_MARKER)
         axes.plot(rows["sample_position"], rows["pulse_slip"], **look)
     axes.set(xlabel=r"position $x/H$", ylabel=r"slip left behind")
     axes.set_title(style.conditions(True, gamma=round(float(steps["gamma"].iloc[0]), 3)))
     axes.set_ylim(0.8 * steps["pulse_slip"].min(), 1.02 * steps["pulse_slip"].max())
-    axes.legend(loc="lower right", fontsize=SMALL, ncols=2)
+    axes.legend(loc="lower right", fontsize=SMALL_TEXT, ncols=2)
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
@@ -140,4 +141,4 @@ def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
     )
     axes.set(ylabel=r"width $\sqrt{2/\gamma-1}$", xlim=(0.0, None))
     style.few_ticks(axes.yaxis, (1.0, 2.0, 5.0))
-    axes.legend(loc="upper left", fontsize=SMALL, ncols=2)
+    axes.legend(loc="upper left", fontsize=SMALL_TEXT, ncols=2)

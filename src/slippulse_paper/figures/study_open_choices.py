@@ -7,13 +7,13 @@ from slippulse.plotting import style
 from slippulse.plotting.style import (
     BLACK,
     BLUE,
-    COLUMN,
+    COLUMN_WIDTH,
     GREEN,
     GREY,
-    HALO,
-    OPEN,
+    OPEN_MARKER,
     ORANGE,
     PURPLE,
+    TEXT_OUTLINE,
     Look,
     entry,
 )
@@ -34,7 +34,7 @@ LOOKS: dict[str, Look] = {
 }
 MARKERS: dict[str, Look] = {
     "exact": {"marker": "o"},
-    "lattice": {"marker": "s"} | OPEN,
+    "lattice": {"marker": "s"} | OPEN_MARKER,
 }
 # Distance above its row at which a deviation is drawn, by release rule.
 APART = {"elastic": -0.17, "total": 0.17}
@@ -57,7 +57,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw deviation over tolerance, a claim a row, the largest deviation above."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
-    figure = Figure(figsize=(COLUMN, 1.1 + 0.17 * len(farthest)), layout="constrained")
+    figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(farthest)), layout="constrained")
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
@@ -68,7 +68,7 @@ def draw(table: pd.DataFrame) -> Figure:
             axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
         if table.loc[table["id"] == id, "over"].min() < LEAST:
             bound = rf"$\leq$ {LEAST:g}"
-            axes.text(LEAST, position, bound, va="center", path_effects=HALO)
+            axes.text(LEAST, position, bound, va="center", path_effects=TEXT_OUTLINE)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)

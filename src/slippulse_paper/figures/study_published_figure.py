@@ -8,7 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.measurement.inference import chi_square_rise, interpolate_fits
-from slippulse.plotting.style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_panels
+from slippulse.plotting.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    PAGE_WIDTH,
+    Look,
+    few_ticks,
+    new_panels,
+)
 
 NEEDS = {
     "studies": ["published_figure"],
@@ -47,7 +56,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and regions over the damping ratio above, and residuals below."""
-    figure, (*upper, pulls) = new_panels(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
+    figure, (*upper, pulls) = new_panels(PAGE_WIDTH, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
     fits = dict(iter(table.groupby(["part", "release"])))
     _draw_chi2(upper[0], table, fits)
     ours = table[table["part"] == "ours"].iloc[0]

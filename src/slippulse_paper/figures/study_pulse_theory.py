@@ -5,7 +5,15 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import CYCLE, GREY, MARKERS, OPEN, PAGE, Look, conditions
+from slippulse.plotting.style import (
+    COLOUR_CYCLE,
+    GREY,
+    MARKERS,
+    OPEN_MARKER,
+    PAGE_WIDTH,
+    Look,
+    conditions,
+)
 
 NEEDS = {
     "measured": {"pulse_damping": ["pulse"], "continuum_fixed_ratio": []},
@@ -38,7 +46,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
-    figure, (*grid, refined) = style.new_panels(PAGE, 4.6, "ab;cd")
+    figure, (*grid, refined) = style.new_panels(PAGE_WIDTH, 4.6, "ab;cd")
     roles = style.by_role(table)
     gamma = roles["simulation"]["gamma"].iloc[0]
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
@@ -49,14 +57,14 @@ def draw(table: pd.DataFrame) -> Figure:
             name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
             axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
             for flagged, marks in runs.groupby(runs["run_flags"].notna()):
-                look: Look = {"color": colour} | (OPEN if flagged else {})
+                look: Look = {"color": colour} | (OPEN_MARKER if flagged else {})
                 axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, grid[0])
     rows = roles["refined"]
-    for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
+    for quantity, shade, marker in zip(REFINED, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
         label = QUANTITIES.get(quantity, "front speed")

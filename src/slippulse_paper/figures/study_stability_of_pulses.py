@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from slippulse.data.point import point
 from slippulse.model.prestress import prestress_from
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, GREY, OPEN, PAGE, SMALL, Look, entry
+from slippulse.plotting.style import BLACK, GREY, OPEN_MARKER, PAGE_WIDTH, SMALL_TEXT, Look, entry
 
 from ..text.numerals import setting
 
@@ -51,7 +51,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
-    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, "abc")
+    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE_WIDTH, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])].sort_values("x")
     for level, rows in slip.groupby("level"):
         colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
@@ -59,7 +59,7 @@ def draw(table: pd.DataFrame) -> Figure:
         steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
         slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
         marks = lattice.iloc[::MARKED]
-        look: Look = {"color": colour, "markersize": 2.2} | OPEN
+        look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
         slip_axes.plot(marks["x"], marks["slip"], "o", **look)
         slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
         # The exact distance is 0 beyond the memory.
@@ -71,7 +71,7 @@ def draw(table: pd.DataFrame) -> Figure:
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
     lattice = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
-    handles.append(entry(lattice, color=GREY, marker="o", **OPEN))
+    handles.append(entry(lattice, color=GREY, marker="o", **OPEN_MARKER))
     handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
@@ -101,7 +101,7 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
             # Where the line leaves the panel; velocities fall with time.
             last = time.iloc[::-1], np.log(velocity.iloc[::-1])
             end = np.interp(np.log(LEAST), last[1], last[0]), 1.15 * LEAST
-        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL, **look)
+        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_xlim(None, 1.28 * rows["time"].max())

@@ -4,10 +4,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.plotting.style import (
-    CYCLE,
+    COLOUR_CYCLE,
     GREY,
-    OPEN,
-    PAGE,
+    OPEN_MARKER,
+    PAGE_WIDTH,
     SYMBOLS,
     conditions,
     entry,
@@ -68,18 +68,20 @@ def _text(value: float | str) -> str:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel a quantity; markers are runs (open: flagged), lines exact theory."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
-    figure, panels = new_panels(PAGE, 4.2, "abc;def")
+    figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
     quantities = list(table.groupby("quantity", sort=False))[: len(panels)]
     for axes, (_, rows) in zip(panels, quantities, strict=False):
         groups = rows.groupby("series", sort=False)
-        colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
+        colours = (
+            COLOUR_CYCLE if 1 < groups.ngroups <= len(COLOUR_CYCLE) else [GREY] * groups.ngroups
+        )
         for colour, (series, group) in zip(colours, groups, strict=False):
             group = group.sort_values("x")
             flagged = group["run_flags"].notna()
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
             sound, hollow = group["value"].mask(flagged), group["value"].where(flagged)
             axes.plot(group["x"], sound, "o", color=colour, label=series or None)
-            axes.plot(group["x"], hollow, "o", color=colour, **OPEN)
+            axes.plot(group["x"], hollow, "o", color=colour, **OPEN_MARKER)
         axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in panels[len(quantities) :]:
         axes.set_visible(False)
@@ -88,6 +90,6 @@ def draw(table: pd.DataFrame) -> Figure:
     if table["theory"].notna().any():
         handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
-        handles.append(entry("flagged", marker="o", color=GREY, **OPEN))
+        handles.append(entry("flagged", marker="o", color=GREY, **OPEN_MARKER))
     legend_below(figure, [*panels[0].get_legend_handles_labels()[0], *handles], 5)
     return figure

@@ -11,7 +11,16 @@ from slippulse.measurement.pulses import comoving, leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.plotting import style
 from slippulse.plotting.selection import spread_values
-from slippulse.plotting.style import BLACK, LEVEL, PAGE, SMALL, SYMBOLS, Box, Look, entry
+from slippulse.plotting.style import (
+    BLACK,
+    LEVEL_COLUMNS,
+    PAGE_WIDTH,
+    SMALL_TEXT,
+    SYMBOLS,
+    Box,
+    Look,
+    entry,
+)
 
 # Labels of the fields in the units of each boundary condition.
 FIELDS = {
@@ -88,7 +97,7 @@ def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
     styled = runs[STYLED[boundary]]
     styles = dict(zip(np.sort(styled.unique()), STYLES, strict=False))
-    colours = [*style.colour(LEVEL[boundary], runs["left"])]
+    colours = [*style.colour(LEVEL_COLUMNS[boundary], runs["left"])]
     return runs.assign(colour=colours, dashes=styled.map(styles))
 
 
@@ -106,7 +115,7 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
 
 def plot_fields(table: pd.DataFrame) -> Figure:
     """Draw figures 8 and 9: the three fields of the pulses of one boundary."""
-    figure, panels = style.new_panels(PAGE, 2.8, "abc")
+    figure, panels = style.new_panels(PAGE_WIDTH, 2.8, "abc")
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
     panels[1].set_title(title(table), loc="center")
@@ -125,7 +134,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Legend entries of one boundary: the colours, the line styles and the simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
-    level, styled = SYMBOLS[LEVEL[boundary]], STYLED[boundary]
+    level, styled = SYMBOLS[LEVEL_COLUMNS[boundary]], STYLED[boundary]
     entries = []
     for run in runs.drop_duplicates("left").sort_values("left").itertuples():
         entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
@@ -155,4 +164,4 @@ def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> N
     inset.locator_params(nbins=3, integer=True)
     # Room between the peak and the title.
     inset.margins(y=0.12)
-    inset.set_xlabel("$x$", fontsize=SMALL, labelpad=0.0)
+    inset.set_xlabel("$x$", fontsize=SMALL_TEXT, labelpad=0.0)

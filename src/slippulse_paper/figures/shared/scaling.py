@@ -10,7 +10,17 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from slippulse.plotting import style
 from slippulse.plotting.selection import spread_values
-from slippulse.plotting.style import BLACK, GREY, LEVEL, PAGE, SMALL, SYMBOLS, Box, Look, entry
+from slippulse.plotting.style import (
+    BLACK,
+    GREY,
+    LEVEL_COLUMNS,
+    PAGE_WIDTH,
+    SMALL_TEXT,
+    SYMBOLS,
+    Box,
+    Look,
+    entry,
+)
 
 from ...text.numerals import setting
 
@@ -69,8 +79,8 @@ def ratio_inset(
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
     draw_ratio(inset, runs, quantity, across, line)
-    inset.set_xlabel(f"${SYMBOLS[across]}$", fontsize=SMALL, labelpad=0.0)
-    look: Look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3}
+    inset.set_xlabel(f"${SYMBOLS[across]}$", fontsize=SMALL_TEXT, labelpad=0.0)
+    look: Look = {"fontsize": SMALL_TEXT, "handlelength": 1.1, "handletextpad": 0.3}
     look["borderaxespad"] = 0.3
     inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
     return inset
@@ -113,14 +123,14 @@ def _scatter(
 def damping_figure(table: pd.DataFrame) -> Figure:
     """Draw figures 10 and 11: the collapse in colours of b, and in insets the ratio against b."""
     boundary, ratios = table["boundary"].iloc[0], np.sort(table["damping_ratio"].unique())
-    level, other = LEVEL[boundary], OTHER[boundary]
+    level, other = LEVEL_COLUMNS[boundary], OTHER[boundary]
     middle = spread_values(table[other], DRAWN)[1]
     table = table.assign(**{level: table["left"]}).sort_values("damping_ratio")
     few = table[(table[other] == middle) & table["left"].isin(spread_values(table["left"], DRAWN))]
     colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
     spacing = table["dx"] / table["width"]
     spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
-    figure, panels = style.new_panels(PAGE, 3.5, "ab")
+    figure, panels = style.new_panels(PAGE_WIDTH, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, table, quantity, colours)
         axes.set_title(f"{style.conditions(boundary == 'displacement')}, {spacings}", loc="center")
