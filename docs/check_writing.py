@@ -2,10 +2,10 @@
 
     python docs/check_writing.py [FOLDER]      in the folder of the project, or with its path
 
-The program looks for three things in the files that git tracks: docstrings whose first word begins a
-fragment, words that docs/writing.md replaces, and functions of the packages that return a tuple of
-three or more values instead of a NamedTuple or a dataclass. It prints one line for each find, and
-its exit code is 1 if there is one.
+In the files that git tracks, the program looks for docstrings whose first word begins a fragment,
+for words that docs/writing.md replaces, and for functions in src/ that return a tuple of three or
+more values instead of a NamedTuple or a dataclass. It prints one line for each problem. Its exit
+code is 1 if there is a problem, and otherwise 0.
 """
 
 import ast

@@ -13,7 +13,7 @@ from slippulse.model.cost import OPTION_TO_ALLOW
 from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep
 from slippulse_paper.configuration.problems import ConfigError
-from slippulse_paper.configuration.read import LARGEST_FILE, read_config, read_overlay
+from slippulse_paper.configuration.read import MAX_FILE_BYTES, read_config, read_overlay
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse_paper.steps.needs import declared, needs_of
 
@@ -70,7 +70,7 @@ FILES = {
     "collection as a key": (b"{[1, 2]: 3}", "line 1", "a collection as a key", "text"),
     "two documents": (b"preset: draft\n---\npreset: paper\n", "line 2", "another document"),
     "deep nesting": (b"[" * 1000, "nested too deeply"),
-    "large file": (b"# " + b"x" * LARGEST_FILE, f"more than {LARGEST_FILE} bytes"),
+    "large file": (b"# " + b"x" * MAX_FILE_BYTES, f"more than {MAX_FILE_BYTES} bytes"),
 }
 # A scene in SI units, and changes of it with their refusals.
 BLOCK = {

@@ -52,7 +52,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
         if panel == "stress":
-            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["fraction"]}]))
+            rows.append(
+                pd.DataFrame([{"role": "fraction", "value": settings["measure"]["fraction"]}])
+            )
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 
