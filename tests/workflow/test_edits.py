@@ -147,12 +147,12 @@ def test_a_result_edited_by_hand_is_named_by_a_look_and_renewed_by_make(small):
     # A result of another overlay, which no rule makes here.
     (small / "results/data/.records").joinpath("other.nc.json").write_text("[", encoding="utf-8")
     result = snakemake(small, "--dry-run", "--quiet", "--", *SMALL, overlay="overlay.yaml")
-    line = "2 results are not as made: results/data/other.nc, results/data/one.nc"
+    line = "2 results are changed: results/data/other.nc, results/data/one.nc"
     assert sum(line in text for text in result.stderr.splitlines()) == 1
     assert "make replicate" in result.stderr
     said = replicate(small)
     reason = "results/data/one.nc: not what its job wrote"
-    assert f"1 result is renewed: {reason}" in said
+    assert f"1 result is made again: {reason}" in said
     assert {*re.findall(r"^  (.+): [0-9.]+ s$", said, re.M)} == {
         "simulate one",
         "measure one",
@@ -167,10 +167,10 @@ def test_lost_records_of_snakemake_are_named_by_a_look_and_all_is_renewed_by_mak
     before = digests(small)
     shutil.rmtree(small / ".snakemake")
     result = snakemake(small, "--dry-run", "--quiet", "--", *SMALL, overlay="overlay.yaml")
-    assert f"{len(before)} results are not as made" in result.stderr
+    assert f"{len(before)} results are changed" in result.stderr
     said = replicate(small)
     # Only what the targets need is made again; the line names the other results the next time.
-    assert re.search(r"^\d+ results are renewed: results/", said, re.M)
+    assert re.search(r"^\d+ results are made again: results/", said, re.M)
     assert len(re.findall(r"^  (.+): [0-9.]+ s$", said, re.M)) == 13
     assert digests(small) == before
 

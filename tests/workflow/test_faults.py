@@ -161,6 +161,6 @@ def test_of_two_first_runs_in_a_fresh_clone_one_sets_up_and_one_runs(project, tm
     assert both.count("Setting up") == 1 and "Traceback" not in both
     # The second run may begin when the first has ended.
     refused = [process.returncode for process in runs if process.returncode]
-    assert len(refused) == both.count("Another run is at work in this folder") <= 1
+    assert len(refused) == both.count("Another run is using this folder") <= 1
     assert (folder / FIGURE).exists()
     assert subprocess.run(run, cwd=folder, check=False, timeout=100).returncode == 0

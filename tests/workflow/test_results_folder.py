@@ -112,7 +112,7 @@ def test_nothing_is_made_again_where_nothing_is_lost_and_a_users_file_stays(fold
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
     (folder / ".snakemake/locks/0.input.lock").touch()
     said = run(folder)
-    assert "The last run was killed" in said and "renewed" not in said
+    assert "The last run was killed" in said and "made again: " not in said
     assert digests(folder, "overlay") == digests(folder)
     assert (folder / "results/figures/.notes-20261127.md").exists()
     assert not (folder / "results/data/.one.slippulse-unfinished-12345678.nc").exists()
