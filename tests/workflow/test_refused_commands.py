@@ -149,10 +149,10 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
 @pytest.mark.parametrize("text", ODD_NOTES)
 def test_an_odd_note_on_the_last_run_counts_as_absent(project, tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
-    wanted = runpy.run_path(str(project / "workflow/run.py"))["wanted"]
+    verified_run = runpy.run_path(str(project / "workflow/run.py"))["verified_run"]
     (tmp_path / ".snakemake").mkdir()
     (tmp_path / ".snakemake/slippulse-last-run.json").write_text(text)
-    assert wanted({"TARGET": "fig07.csv"}) == ({}, ["results/figures/fig07_damage_zone.csv"])
+    assert verified_run({"TARGET": "fig07.csv"}) == ({}, ["results/figures/fig07_damage_zone.csv"])
 
 
 @pytest.mark.slow
