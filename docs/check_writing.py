@@ -57,8 +57,8 @@ def tuple_problems(text: str) -> Iterator[tuple[int, str]]:
     for node in ast.walk(ast.parse(text)):
         values = node.value if isinstance(node, ast.Return) else None
         if isinstance(values, ast.Tuple) and len(values.elts) >= FEWEST_NAMED_VALUES:
-            problem = f"{len(values.elts)} values returned as a tuple; allowed: a NamedTuple or a dataclass"
-            yield node.lineno, problem
+            problem = f"{len(values.elts)} values returned as a tuple"
+            yield node.lineno, f"{problem}; allowed: a NamedTuple or a dataclass"
 
 
 def file_problems(name: str, text: str) -> Iterator[tuple[int, str]]:
