@@ -129,6 +129,6 @@ def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
 
 
 def edges(graph: str) -> set[tuple[str, str]]:
-    """Return the pairs of rules in a mermaid graph of which the second uses outputs of the first."""
+    """Return the edges of a mermaid graph: pairs of rules, the second of which needs the first."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
     return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}

@@ -75,7 +75,7 @@ def test_a_run_that_costs_too_much_can_be_allowed(folder):
 
 @pytest.fixture
 def make(project, folder):
-    """Return a function that runs make in a folder with the sources, and returns what make prints."""
+    """Return a function that runs make in a copy of the project and returns what it prints."""
     if shutil.which("make") is None:
         pytest.skip("no make on this machine")
     for part in ("Makefile", "pyproject.toml", "requirements-build.lock"):

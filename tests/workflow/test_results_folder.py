@@ -120,7 +120,10 @@ def test_nothing_is_made_again_where_nothing_is_lost_and_a_users_file_stays(fold
 
 
 def change_and_verify(folder: Path, changes: dict) -> dict[str, str]:
-    """Change a folder by commands, check that `make verify` names each change, and return reasons."""
+    """Change a folder by commands, and return the reasons of `make verify` for each file.
+
+    It must name each change.
+    """
     for command in changes:
         subprocess.run(["sh", "-ec", SHELL + command], cwd=folder, check=True)
     named = verify(folder)
