@@ -36,6 +36,11 @@ else \
 fi
 endef
 
+# Install these packages from source, since they have no wheels. From Python 3.14 on immutables has none
+# either, and needs a compiler of C.
+FROM_SOURCE = --no-binary connection-pool \
+    $$("$(BIN)/python" -c 'import sys; sys.version_info < (3, 14) or print("--no-binary immutables")')
+
 # Jobs find no interpreter if the path has such characters, and Snakemake would notice it late or never.
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) \
     echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; \
@@ -48,19 +53,23 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) \
         echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test \
-    test-library test-pages test-slow test-all faults slurm-test benchmark check clean distclean
+.PHONY: help setup slurm notebook docs lock describe tutorial reference replicate rulegraph verify compare test \
+    test-library test-pages test-site test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   make every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      list results that a run would make again; AGAINST=other/results compares numbers"
+	@echo "make compare     write old beside new to results/compare.html; AGAINST=other/results"
 	@echo "make rulegraph   print the graph of the rules, in the mermaid format"
 	@echo "make test        run the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make test-library  test the library alone, with the oldest and the newest packages; PACKAGES=oldest or newest"
 	@echo "make test-pages  test the pages of results/ in a headless chromium: links, accessibility"
+	@echo "make test-site   test the pages of the documentation in the same way"
 	@echo "make test-all    run all tests, also the slow ones: edits, every example, killed runs, Slurm"
 	@echo "make benchmark   measure the speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a small run at KILLS=24 random times; its results must not change"
+	@echo "make docs        write the documentation as a site to results/site"
+	@echo "make notebook    install JupyterLab, for .venv/bin/jupyter lab"
 	@echo "make slurm       install the additional packages for a Slurm cluster (docs/cluster.md)"
 	@echo "make slurm-test  compare a draft that runs on a Slurm cluster of one node with one without Slurm"
 	@echo "make check       check format, types, imports and language"
@@ -85,7 +94,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
 	@$(PIP) --require-hashes --only-binary :all: -r requirements-build.lock
-	@$(call install,--no-binary connection-pool --no-build-isolation -r requirements.lock)
+	@$(call install,$(FROM_SOURCE) --no-build-isolation -r requirements.lock)
 	@$(PIP) --no-build-isolation --editable .
 	@touch "$(READY)"
 endif
@@ -97,14 +106,24 @@ $(VENV)/.slurm: $(READY) requirements-slurm.lock
 
 slurm: $(VENV)/.slurm
 
+# What the documentation and notebooks add, in the same way.
+$(VENV)/.docs $(VENV)/.notebook: $(VENV)/.%: requirements-%.lock $(READY)
+	@$(call install,-r $<)
+	@touch "$@"
+
+# JupyterLab in the environment; `.venv/bin/jupyter lab` starts it.
+notebook: $(VENV)/.notebook
+
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group build --quiet -o requirements-build.lock
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group dev --quiet pyproject.toml -o requirements.lock
-	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
-	    --group slurm --quiet --constraints requirements.lock -o requirements-slurm.lock \
-	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
+	for group in slurm docs notebook; do \
+	    uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
+	        --group $$group --quiet --constraints requirements.lock $$(test $$group != notebook || echo --constraints requirements-docs.lock) \
+	        -o requirements-$$group.lock $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock); \
+	done
 
 # Write the JSON Schema and the tables of config/README.md, from the definition of the keys.
 describe: $(READY)
@@ -113,6 +132,10 @@ describe: $(READY)
 # Run the tutorial as a script.
 tutorial: $(READY)
 	@"$(BIN)/python" docs/run_tutorial.py results/tutorial
+
+# Write the documentation as a site, from docs, the tutorial and the docstrings.
+docs: $(VENV)/.docs
+	@"$(BIN)/python" docs/build_site.py results/site
 
 # Write the reference of the Python interface from its docstrings.
 reference: $(READY)
@@ -124,6 +147,11 @@ replicate: $(READY)
 
 rulegraph: $(READY)
 	@"$(BIN)/python" workflow/run.py rulegraph
+
+# Old beside new: AGAINST is the folder of the old results.
+compare: $(READY)
+	@test -n "$$AGAINST" || { echo "AGAINST is missing; allowed: a folder of results, such as AGAINST=shipped" >&2; exit 1; }
+	@"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST" results/compare.html
 
 verify: $(READY)
 	@$(if $(AGAINST),"$(BIN)/python" -m slippulse_paper.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
@@ -142,6 +170,10 @@ test-library: $(READY)
 
 test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser
+
+# The pages of the documentation in a headless chromium.
+test-site: docs
+	@PATH="$(CURDIR)/$(BIN):$$PATH" SITE=results/site python -m pytest -m "slow or not slow" tests/browser/test_site.py
 
 test-slow: $(READY)
 	@$(call CHECK_COUNT,KILLS)
@@ -165,7 +197,7 @@ check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check
 
 clean:
-	rm -rf results .snakemake
+	rm -rf results .snakemake .site
 
 distclean: clean
 	rm -rf "$(VENV)"

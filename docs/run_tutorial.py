@@ -1,4 +1,4 @@
-"""Run the tutorial as a script: print what each cell shows, and save its pictures.
+"""Run a notebook as a script, by default the tutorial: print what each cell shows, save pictures.
 
 python docs/run_tutorial.py results/tutorial
 """
@@ -10,16 +10,18 @@ from pathlib import Path
 import jupytext
 from matplotlib.figure import Figure
 
+TUTORIAL = Path(__file__).with_name("tutorial.md")
 
-def run(folder: str | Path) -> dict:
+
+def run(folder: str | Path, notebook: Path = TUTORIAL) -> dict:
     """Run every cell in order, save pictures in a folder, and return the names of the cells."""
     folder, names = Path(folder), {}
     folder.mkdir(parents=True, exist_ok=True)
-    for number, cell in enumerate(jupytext.read(Path(__file__).with_name("tutorial.md")).cells):
+    for number, cell in enumerate(jupytext.read(notebook).cells):
         if cell.cell_type != "code":
             print(cell.source.splitlines()[0])
             continue
-        value = _run_cell(cell.source, f"tutorial, cell {number}", names)
+        value = _run_cell(cell.source, f"{notebook.stem}, cell {number}", names)
         if isinstance(value, Figure):
             value.savefig(folder / f"{number:02d}.png")
             print(f"    {folder}/{number:02d}.png")

@@ -23,11 +23,14 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "src"))
 RESULTS, STATE = Path("results"), Path(".snakemake")
+# In this folder docs/compare.md keeps the results of the shipped configuration for a comparison.
+KEPT_RESULTS = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
-# Folders of results whose files are not made by rules.
-FOLDERS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial")
+# Folders and files of results that are not made by rules.
+PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
+PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
 
 
 def options_of(given: Mapping[str, str]) -> list[str]:
@@ -180,6 +183,13 @@ def replicate(given: Mapping[str, str]) -> int:
     began = time.monotonic()
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
+    if (
+        given.get("OVERLAY")
+        and (RESULTS / "provenance.json").exists()
+        and not KEPT_RESULTS.exists()
+    ):
+        line = "To compare these results with the new ones, stop now, copy them, and start again: "
+        print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
     clean_up_after_kill()
     cores = ["--cores", given.get("CORES") or "2"]
     changed = options_for_changed_results(options, targets)
@@ -204,6 +214,10 @@ def replicate(given: Mapping[str, str]) -> int:
         LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
         time_taken = timedelta(seconds=round(time.monotonic() - began))
         print(f"{closing_line(targets, given)}. It took {time_taken}.")
+        if given.get("OVERLAY") and KEPT_RESULTS.exists():
+            print(
+                f"To compare the old results with the new ones: make compare AGAINST={KEPT_RESULTS}"
+            )
     return code
 
 
@@ -264,7 +278,7 @@ def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     for path in sorted(RESULTS.rglob("*")):
         parts = path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
-        is_result = path.is_file() and not is_hidden and parts[0] not in FOLDERS_WITHOUT_RULES
+        is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
         if is_result and str(path) not in states and str(path) not in outdated:
             yield str(path), "no job has recorded it"
 

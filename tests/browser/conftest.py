@@ -1,4 +1,4 @@
-"""A real browser, where there is one: chromium, or the like."""
+"""Start a real browser, if one is installed: chromium or a similar one."""
 
 import shutil
 from collections.abc import Iterator
@@ -39,19 +39,19 @@ def browser():
 
 @pytest.fixture(scope="session")
 def opened(browser):
-    """A function that opens a page, which must say, fetch and fail in nothing."""
+    """Return a function that opens a page, and fails if it logs, fetches or raises anything."""
 
     @contextmanager
     def open_page(path: Path, width: int = 1280, scheme: str = "light") -> Iterator[Page]:
         page = browser.new_page(viewport={"width": width, "height": 844}, color_scheme=scheme)
-        said, fetched = [], []
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
+        logged, fetched = [], []
+        page.on("console", lambda message: logged.append(message.text))
+        page.on("pageerror", lambda error: logged.append(str(error)))
         page.on("request", lambda request: fetched.append(request.url))
         page.goto(path.absolute().as_uri())
         try:
             yield page
-            assert said == []
+            assert logged == []
             assert [url for url in fetched if not url.startswith(("file:", "data:"))] == []
         finally:
             page.close()
@@ -61,7 +61,7 @@ def opened(browser):
 
 @pytest.fixture(scope="session")
 def violations():
-    """A function that lists what is not accessible on a page, and what does not fit its width."""
+    """Return a function that lists what is not accessible on a page or wider than the page."""
     axe = Axe()
 
     def find(page: Page) -> list[str]:
@@ -90,12 +90,12 @@ def explorer(tmp_path_factory):
 
 @pytest.fixture(params=[(1440, "light")])
 def page(explorer, opened, request) -> Iterator[Page]:
-    """The explorer on a wide screen, or as a test asks for, when it has drawn."""
+    """Open the explorer, by default on a wide screen, and wait until it has drawn."""
     with opened(explorer, *request.param) as page:
         settled(page)
         yield page
 
 
 def settled(page: Page) -> None:
-    """Wait until the page has drawn what it was told."""
+    """Wait until the page has drawn its latest settings."""
     page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")

@@ -24,7 +24,7 @@ def press(page, where: str, key: str) -> None:
 
 
 def random_scene(random: np.random.Generator, k: int) -> dict:
-    """Half of the scenes are symmetric, half have either release; a fifth has no damping."""
+    """Return a random scene: half are symmetric, half have each rule, and a fifth no damping."""
     left, right = random.uniform(0.05, 0.95, 2).tolist()
     least, most = np.log([2e-3, 0.02, 0.2]), np.log([explorer_law.LARGEST_RATIO, 2.0, 5.0])
     ratio, gamma, width = np.exp(random.uniform(least, most)).tolist()

@@ -70,6 +70,6 @@ def test_every_link_resolves(results, opened):
 
 
 def test_print_unfolds_what_is_folded(results, opened):
-    with opened(results / "index.html") as page:
+    with opened(results / "claims.html") as page:
         page.emulate_media(media="print")
-        assert page.locator("details:not([open]) p").first.bounding_box()["height"] > 0
+        assert page.locator("details:not([open]) .data").first.bounding_box()["height"] > 0

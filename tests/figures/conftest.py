@@ -2,10 +2,12 @@
 
 from functools import cache
 from importlib import import_module
+from pathlib import Path
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
+import xarray as xr
 from selection import small_sweep
 
 from slippulse.data.saving import save_dataset
@@ -46,40 +48,49 @@ def in_house_style():
         yield
 
 
+class SmallSweeps:
+    """Small sweeps of the configuration, with their tables in a folder that workers share."""
+
+    def __init__(self, config: dict, folder: Path) -> None:
+        self.config, self.folder = config, folder
+
+    def simulate(self, name: str) -> tuple[xr.Dataset, pd.DataFrame]:
+        """Data and measured table of a sweep."""
+        data, measured = (self.folder / f"{name}.{ending}" for ending in ("nc", "csv"))
+        if not measured.exists():
+            block = small_sweep(self.config, name)
+            scenes, samples = expand(block)
+            save_dataset(run_sweep(scenes, samples, block["record"], threads=2), data)
+            save_table(measured_table(load_dataset(data), self.config["measure"]), measured)
+        return load_dataset(data), load_table(measured)
+
+    def predict(self, name: str, topics: list[str]) -> pd.DataFrame:
+        """Predictions of a sweep."""
+        path = self.folder / f"{name}.{'_'.join(topics)}.csv"
+        if not path.exists():
+            swept = [*runs(small_sweep(self.config, name))]
+            save_table(predictions(topics, swept, self.config["measure"]), path)
+        return load_table(path)
+
+    def study_grid(self, name: str) -> pd.DataFrame:
+        """Uncertainties of a sweep, from two coarser lattices."""
+        path = self.folder / f"{name}.uncertainties.csv"
+        if not path.exists():
+            block, tables = small_sweep(self.config, name), [self.simulate(name)[1]]
+            for factor in FACTORS:
+                scenes, _ = expand(block | {"coarser": factor})
+                coarse = run_sweep(scenes, record=["fronts"], threads=2)
+                tables.append(measured_table(coarse, self.config["measure"]))
+            save_table(grid_tables(tuple(tables), FACTORS, PARAMETERS), path)
+        return load_table(path)
+
+
 @pytest.fixture(scope="session")
 def draw(shipped, shared, tmp_path_factory, study):
     """Function that draws a figure by its name, once, from small sweeps and studies."""
     folder = tmp_path_factory.mktemp("tables")
-
-    @cache
-    def simulate(name: str) -> tuple:
-        block = small_sweep(shipped, name)
-        data, measured = (shared / f"sweeps/{name}.{ending}" for ending in ("nc", "csv"))
-        if not measured.exists():
-            scenes, samples = expand(block)
-            save_dataset(run_sweep(scenes, samples, block["record"], threads=2), data)
-            save_table(measured_table(load_dataset(data), shipped["measure"]), measured)
-        return load_dataset(data), load_table(measured)
-
-    @cache
-    def study_grid(name: str) -> pd.DataFrame:
-        """Uncertainties of a small sweep, from two coarser lattices."""
-        path = shared / f"sweeps/{name}.uncertainties.csv"
-        if not path.exists():
-            block, tables = small_sweep(shipped, name), [simulate(name)[1]]
-            for factor in FACTORS:
-                scenes, _ = expand(block | {"coarser": factor})
-                coarse = run_sweep(scenes, record=["fronts"], threads=2)
-                tables.append(measured_table(coarse, shipped["measure"]))
-            save_table(grid_tables(tuple(tables), FACTORS, PARAMETERS), path)
-        return load_table(path)
-
-    def predict(name: str, topics: list[str]) -> pd.DataFrame:
-        path = shared / f"sweeps/{name}.{'_'.join(topics)}.csv"
-        if not path.exists():
-            swept = [*runs(small_sweep(shipped, name))]
-            save_table(predictions(topics, swept, shipped["measure"]), path)
-        return load_table(path)
+    sweeps = SmallSweeps(shipped, shared / "sweeps")
+    simulate = cache(sweeps.simulate)
 
     def inputs(needs: dict) -> tuple[dict, dict]:
         """Data and tables, as the workflow joins them."""
@@ -87,9 +98,9 @@ def draw(shipped, shared, tmp_path_factory, study):
         tables = {}
         for name, topics in needs.get("measured", {}).items():
             measured = simulate(name)[1]
-            tables[name] = measured.join(predict(name, topics)) if topics else measured
+            tables[name] = measured.join(sweeps.predict(name, topics)) if topics else measured
         for name in needs.get("uncertainties", []):
-            tables[f"uncertainties/{name}"] = study_grid(name)
+            tables[f"uncertainties/{name}"] = sweeps.study_grid(name)
         for name in needs.get("studies", []):
             tables[name] = study(name, *inputs(declared(f"studies.{name}", "NEEDS")))
         if "lists" in needs:

@@ -1,4 +1,4 @@
-"""Every figure fits the journal, is labelled and finite; the figures of the paper show runs."""
+"""Every figure fits the journal and has labels, and the figures of the paper show runs."""
 
 from itertools import combinations, product
 from pathlib import Path
@@ -77,7 +77,7 @@ def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tm
 
 
 def holds(corners: np.ndarray, point: list[float]) -> bool:
-    """Whether an area, or a line from the middle of the plane of levels, has a point."""
+    """Return True if a point is in an area, or on a line from the middle of the plane of levels."""
     if len(corners) > 2:
         return Outline(corners).contains_point(point, radius=1e-9)
     return (corners.sum(axis=0) * point).sum() > 0.0
@@ -143,7 +143,7 @@ def test_equal_levels_end_alike_at_every_gamma_and_otherwise_without_leaf_spring
 
 
 def curves(axes, kind: str) -> dict[str, np.ndarray]:
-    """Drawn lines of one kind by run."""
+    """Return the drawn lines of one kind by run."""
     prefix = f"{kind} "
     lines = [line for line in axes.lines if (line.get_gid() or "").startswith(prefix)]
     return {line.get_gid().removeprefix(prefix): line.get_xydata() for line in lines}
@@ -189,7 +189,7 @@ def test_the_arrows_are_the_measured_transition(draw):
 
 
 def drawn_runs(axes, runs: pd.DataFrame, quantity: str):
-    """The marks of a panel, which are the sound runs at their measured heights, and these runs."""
+    """Return the markers of a panel and its sound runs, after checking that their heights agree."""
     (group,) = [group for group in axes.collections if group.get_gid() == "runs"]
     sound, heights = runs[runs["run_flags"].isna()], np.ma.getdata(group.get_offsets())[:, 1]
     measured = np.sort(sound[f"transition_{quantity}"].dropna())

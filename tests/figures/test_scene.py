@@ -1,4 +1,4 @@
-"""A scene by name, and one run: its samples, figure, numbers beside theory, and page."""
+"""A scene by name: its samples, figure, numbers beside theory, and page."""
 
 import re
 from types import SimpleNamespace
@@ -20,7 +20,7 @@ from slippulse_paper.configuration.runs import runs
 from slippulse_paper.configuration.schema import Model, NamedScene
 from slippulse_paper.figures import scene_figure as figure
 from slippulse_paper.figures import user_defined_sweep
-from slippulse_paper.figures.scene_animation import FRAMES, save_animation
+from slippulse_paper.figures.scene_animation import FRAME_COUNT, save_animation
 from slippulse_paper.steps import draw_scene, measure, predict, simulate, study_grid
 
 TITLE = "A <scene> & its $title"
@@ -186,7 +186,7 @@ def test_the_page_stands_alone_and_escapes_what_it_shows(drawn, name):
 def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
     save_animation(drawn["displacement"].run, TITLE, tmp_path / "scene.gif")
     with Image.open(tmp_path / "scene.gif") as film:
-        assert film.n_frames == FRAMES
+        assert film.n_frames == FRAME_COUNT
         first = np.asarray(film.convert("RGB"))
         film.seek(film.n_frames - 1)
         assert (np.asarray(film.convert("RGB")) != first).any()

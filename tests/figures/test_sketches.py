@@ -1,4 +1,4 @@
-"""Figures 1, 6 and 7: the sketches, and the blocks and springs at positions of the runs."""
+"""Figures 1, 6 and 7 show the right lengths, and blocks at the positions of the runs."""
 
 from itertools import pairwise
 
@@ -26,7 +26,7 @@ def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
     assert named(held, "held top") and not named(held, "imposed stress")
     for axes, mean in ((stress, 1.0), (held, 0.5)):
         (line,) = named(axes, "displacement")
-        x, y = line.get_xdata() - fig01_system_sketch.REST, line.get_ydata()
+        x, y = line.get_xdata() - fig01_system_sketch.ZERO_DISPLACEMENT, line.get_ydata()
         assert np.trapezoid(x, y) == pytest.approx(mean * x[0]) and list(y) == [0.0, 1.0]
         (strip,) = named(axes, "strip")
         assert (strip.get_width(), strip.get_height()) == pytest.approx((0.1, 1.0))
@@ -66,32 +66,33 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(draw, shipped):
 
 @pytest.fixture
 def drawn(draw):
-    """Runs, their table, and blocks and pre-stress of each panel."""
+    """Return the runs, their table, and the axes of blocks and pre-stress of each panel."""
     made = draw("fig06_burridge_knopoff")
     first_strip, first, second_strip, second = made.figure.axes
     panels = (first, first_strip), (second, second_strip)
-    return made.data, made.table, dict(zip(figure.PITCH, panels, strict=True))
+    return made.data, made.table, dict(zip(figure.ROW_DISTANCES, panels, strict=True))
 
 
 def segments(axes, name):
     return [line.get_xydata() for line in named(axes, name)]
 
 
-@pytest.mark.parametrize("name", figure.PITCH)
+@pytest.mark.parametrize("name", figure.ROW_DISTANCES)
 def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     _, rows, panels = drawn
     axes, strip = panels[name]
     part = rows[rows["panel"] == name].sort_values(["row", "x"])
     moved = part["x"] + part["scale"] * part["slip"]
-    centres = np.sort([block.get_x() + 0.5 * figure.BLOCK for block in axes.patches])
+    centres = np.sort([block.get_x() + 0.5 * figure.BLOCK_WIDTH for block in axes.patches])
     assert centres == pytest.approx(np.sort(moved))
     shown = [to_hex(block.get_facecolor()) for block in axes.patches]
-    assert sorted(shown) == sorted(part["state"].map(figure.COLOURS).map(to_hex))
-    gaps = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])]) - figure.BLOCK
+    assert sorted(shown) == sorted(part["state"].map(figure.STATE_COLOURS).map(to_hex))
+    distances = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])])
+    gaps = distances - figure.BLOCK_WIDTH
     coils = segments(axes, "coil springs")
     assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
     # No blocks overlap, and some springs are stretched.
-    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK < gaps.max()
+    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK_WIDTH < gaps.max()
     leaves = segments(axes, "leaf springs")
     if name == "displacement":
         assert np.sort([leaf[0, 0] for leaf in leaves]) == pytest.approx(np.sort(part["x"]))

@@ -14,14 +14,14 @@ order = lambda line, error: np.polyfit(np.log(line["dx"]), np.log(error), 1)[0]
 
 
 def select(table, **values):
-    """Rows that have these values in these columns."""
+    """Return the rows that have these values in these columns."""
     for column, value in values.items():
         table = table[table[column] == value]
     return table
 
 
 def between(marks, line, value: str, along: str = "position"):
-    """Distances of marks from a line, where the line is defined."""
+    """Return the distances of markers from a line, where the line is defined."""
     line, marks = line.dropna(subset=value).sort_values(along), marks.dropna(subset=value)
     marks = marks[marks[along].between(line[along].min(), line[along].max())]
     return np.abs(marks[value] - np.interp(marks[along], line[along], line[value]))

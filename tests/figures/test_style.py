@@ -23,7 +23,7 @@ from pypdf import PdfReader
 from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting import style
 from slippulse.plotting.style import COLOUR_CYCLE, COLUMN_WIDTH, FONT_FAMILY, SCALES, colour_scale
-from slippulse_paper.figures.fig06_burridge_knopoff import COLOURS
+from slippulse_paper.figures.fig06_burridge_knopoff import STATE_COLOURS
 from slippulse_paper.steps import draw_figure
 
 # Rows of linear red, green, blue.
@@ -48,7 +48,7 @@ def linear(colour) -> np.ndarray:
 
 
 def lab(colour, vision: str) -> np.ndarray:
-    """L*, a*, b* of a colour as it is seen."""
+    """Return L*, a*, b* of a colour as readers with a colour vision deficiency see it."""
     xyz = TO_XYZ @ np.clip(VISION[vision] @ linear(colour), 0.0, 1.0) / WHITE
     f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
     return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])
@@ -78,7 +78,7 @@ def test_a_scale_goes_one_way_in_lightness(quantity, vision):
 
 
 def test_states_of_a_block_are_apart_in_grey():
-    shades = sorted(lab(colour, "grey")[0] for colour in COLOURS.values())
+    shades = sorted(lab(colour, "grey")[0] for colour in STATE_COLOURS.values())
     assert (np.diff(shades) > GREYS_APART).all()
 
 

@@ -1,4 +1,4 @@
-"""A report of a small invented run: ledger, tables and figures of the right form, rendered."""
+"""Render the report of a small invented run with claims, tables and figures of the right form."""
 
 import re
 from pathlib import Path
@@ -48,7 +48,7 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
 
 
 def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
-    """Each finding, with every number that a text asks for."""
+    """Return each finding, with every number that a text uses."""
     names = set(re.findall(r"\b(?:n|late|literal|damped|made_with|collapse|plane)\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
     numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))}
@@ -57,7 +57,7 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
-    """Tables of the report, with every number that its text asks for."""
+    """Return the tables of the report, with every number that its text uses."""
     row = lambda variable: dict.fromkeys(re.findall(rf"\b{variable}\.(\w+)", texts), 1.01)
     crack = row("crack")
     transition = {"transition_time": 1.0, "exact_transition_time": 1.0}
@@ -88,7 +88,7 @@ def manuscript(project) -> Path:
 
 @pytest.fixture(scope="session")
 def make_inputs(manuscript, shipped, tmp_path_factory):
-    """A function that invents a run of a configuration: the inputs of its report."""
+    """Return a function that invents a run of a configuration, as inputs of its report."""
     folder = tmp_path_factory.mktemp("figures")
     figures = [name for name in read(manuscript / "captions.yaml") if name.startswith("fig")]
     drawn, (axes,) = new_panels(3.4, 2.0, "a")
@@ -117,7 +117,7 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def build(tmp_path_factory):
-    """A function that writes a report, and returns its files, inputs, claims and documents."""
+    """Return a function that writes a report and returns its files, inputs and claims."""
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")

@@ -1,4 +1,4 @@
-"""The page of results: structure, keyboard, alternative texts, links, nothing from outside."""
+"""The index and the other pages: structure, keyboard, alternative texts, and no outside links."""
 
 import json
 import re
@@ -16,7 +16,7 @@ from slippulse_paper.claims.kinds import Qualitative
 from slippulse_paper.claims.paper_claims import written
 from slippulse_paper.records.provenance import provenance
 from slippulse_paper.report import html
-from slippulse_paper.report.claims_page import claims_page
+from slippulse_paper.report.claims_page import SIGNS, claims_page
 from slippulse_paper.report.index_page import index_page
 from slippulse_paper.report.texts import ERRATUM
 
@@ -35,7 +35,7 @@ NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
 class Outline(HTMLParser):
-    """Tags in order, with their attributes; refuses tags that do not close in order."""
+    """The tags of a page in order, with their attributes. Fails if tags are not closed in order."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class Outline(HTMLParser):
 
 @pytest.fixture(scope="module")
 def results(project, shipped, tmp_path_factory):
-    """The folder of a small run with another preset; the texts of its page are next to it."""
+    """Return the folder of a small run with another preset, next to the texts of its page."""
     results = tmp_path_factory.mktemp("page") / "results"
     figures = [f"figures/{name}{ending}" for name, ending in product(NAMES, (".pdf", ".csv"))]
     for path in [*TABLES, "scenes/made.html", *figures]:
@@ -73,15 +73,15 @@ def results(project, shipped, tmp_path_factory):
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     caption = {"alt": "A line <up>", "caption": "(a) $x$."}
     caption["finding"] = "Found in {{ claim('speed').runs }} runs."
-    untested = {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."}
-    ahead = untested | {"topic": "Ahead", "named": "a front", "beside": {"always": ""}}
-    met = {"topic": "Yes", "named": "fronts run", "claims": {"speed": "speeds"}}
-    met |= {"text": "Gap {{ found('ours').gap }}."}
-    failing = untested | {"topic": "Fronts", "said": {"not reproduced": "a width is not met"}}
-    failing["claims"] = {"speed": "fronts", "width": "their width"}
-    summary = {"question": "Do they run?", "symbols": "$H$ is a height.", "picture": "fig01_one"}
+    met = {"topic": "Yes", "named": "fronts run", "claims": {"speed": "speeds"}, "text": "Gap."}
+    summary = {"question": "Do they run?", "symbols": "$H$ is a height.", "verdict": [met]}
     summary["accuracy"] = "Of {{ claim('speed').runs }} runs, {{ misprints | length }} misprint."
-    summary["verdict"] = [met, failing, untested, ahead]
+    number = "gap {{ found('ours').gap }}"
+    summary["statements"] = [
+        {"statement": "Fronts run.", "claims": ["speed"], "number": number},
+        {"statement": "They are wide.", "claims": ["length", "width"], "number": "none"},
+    ]
+    summary["words"] = [{"term": "Height $H$", "meaning": "{{ claim('speed').runs }} metres."}]
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
     for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
@@ -129,10 +129,12 @@ def test_pages_can_be_read_without_eyes_or_mouse(page):
     scenes = check_accessible(html.page("scenes.html", scenes={"one": "A <scene>", "two": "More"}))
     assert [image["src"] for image in scenes.all("img")] == ["one.png", "two.png"]
     outline = check_accessible(page)
-    # Each figure is there once, with its size; the first is above all links but the hidden one.
+    # Each figure is there once, with its size.
     pictures = [(image["src"], image["width"], image["height"]) for image in outline.all("img")]
     assert pictures == [(f"figures/{name}.png", "360", "240") for name in NAMES]
-    assert [tag for tag, _ in outline.tags if tag in ("a", "img")][:2] == ["a", "img"]
+    # The table of statements comes before all figures.
+    tags = [tag for tag, _ in outline.tags]
+    assert tags.index("table") < tags.index("img")
     assert {image["alt"] for image in outline.all("img")} == {"A line <up>"}
 
 
@@ -151,19 +153,22 @@ def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
 
 def test_it_says_what_was_found_and_from_what(page):
     assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable." in page
-    exceptions = "A width is not met. A length and a front are not tested in this run."
     assert "Do they run? <strong>Yes</strong>: fronts run.</p>" in page
-    assert page.index('id="verdict"') < page.index(exceptions) < page.index("Gap 0.500.")
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "Of 4 runs, 1 misprint." in page
     assert "1 value differs" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
-    order = ("value differs", 'id="verdict"', "Figures of the paper</h2>")
+    order = ("value differs", "the paper states", "4 metres.", "Figures of the paper</h2>")
     assert sorted(order, key=page.index) == [*order]
     assert "results/scenes/not_made.html" in page
-    # A line tells every verdict of its claims, and what has it if there are several.
-    first = r'#speed">. reproduced<span class="unseen">, speed</span></a> \(fronts\);'
-    second = r'<a [^>]*#width">. not reproduced<.*?</a> \(their width\)'
-    assert re.search(rf"{first}\s{second}\s<br>", page)
+
+
+def test_a_row_has_a_statement_its_worst_verdict_a_number_and_a_figure(page):
+    rows = re.findall(r"<tr role=.row.>(.*?)</tr>", page, re.S)[:2]
+    texts = [re.sub(r"<span.*?</span>|<.*?>|\s+", " ", row, flags=re.S).split() for row in rows]
+    assert texts[0] == f"Fronts run. {SIGNS['reproduced']} reproduced gap 0.500 figure 1".split()
+    assert texts[1] == f"They are wide. {SIGNS['not reproduced']} not reproduced none".split()
+    assert 'href="claims.html#speed"' in rows[0] and 'href="#fig01_one"' in rows[0]
+    assert 'href="claims.html#width"' in rows[1]
 
 
 def test_the_ledger_has_a_page_with_failures_first():

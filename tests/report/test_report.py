@@ -1,4 +1,4 @@
-"""The report that a reader gets: complete, self-contained, reproducible, with its run's numbers."""
+"""The finished report is complete and self-contained, and has the numbers of its run."""
 
 import json
 import re

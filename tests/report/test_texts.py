@@ -21,7 +21,7 @@ from report.conftest import read
 from slippulse_paper.claims.claim_texts import REASONS, claims_of, coverage
 from slippulse_paper.claims.ledger import KINDS, Ledger
 from slippulse_paper.report import texts
-from slippulse_paper.report.manuscript import DOCUMENTS, NAMED, Gallery
+from slippulse_paper.report.manuscript import DOCUMENTS, FIGURE_CALL, Gallery
 from slippulse_paper.report.texts import Caption, read_captions, read_errata
 
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
@@ -67,7 +67,7 @@ def entries(manuscript) -> dict[str, dict]:
 
 
 def test_page_one_answers_in_a_minute(manuscript):
-    """At most eight rows of 350 words, and sentences of at most 25 by the shipped verdicts."""
+    """The table has at most eight rows of 350 words in total, and a sentence at most 25 words."""
     summary = read(manuscript / "summary.yaml")
     shipped = read(manuscript / "shipped_verdicts.yaml")
     claims = [{"id": id, "kind": "exact", "verdict": verdict} for id, verdict in shipped.items()]
@@ -99,6 +99,19 @@ def test_the_answer_is_yes_no_or_open_by_the_verdict_of_its_first_line(verdict, 
     line = {"topic": "Pulses", "named": "pulses form", "claims": {"first": "pulses"}, "text": ""}
     ledger = Ledger([{"id": "first", "kind": "exact", "verdict": verdict}])
     assert texts.answer(texts.judged_lines({"verdict": [line]}, ledger, str)) == expected
+
+
+def test_the_index_has_at_most_twelve_statements_of_one_line(manuscript):
+    summary = read(manuscript / "summary.yaml")
+    shipped = read(manuscript / "shipped_verdicts.yaml")
+    assert len(summary["statements"]) <= 12
+    for row in summary["statements"]:
+        assert row["claims"] and set(row["claims"]) <= shipped.keys()
+        # An expression becomes a few characters; a line on a wide screen has room for so many.
+        number = EXPRESSION.sub("12 %", row["number"])
+        assert len(row["statement"]) <= 65 and len(number) <= 78, row
+        # The words and symbols are explained below the table.
+        assert "$" not in row["statement"] + row["number"]
 
 
 def test_every_tested_sentence_has_a_claim_and_every_claim_a_sentence(manuscript, entries):
@@ -157,13 +170,12 @@ def test_a_text_that_is_not_whole_is_refused(reader, tmp_path):
 
 
 def test_every_figure_has_one_position_and_a_caption(source, captions, project, manuscript):
-    placed = NAMED.findall(source)
+    placed = FIGURE_CALL.findall(source)
     modules = (project / "src/slippulse_paper/figures").glob("*.py")
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "user_defined_sweep"]) == sorted(captions)
     assert len(figures) >= 17 and figures <= set(placed)
     assert sum(name.startswith("fig") for name in figures) == 11
-    assert read(manuscript / "summary.yaml")["picture"] in figures
     assert len({caption.title for caption in captions.values()}) == len(captions)
     for name, caption in captions.items():
         # Plain text stands in headings and alternative texts; a finding is one sentence.
@@ -233,7 +245,7 @@ def test_every_derivation_says_where_it_starts_and_is_checked(source, project):
 
 
 def in_code(code: str) -> list[str]:
-    """Numbers in Python other than small whole ones, and digits of its strings outside names."""
+    """Return numbers in Python except small whole ones, and digits in its strings outside names."""
     numbers = []
     for token in tokenize.generate_tokens(io.StringIO(code.strip()).readline):
         if token.type == tokenize.NUMBER and not re.fullmatch(r"\d", token.string):
@@ -244,7 +256,7 @@ def in_code(code: str) -> list[str]:
 
 
 def in_prose(text: str) -> list[str]:
-    """Numbers typed into Markdown without code cells, each with the words next to it."""
+    """Return numbers typed into Markdown outside code cells, each with the words around it."""
     numbers = []
     checks = {EXPRESSION: in_code, MATH: in_formula, CITATION: None, NAME: in_name, REFERENCE: None}
     for pattern, check in checks.items():
@@ -257,7 +269,7 @@ def in_prose(text: str) -> list[str]:
 
 
 def typed_numbers(source: str) -> list[str]:
-    """Numbers typed into a jupytext Markdown source."""
+    """Return the numbers typed into a Markdown source of jupytext."""
     source = HEADER.sub("", source)
     return in_code("\n".join(FENCE.findall(source))) + in_prose(FENCE.sub(" ", source))
 
@@ -285,6 +297,8 @@ def test_no_text_has_a_typed_number(manuscript):
         entries.append({key: line[key] for key in ("topic", "named", "text")})
         entries += [line.get("said", {}), line["claims"], line.get("beside", {})]
     entries.append({key: summary[key] for key in ("question", "symbols", "accuracy")})
+    entries += [{key: row[key] for key in ("statement", "number")} for row in summary["statements"]]
+    entries += summary["words"]
     for entry in entries:
         assert list(filter(None, map(in_prose, entry.values()))) == []
     for text in TYPED:

@@ -1,4 +1,4 @@
-"""All inputs of the exact theory are moved by some last digits where SLIPPULSE_NUDGED is set."""
+"""If SLIPPULSE_NUDGED is set, change all inputs of the exact theory in their last digits."""
 
 import dataclasses
 import os
@@ -11,7 +11,10 @@ from slippulse.theory import domains, fast_front, rupture
 
 
 def nudged(value, rng: np.random.Generator):
-    """Numbers moved by 1 to 4 units in the last place, in tuples, arrays, a pre-stress; 0 stays."""
+    """Return numbers moved by 1 to 4 units in the last place; 0 remains 0.
+
+    The value may be a number, an array, a tuple of these, or a pre-stress.
+    """
     if isinstance(value, Prestress):
         names = [field.name for field in dataclasses.fields(value) if field.name != "peak"]
         moved = {name: nudged(getattr(value, name), rng) for name in names}
@@ -30,15 +33,16 @@ def nudged(value, rng: np.random.Generator):
 
 @pytest.fixture(autouse=True)
 def inputs_nudged_in_their_last_bits(monkeypatch):
-    """Move keys of a rupture, positions and times, by a seed that repeats a failure."""
+    """Move arguments of a rupture, positions and times; the seed makes failures repeatable."""
     if not os.environ.get("SLIPPULSE_NUDGED"):
         return
     rng = np.random.default_rng(int(os.environ["SLIPPULSE_NUDGED"]))
 
-    def nudged_law(*keys):
-        # Half a lattice is no other scene than the whole: equal keys give equal moves.
-        rng = np.random.default_rng(abs(hash(keys[:3])) % 2**32)
-        return fast_front.FastFront(*[nudged(value, rng) for value in keys])
+    def nudged_law(**keys):
+        # Half of a lattice is the same scene as the whole: equal arguments are moved equally.
+        scene = keys["prestress"], keys["gamma"], keys["damping_ratio"]
+        rng = np.random.default_rng(abs(hash(scene)) % 2**32)
+        return fast_front.FastFront(**{name: nudged(value, rng) for name, value in keys.items()})
 
     as_numbers = rupture.as_numbers
     monkeypatch.setattr(rupture, "FastFront", nudged_law)

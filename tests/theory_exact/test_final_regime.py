@@ -1,4 +1,4 @@
-"""The regime that a rupture ends in, against the exact solution followed until it shows."""
+"""The regime in which a rupture ends, against the exact solution."""
 
 from itertools import product
 
@@ -11,29 +11,33 @@ from slippulse.model.run import Run
 from slippulse.prediction.predicted_regime import UNDECIDED, final_regime, predictions
 from slippulse.theory.rupture import Rupture
 
-STILL, RATIO = 0.05, 0.1
+# Velocity at the centre below which it counts as still, as a fraction of the largest velocity.
+STILL_FRACTION, DAMPING_RATIO = 0.05, 0.1
 
 
 def regime(left: float, right: float, gamma: float) -> str:
-    return final_regime(left, right, gamma, RATIO, "total", STILL)
+    """Return the predicted regime of a scene with these levels on the left and on the right."""
+    return final_regime(left, right, gamma, DAMPING_RATIO, "total", STILL_FRACTION)
 
 
 def rupture(left: float, right: float, gamma: float, duration: float) -> Rupture:
-    exact = Rupture(Prestress(left, right), gamma, RATIO, "total", duration)
+    """Return the exact rupture of a scene, which must have no limit."""
+    exact = Rupture(Prestress(left, right), gamma, DAMPING_RATIO, "total", duration)
     assert exact.limit is None
     return exact
 
 
 ARRESTED, TWO_WAY = "arrested", "pulses, two-way"
 ONE_WAY = "pulse, one-way, steady"
-# How the fronts end: they stop, or go on to the end of the duration.
-ENDS = {
+# Reasons why the left and right fronts end: they stop, or go on until the end of the duration.
+END_REASONS = {
     ARRESTED: ["stops", "stops"],
     TWO_WAY: ["duration", "duration"],
     ONE_WAY: ["stops", "duration"],
 }
-# Regime, both levels, gamma and a duration; two are longer than the runs of the phase diagram.
-CASES = [
+# Regime, left and right level, gamma and duration. Two are longer than the runs of the phase
+# diagram.
+REGIME_CASES = [
     (ARRESTED, -0.2, -0.2, 1.0, 10.0),
     (ARRESTED, -0.1, -0.1, 0.1, 20.0),
     (ARRESTED, -0.6, -0.1, 0.65, 12.0),
@@ -50,13 +54,16 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("end", "left", "right", "gamma", "duration"), CASES)
+@pytest.mark.parametrize(("end", "left", "right", "gamma", "duration"), REGIME_CASES)
 def test_the_exact_solution_ends_in_its_regime(end, left, right, gamma, duration):
-    """All sticks between fronts that stop; behind others pulses form, steady next to a stop."""
+    """Everything sticks between fronts that stop; other fronts leave pulses behind.
+
+    A pulse is steady if the front on the other side has stopped.
+    """
     assert regime(left, right, gamma) == regime(right, left, gamma) == end
     exact = rupture(left, right, gamma, duration)
     (fronts,) = exact.front_ends
-    assert [front.reason for front in fronts] == ENDS[end]
+    assert [front.reason for front in fronts] == END_REASONS[end]
     x = np.linspace(fronts[0].x, fronts[1].x, 31)[1:-1] if end == ARRESTED else 0.0
     assert np.isfinite(exact.stick_time(x)).all()
     assert end == ARRESTED or exact.pulse_width(duration) > 0.0
@@ -78,16 +85,19 @@ def test_with_leaf_springs_a_pulse_without_prestress_gets_ever_narrower_and_slow
     assert 0.4 < peaks[1] / peaks[0] < 0.8
 
 
-# The last two have a weak drive behind a barrier: the longest to compute.
-LEVELS = [(-0.02, 0.1), (-0.6, 0.6), (-0.1, 0.02), (-0.9, 0.02)]
-LATE = [pytest.param(*levels, 3000.0, marks=pytest.mark.slow) for levels in LEVELS]
+# The last two have a weak drive behind a barrier and take longest to compute.
+BARRIER_LEVELS = [(-0.02, 0.1), (-0.6, 0.6), (-0.1, 0.02), (-0.9, 0.02)]
+LATE_SCENES = [pytest.param(*levels, 3000.0, marks=pytest.mark.slow) for levels in BARRIER_LEVELS]
 
 
 @pytest.mark.parametrize(
-    ("left", "right", "end"), [*((*levels, 800.0) for levels in LEVELS[:2]), *LATE]
+    ("left", "right", "end"), [*((*levels, 800.0) for levels in BARRIER_LEVELS[:2]), *LATE_SCENES]
 )
-def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(left, right, end):
-    """The rupture is a crack or a pulse as that part, for large times, is above STILL or below."""
+def test_without_leaf_springs_a_barrier_leaves_a_known_velocity_at_the_centre(left, right, end):
+    """The centre keeps a fraction of the largest velocity, for which there is a formula.
+
+    The rupture is a crack if this fraction is above STILL_FRACTION for large times, else a pulse.
+    """
     times = np.array([0.5 * end, end])
     exact = rupture(left, right, 0.0, times[1])
     speed = (exact.front_ends[0][1].x - exact.fronts_at(times[0])[1]) / np.diff(times)[0]
@@ -99,7 +109,7 @@ def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(l
         errors.append(abs(float(exact.slip_velocity(0.0, time)) / largest / expected - 1.0))
     # The contribution of the Gaussian decays like 1/t.
     assert errors[1] < 0.1 and errors[1] < 0.6 * errors[0]
-    pulse = expected < STILL
+    pulse = expected < STILL_FRACTION
     assert regime(left, right, 0.0) == (
         "pulse, one-way, growing" if pulse else "crack-like, one front slow"
     )
@@ -127,9 +137,9 @@ def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_ar
 def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():
     for level, end in ((-0.01, "decaying"), (0.0, "steady"), (0.01, "growing")):
         profile = Prestress(-0.6, 0.0, steps=((15.0, level),))
-        run = Run("stress", profile, 0.0, 1.0, RATIO, "total", {})
-        assert predictions([run], {"still": STILL}).squeeze() == f"pulse, one-way, {end}"
-        exact = Rupture(profile, 0.0, RATIO, "total", 30.0)
+        run = Run("stress", profile, 0.0, 1.0, DAMPING_RATIO, "total", {})
+        assert predictions([run], {"still": STILL_FRACTION}).squeeze() == f"pulse, one-way, {end}"
+        exact = Rupture(profile, 0.0, DAMPING_RATIO, "total", 30.0)
         times = np.array([20.0, 30.0])
         x = np.outer(times, np.linspace(0.6, 1.05, 101))
         early, late = np.max(exact.slip_velocity(x, times[:, None]), axis=1)
@@ -139,6 +149,6 @@ def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():
 def test_every_answer_is_a_regime():
     levels = (-0.9, -0.02, 0.0, 0.02, 0.9)
     answers = {regime(*scene) for scene in product(levels, levels, (0.0, 0.65))}
-    # A front that has stopped leaves a pulse, if one waits for long enough.
+    # A front that has stopped leaves a pulse behind, after a sufficiently long time.
     assert answers == {*REGIMES, UNDECIDED} - {"crack-like, one-way"}
     assert regime(0.0, 0.0, 0.65) == regime(0.0, 0.3, 0.65) == UNDECIDED

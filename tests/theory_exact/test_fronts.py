@@ -1,4 +1,4 @@
-"""Arrival times: front law, quadrature, several nucleation points, and the free boundary."""
+"""Arrival times, against the front law, quadrature, several nucleation points, and closed forms."""
 
 import numpy as np
 import pytest
@@ -10,8 +10,8 @@ from slippulse.model.balance import integral
 from slippulse.theory import ArrestingCrack, Rupture, barrier_depth, front_speed
 from slippulse.theory.slowness import slowness
 
-# Asked of T(x).
-RELATIVE = 1e-8
+# Allowed relative error of T(x).
+ARRIVAL_TOLERANCE = 1e-8
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
@@ -30,7 +30,7 @@ def test_arrival_times_are_integrals_of_the_slowness():
     rate = lambda x: 1.0 / front_speed(min(float(profile(x)), 1.0 - 1e-15), 0.1) if x else 0.0
     for x, *ends, mark in ((-3.0, -3.0, 0.0, -2.0), (4.0, 0.0, 4.0, 3.0)):
         exact = quad(rate, *ends, points=[mark], epsabs=1e-12, epsrel=1e-11, limit=200)[0]
-        assert float(rupture.release_time(x)) == pytest.approx(exact, rel=RELATIVE)
+        assert float(rupture.release_time(x)) == pytest.approx(exact, rel=ARRIVAL_TOLERANCE)
 
 
 def test_the_earlier_front_counts_where_two_meet():
@@ -50,10 +50,12 @@ def test_a_slow_front_without_leaf_springs_is_the_closed_form():
     crack = ArrestingCrack(sp.Prestress(-0.5, 0.0), 0.1)
     rupture = Rupture(sp.Prestress(-0.5, 0.0), 0.0, 0.1, "total", 12.0)
     for x in (-3.5, -2.5, -1.5, -0.5):
-        assert float(rupture.release_time(x)) == pytest.approx(crack.time_at(x), rel=RELATIVE)
+        assert float(rupture.release_time(x)) == pytest.approx(
+            crack.time_at(x), rel=ARRIVAL_TOLERANCE
+        )
     ((left, _),) = rupture.front_ends
     assert left.reason == "duration" and abs(left.x) < abs(crack.balance_position)
-    # With leaf springs it stops.
+    # With leaf springs the front stops.
     ((left, right),) = Rupture(sp.Prestress(-0.5, 0.5), 0.65, 0.1, "total", 8.0).front_ends
     assert (left.reason, right.reason) == ("stops", "duration")
     assert left.x == pytest.approx(-3.62, abs=0.005)
@@ -64,7 +66,7 @@ def test_a_slow_front_without_leaf_springs_is_the_closed_form():
     [(8.0, 0.0, (1, 3)), (12.0, 0.0, (1, 3, 10)), (20.0, 0.1, (1, 3)), (50.0, 0.0, (1, 3))],
 )
 def test_a_slow_front_behind_a_stretch_of_nearly_no_prestress_is_exact(edge, ratio, refinements):
-    """The characteristics that move it entered where T - x is the same to rounding."""
+    """The characteristics that drive it entered where T - x is constant to rounding."""
     profile = sp.Prestress(-0.2, 0.0, 2.0, steps=((edge, -0.3),))
     entry = brentq(lambda e: integral(profile, e, edge + 2.0), 0.0, edge, xtol=1e-14)
     rate = lambda x: float(slowness(profile(np.asarray(x)), ratio))
@@ -79,7 +81,7 @@ def test_a_slow_front_behind_a_stretch_of_nearly_no_prestress_is_exact(edge, rat
 
 
 @pytest.mark.parametrize("edge", [12.0, 20.0])
-def test_held_displacement_does_not_change_that(edge):
+def test_leaf_springs_do_not_change_this_result(edge):
     profile = sp.Prestress(0.5, 0.0, 2.0, steps=((edge, -0.3),))
     times = []
     for refinement in (1, 3, 6):
@@ -90,7 +92,10 @@ def test_held_displacement_does_not_change_that(edge):
 
 
 def test_a_front_that_rests_goes_on_when_prestress_far_away_moves_it():
-    """Between the Gaussian and the far level the pre-stress is 0: no source comes to the front."""
+    """Between the Gaussian and the far level the pre-stress is 0.
+
+    No characteristic from there can move the front.
+    """
     profile = sp.Prestress(-0.6, 0.0, steps=((15.0, 0.01),))
     rupture = Rupture(profile, 0.0, 0.1, "total", 60.0)
     for x in (-5.44, -5.5, -5.6):
@@ -106,10 +111,10 @@ def test_a_front_that_rests_goes_on_when_prestress_far_away_moves_it():
 
 @pytest.mark.parametrize(("ratio", "depth"), [(0.0, 3.617884220), (0.1, 3.036086347)])
 def test_the_depth_of_a_barrier(ratio, depth):
-    """Extrapolated lattices: 3.62 and 3.03 from dx = 0.02, 0.01, 0.005."""
+    """Lattices with dx = 0.02, 0.01 and 0.005, extrapolated, give 3.62 and 3.03."""
     computed = barrier_depth(0.5, -0.5, 0.65, ratio)
     assert computed == pytest.approx(depth, abs=1e-8)
-    # A pulse that has become steady in a scene stops there too.
+    # A pulse that has become steady within a scene stops at the same depth.
     scene = sp.Prestress(0.5, 0.5, steps=((20.0, -0.5),))
     ((_, right),) = Rupture(scene, 0.65, ratio, "total", 24.0).front_ends
     assert right.x - 20.0 == pytest.approx(computed, abs=1e-8)

@@ -1,4 +1,4 @@
-"""No answer on random hard scenes owes anything to scale, direction, duration or panels."""
+"""Results on random hard scenes do not depend on scale, direction, duration or panels."""
 
 from dataclasses import replace
 from functools import cache
@@ -11,62 +11,70 @@ from tolerances import NUDGED, NUDGED_DOUBLE
 from slippulse.model.prestress import Prestress
 from slippulse.theory import part
 
-# The first scenes are in each run of the tests, each with one variant; all with the slow tests.
-FAST, ALL = 50, 500
+# The first scenes are in every run of the tests, each with one variant; all of them are in the slow
+# tests.
+FAST_SCENES, ALL_SCENES = 50, 500
 # Scenes in which something sticks.
-STICK = (13, 16, 23, 28, 37, 41)
-# Pre-stress of scenes that once gave wrong answers without a flag.
-RESTS = Prestress(-0.45, -0.45, 0.95, bumps=((3.27, 1.25, 0.715),))
-STOPS = Prestress(-0.854, 0.417, 30.0, 1.0, ((114.0, -0.189),), ((26.7, 0.269, 4.96),))
-DIP = Prestress(0.4314, 0.4314, 4.43, steps=((7.21, 0.893), (-6.456, -1.177)))
-CENTRE, BUMP = 11.132018776746689, (-0.8827475088463022, 0.43810831317438026)
-LEVEL, BUMPS = 0.5828621621834829, ((CENTRE, *BUMP), (-CENTRE, *BUMP))
-EVEN = Prestress(LEVEL, LEVEL, 3.158165039598508, 1.000000000001, bumps=BUMPS)
-# The scenes; one right answer of each, with its error.
-KNOWN = {
-    # The characteristic that comes to the front next entered where the pre-stress is positive.
-    # Lattices tend to this end; the grid of their blocks is 0.01.
+STICKING_SCENES = (13, 16, 23, 28, 37, 41)
+# Pre-stress of scenes that were once computed wrongly, without a limit.
+RESTING_FRONT = Prestress(-0.45, -0.45, 0.95, bumps=((3.27, 1.25, 0.715),))
+STOPPED_FRONT = Prestress(-0.854, 0.417, 30.0, 1.0, ((114.0, -0.189),), ((26.7, 0.269, 4.96),))
+DIP_IN_EDGE = Prestress(0.4314, 0.4314, 4.43, steps=((7.21, 0.893), (-6.456, -1.177)))
+BUMP_CENTRE, BUMP_SHAPE = 11.132018776746689, (-0.8827475088463022, 0.43810831317438026)
+EVEN_LEVEL, EVEN_BUMPS = (
+    0.5828621621834829,
+    ((BUMP_CENTRE, *BUMP_SHAPE), (-BUMP_CENTRE, *BUMP_SHAPE)),
+)
+SYMMETRIC_SCENE = Prestress(
+    EVEN_LEVEL, EVEN_LEVEL, 3.158165039598508, 1.000000000001, bumps=EVEN_BUMPS
+)
+# For each scene: its arguments, a function that returns one result, and the right value.
+DIFFICULT_SCENES = {
+    # The next characteristic that arrives at the front entered where the pre-stress is positive.
+    # Lattices converge to this end; the grid of their blocks is 0.01.
     "a front that rests and goes on": (
-        Keys(RESTS, 0.108, 0.1, "total", 11.565),
+        Keys(RESTING_FRONT, 0.108, 0.1, "total", 11.565),
         lambda rupture: rupture.front_ends[0][1].x,
         pytest.approx(8.72, abs=0.01),
     ),
-    # Next to it du/dt is below 0 for a short while only, and slip is never.
+    # Next to the stopped front du/dt is below 0 only briefly, and slip is never.
     "a front that has stopped": (
-        Keys(STOPS, 0.00102, 2.0, "elastic", 110.0),
+        Keys(STOPPED_FRONT, 0.00102, 2.0, "elastic", 110.0),
         lambda rupture: rupture.limit.time,
         pytest.approx(92.196663, abs=1e-5),
     ),
     # The dip of the trailing edge is much narrower than the rupture.
     "a first stick in a dip": (
-        Keys(DIP, 0.0242, 2.0, "total", 76.8),
+        Keys(DIP_IN_EDGE, 0.0242, 2.0, "total", 76.8),
         lambda rupture: rupture.first_stick,
         pytest.approx((16.331963629, -8.390786526), abs=1e-6),
     ),
-    # There the pace of the trailing edge is rounding, of either sign.
+    # At the centre the slope of the trailing edge is a rounding error of either sign.
     "a first stick at the centre of symmetry": (
-        Keys(EVEN, 0.0760121501359528, 1.0, "elastic", 25.693078285585813),
+        Keys(SYMMETRIC_SCENE, 0.0760121501359528, 1.0, "elastic", 25.693078285585813),
         lambda rupture: rupture.first_stick,
         pytest.approx((11.290149, 0.0), abs=1e-6),
     ),
 }
 
 
-@pytest.mark.parametrize("number", range(FAST))
+@pytest.mark.parametrize("number", range(FAST_SCENES))
 def test_two_solutions_agree_before_either_has_a_limit(number):
     compared = Compared(scene(number))
     variant = list(VARIANTS)[number // len(FAMILIES) % len(VARIANTS)]
     compared.check(compared.answers_of(VARIANTS[variant](compared.keys)))
 
 
-@pytest.mark.parametrize(("keys", "answer", "expected"), KNOWN.values(), ids=KNOWN)
-def test_scenes_off_the_beaten_path_are_right_or_flagged(keys, answer, expected):
+@pytest.mark.parametrize(
+    ("keys", "answer", "expected"), DIFFICULT_SCENES.values(), ids=DIFFICULT_SCENES
+)
+def test_difficult_scenes_are_right(keys, answer, expected):
     assert answer(keys.rupture()) == expected
-    removed_limit(keys, 200)
+    check_variants(keys, 200)
 
 
-def test_mirrored_parts_that_have_not_met():
-    """A scene that misses symmetry by less than rounding is solved on both sides."""
+def test_two_mirrored_parts_that_have_not_met_yet():
+    """A scene that is symmetric except for rounding is computed on both sides."""
     profile = Prestress(-0.3, -0.3, bumps=((10.0, 1.5, 1.0), (-10.0, 1.5, 1.0)))
     other = replace(profile, bumps=(*profile.bumps, (50.0, 1e-14, 1.0)))
     x = np.linspace(-14.0, 14.0, 57)
@@ -80,9 +88,12 @@ def test_mirrored_parts_that_have_not_met():
             assert values == pytest.approx(two.map([0.7 * duration, duration], x)[name], abs=1e-6)
 
 
-@pytest.mark.parametrize("number", STICK)
+@pytest.mark.parametrize("number", STICKING_SCENES)
 def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
-    """A smooth minimum or a kink of the trailing edge, before there is a knot on either side."""
+    """The first stick is found before there is a knot on both sides of it.
+
+    It is a smooth minimum of the trailing edge or a kink.
+    """
     keys = scene(number)
     first = keys.rupture().first_stick.time
     for after in (1e-7, 1e-3):
@@ -93,7 +104,7 @@ def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
 
 
 def test_an_edge_as_steep_as_waves_is_slow_and_not_a_jump_in_each_of_its_pieces():
-    """Its slopes say that it outruns the waves, by less than they err."""
+    """Its computed slopes are below 1, by less than their error."""
     keys = scene(156)
     limit, finer = (replace(keys, refinement=n).rupture().limit for n in (1, 3))
     assert finer.time == pytest.approx(limit.time, rel=NUDGED)
@@ -101,7 +112,7 @@ def test_an_edge_as_steep_as_waves_is_slow_and_not_a_jump_in_each_of_its_pieces(
 
 @pytest.mark.parametrize("number", [0, 96])
 def test_a_pulse_ends_at_the_trailing_edge_next_to_its_front(number):
-    """Farther behind blocks slide that belong to another pulse."""
+    """Farther behind the front other blocks slide, which belong to another pulse."""
     keys = scene(number)
     ruptures = keys.rupture(), replace(keys, duration=1.1 * keys.duration).rupture()
     for side, sign in (("left", -1.0), ("right", 1.0)):
@@ -113,8 +124,8 @@ def test_a_pulse_ends_at_the_trailing_edge_next_to_its_front(number):
 
 
 @pytest.mark.parametrize("number", [39, 53, 59])
-def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monkeypatch):
-    """The scale of a part is a fraction of the duration then."""
+def test_without_leaf_springs_no_result_depends_on_the_scale(number, monkeypatch):
+    """Without leaf springs `Part.scale` is a fraction of the duration."""
     keys = scene(number)
     assert keys.gamma == 0.0
     compared = Compared(keys)
@@ -129,8 +140,8 @@ def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monke
 
 
 @cache
-def removed_limit(keys: Keys, positions: int = 16) -> bool:
-    """Check all variants of a scene: whether refinement removes a limit."""
+def check_variants(keys: Keys, positions: int = 16) -> bool:
+    """Check all variants of a scene, and return True if a finer solution has no limit."""
     compared = Compared(keys, positions)
     others = {name: compared.answers_of(change(keys)) for name, change in VARIANTS.items()}
     for other in others.values():
@@ -139,11 +150,11 @@ def removed_limit(keys: Keys, positions: int = 16) -> bool:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(ALL))
+@pytest.mark.parametrize("number", range(ALL_SCENES))
 def test_all_solutions_agree_before_either_has_a_limit(number):
-    removed_limit(scene(number))
+    check_variants(scene(number))
 
 
 @pytest.mark.slow
 def test_few_limits_are_removed_by_refinement():
-    assert sum(removed_limit(scene(number)) for number in range(ALL)) <= 0.15 * ALL
+    assert sum(check_variants(scene(number)) for number in range(ALL_SCENES)) <= 0.15 * ALL_SCENES

@@ -1,4 +1,4 @@
-"""The exact solution on piecewise-linear pre-stress: closed forms, lattices, and its own limits."""
+"""The exact solution on piecewise-linear pre-stress, against closed forms, lattices and limits."""
 
 import time
 from dataclasses import replace
@@ -10,24 +10,26 @@ from scipy.integrate import quad
 import slippulse as sp
 from slippulse.theory import ArrestingCrack, Rupture
 
-# The tail of this pre-stress ends: the left front arrives at x_minus = -4.5.
-ENDING = sp.Prestress.through([0.0, 0.0, 3.0, 3.0, 4.0], [-0.5, 1.0, 0.5, 0.0, 0.0])
-ARRESTS = ((0.0, 9.3426), (0.1, 9.1247), (0.2, 8.9504))
-# The first random scenes are in each run of the tests, the others with the slow tests.
-SLOW = [pytest.param(number, marks=pytest.mark.slow) for number in range(3, 10)]
-SCENES = [*range(3), *SLOW]
+# The tail of this pre-stress ends, so that the left front arrives at x_minus = -4.5.
+TAIL_THAT_ENDS = sp.Prestress.through([0.0, 0.0, 3.0, 3.0, 4.0], [-0.5, 1.0, 0.5, 0.0, 0.0])
+# Damping ratio and the time at which the left front arrives.
+ARREST_TIMES = ((0.0, 9.3426), (0.1, 9.1247), (0.2, 8.9504))
+# The first random scenes are in every run of the tests, the others only in the slow tests.
+SLOW_SCENES = [pytest.param(number, marks=pytest.mark.slow) for number in range(3, 10)]
+SCENES = [*range(3), *SLOW_SCENES]
 SPACINGS = (0.08, 0.04, 0.02)
 
 
 def undamped_time(tau: np.ndarray) -> np.ndarray:
-    """Arrival time of an undamped front over a ramp of slope 1, up to a constant."""
+    """Return the arrival time of an undamped front on a ramp of slope 1, up to a constant."""
     return 0.5 * (tau * np.sqrt(1.0 - tau**2) + np.arcsin(tau))
 
 
 def random_table(number: int) -> sp.Prestress:
-    """A dozen points, with a jump; each second table has a Gaussian at x = 0 in place of a peak.
+    """Return a profile through a dozen points with one jump.
 
-    They are blocks of all lattices, so that the jump has the same place in each.
+    Profiles with odd numbers have a Gaussian at x = 0 instead of a peak. The points are blocks of
+    all lattices, so that the jump is at the same place in each of them.
     """
     rng = np.random.default_rng((number, 53))
     x = SPACINGS[0] * np.unique(np.append(rng.integers(-175, 176, 10), 0))
@@ -47,7 +49,7 @@ def test_an_undamped_front_over_a_ramp_is_the_closed_form(gamma):
     x = np.linspace(0.0, 6.0, 13)
     exact = (undamped_time(profile(x[1:])) - undamped_time(0.9)) / (-0.7 / 6.0)
     assert rupture.release_time(x[1:]) == pytest.approx(exact, rel=1e-9)
-    # Beyond the table the level is uniform.
+    # Beyond the table the pre-stress is uniform.
     uniform = exact[-1] + np.sqrt(1.0 - 0.2**2) * np.array([0.5, 2.0])
     assert rupture.release_time([6.5, 8.0]) == pytest.approx(uniform, rel=1e-9)
     # On the left the front starts where the ramp itself is 1.
@@ -56,7 +58,10 @@ def test_an_undamped_front_over_a_ramp_is_the_closed_form(gamma):
 
 
 def test_slip_under_held_stress_is_a_polynomial_and_waves():
-    """Where tau is linear, u - tau t^2/2 solves the wave equation, whose solutions are waves."""
+    """Where tau is linear, u - tau t^2/2 is a solution of the wave equation.
+
+    Every solution of it is a sum of two waves.
+    """
     profile = sp.Prestress.through([-8.0, -1.0, 0.0, 2.0, 9.0], [0.2, 0.7, 1.0, 0.4, 0.8])
     rupture, h = Rupture(profile, 0.0, 0.1, duration=9.0), 0.3
     x, t = np.array([1.0, 4.0, -4.0, -0.5]), np.array([3.0, 5.5, 6.0, 4.0])
@@ -74,24 +79,24 @@ def test_slip_under_held_displacement_is_the_integral_of_its_velocity():
         assert float(rupture.slip(x, end)) == pytest.approx(slip, abs=1e-7)
 
 
-@pytest.mark.parametrize(("ratio", "arrest"), ARRESTS)
+@pytest.mark.parametrize(("ratio", "arrest"), ARREST_TIMES)
 def test_a_tail_that_ends_stops_the_left_front_at_x_minus_in_finite_time(ratio, arrest):
-    ((left, _),) = Rupture(ENDING, 0.0, ratio, duration=12.0).front_ends
+    ((left, _),) = Rupture(TAIL_THAT_ENDS, 0.0, ratio, duration=12.0).front_ends
     assert left.reason == "stops"
     assert (left.x, left.time) == pytest.approx((-4.5, arrest), abs=1e-4)
-    crack = ArrestingCrack(ENDING, ratio)
+    crack = ArrestingCrack(TAIL_THAT_ENDS, ratio)
     assert crack.balance_position == pytest.approx(-4.5, abs=1e-12)
     times = [crack.time_at(x) for x in (-4.4, -1.0)]
-    rupture = Rupture(ENDING, 0.0, ratio, duration=12.0)
+    rupture = Rupture(TAIL_THAT_ENDS, 0.0, ratio, duration=12.0)
     assert rupture.release_time([-4.4, -1.0]) == pytest.approx(times, rel=1e-8)
 
 
 def test_x_minus_of_a_trapezoid_is_the_root_of_a_quadratic():
-    """Its area is 1.75 to the right of x = 0; the ramp from -0.4 to 0.4 adds nothing."""
+    """The area is 1.75 to the right of x = 0, and 0 on the ramp from -0.4 to 0.4."""
     x, tau = [-1.0, 0.0, 0.0, 1.0, 2.5, 3.0], [-0.4, 0.4, 1.0, 1.0, 0.0, 0.0]
     position = sp.theory.prestress_balance_position(sp.Prestress.through(x, tau))
     assert position == pytest.approx(-1.0 - 1.75 / 0.4, abs=1e-12)
-    # A lower ramp balances it within itself: 1.75 - 2 y^2 = 0, where it is -4 y.
+    # A steeper ramp balances the area by itself: tau is -4 y at x = -y, and 1.75 - 2 y^2 = 0.
     x, tau = [-2.0, 0.0, 0.0, 1.0, 2.5, 3.0], [-8.0, 0.0, 1.0, 1.0, 0.0, 0.0]
     position = sp.theory.prestress_balance_position(sp.Prestress.through(x, tau))
     assert position == pytest.approx(-np.sqrt(1.75 / 2.0), abs=1e-12)
@@ -111,18 +116,18 @@ def test_lattices_tend_to_the_exact_solution_at_first_order(number, boundary):
         scene = sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx)
         run = sp.simulate(scene).sel(x=x, method="nearest")
         for name, values in exact.items():
-            both = np.isfinite(run[name].values) & np.isfinite(values)
-            # Near the end of the run one of them may not have come.
-            both &= (name == "slip") | (values < duration - 0.2)
-            errors[name].append(np.where(both, run[name].values - values, np.nan))
+            is_compared = np.isfinite(run[name].values) & np.isfinite(values)
+            # Near the end of the run one of the two events may not have happened yet.
+            is_compared &= (name == "slip") | (values < duration - 0.2)
+            errors[name].append(np.where(is_compared, run[name].values - values, np.nan))
     for name, (coarse, middle, fine) in errors.items():
         known = np.isfinite(coarse) & np.isfinite(middle) & np.isfinite(fine)
         if boundary == "displacement" or name != "stick_time":
             assert known.sum() >= 5 or rupture.limit, name
         size = max(1.0, float(np.max(np.abs(exact[name][known]), initial=0.0)))
-        # What is left after the error of first order has been extrapolated away.
-        rest = np.max(np.abs(2.0 * fine - middle)[known], initial=0.0)
-        assert rest < 1.5e-3 * size, name
+        # The remaining error, after extrapolation of the error of first order.
+        remaining_error = np.max(np.abs(2.0 * fine - middle)[known], initial=0.0)
+        assert remaining_error < 1.5e-3 * size, name
         assert np.max(np.abs(fine[known]), initial=0.0) < 0.02 * size, name
 
 
@@ -171,7 +176,7 @@ def test_a_mirrored_table_gives_the_mirrored_rupture():
 
 
 def test_each_stretch_of_a_table_that_reaches_1_nucleates():
-    """One is an interval, one a point, and a bump on the table makes a third."""
+    """One nucleation is an interval, one is a point, and a bump on the table adds a third."""
     x, tau = [-9.0, -6.0, -5.0, -1.0, 0.0, 1.0, 4.0], [0.3, 1.2, 0.4, 0.3, 1.0, 0.4, 0.3]
     profile = sp.Prestress.through(x, tau, bumps=((9.0, 0.9, 0.5),))
     rupture = Rupture(profile, 0.65, 0.1, duration=0.6)

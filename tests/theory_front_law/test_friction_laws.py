@@ -1,4 +1,4 @@
-"""Steady ruptures under other laws of friction: closed forms, other methods, scaling, limits."""
+"""Steady ruptures under other friction laws, against closed forms, scaling laws and limits."""
 
 import math
 
@@ -10,9 +10,10 @@ from slippulse.theory import law_pulses, rate_pulse, steady_pulse, weakening_pul
 from slippulse.theory.law_pulses import undamped_weakening_slip
 
 GAMMA = 2.0 / 3.0
-# tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.
-AT_WAVE_SPEED = {0.2: 11.45, 0.5: 3.687, 0.8: 1.7205, 0.95: 1.169}
-LAST_TO_STICK = {0.2: 3.44, 0.5: 1.52, 0.8: 1.09}
+# tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks, for
+# each tau_0.
+WAVE_SPEED_RATIOS = {0.2: 11.45, 0.5: 3.687, 0.8: 1.7205, 0.95: 1.169}
+MAX_STICKING_RATIOS = {0.2: 3.44, 0.5: 1.52, 0.8: 1.09}
 weakening_for = lambda tau0, ratio: tau0**2 / (GAMMA * ratio)
 
 
@@ -34,15 +35,15 @@ def test_a_crack_with_a_decaying_tail():
     assert crack.slip == pytest.approx(0.5 / GAMMA)
 
 
-@pytest.mark.parametrize(("tau0", "ratio"), AT_WAVE_SPEED.items())
+@pytest.mark.parametrize(("tau0", "ratio"), WAVE_SPEED_RATIOS.items())
 @pytest.mark.parametrize("beta", [0.02, 0.3])
-def test_speed_is_that_of_the_waves_whatever_the_damping(tau0, ratio, beta):
+def test_front_runs_at_wave_speed_at_any_damping(tau0, ratio, beta):
     pulse = weakening_pulse(tau0, GAMMA, beta, weakening_for(tau0, ratio))
     assert pulse.speed == pytest.approx(1.0, abs=1e-4)
 
 
-@pytest.mark.parametrize(("tau0", "ratio"), LAST_TO_STICK.items())
-def test_nothing_sticks_beyond_a_weakening(tau0, ratio):
+@pytest.mark.parametrize(("tau0", "ratio"), MAX_STICKING_RATIOS.items())
+def test_nothing_sticks_if_friction_weakens_too_slowly(tau0, ratio):
     assert weakening_pulse(tau0, GAMMA, 0.05, weakening_for(tau0, 1.03 * ratio)).sticks
     assert not weakening_pulse(tau0, GAMMA, 0.05, weakening_for(tau0, 0.97 * ratio)).sticks
 
@@ -72,10 +73,10 @@ def test_a_law_linear_in_slip_rate_gives_the_pulse_in_closed_form(alpha):
     assert pulse.sticks
 
 
-def test_bounded_laws_give_the_numbers_of_trials():
+def test_bounded_laws_give_known_values():
     pulse = rate_pulse(0.5, GAMMA, 0.1, sp.friction("bounded_rate", limit=0.3, v_0=1.0))
-    numbers = pulse.slip, pulse.width, pulse.peak_velocity, pulse.speed
-    assert numbers == pytest.approx((1.1605, 2.829, 0.8028, 1.2358), rel=1e-4)
+    computed = pulse.slip, pulse.width, pulse.peak_velocity, pulse.speed
+    assert computed == pytest.approx((1.1605, 2.829, 0.8028, 1.2358), rel=1e-4)
     weaker = sp.friction("rate_weakening", slope=1.5, limit=0.3)
     assert rate_pulse(0.5, GAMMA, 0.0, weaker).slip == pytest.approx(2.3984, abs=5e-5)
 
@@ -89,7 +90,7 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
 
 
 @pytest.mark.parametrize(
-    ("law", "refusal"),
+    ("law", "message"),
     [
         (
             sp.friction("slip_weakening", d_c=0.1, nucleation=2.0),
@@ -102,15 +103,15 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
         (sp.friction("linear_rate", alpha=-50.0), "'alpha': -50.0}; allowed: laws whose slip vel"),
     ],
 )
-def test_laws_without_a_pulse_are_refused(law, refusal):
-    with pytest.raises(ValueError, match=refusal):
+def test_laws_without_a_pulse_are_refused(law, message):
+    with pytest.raises(ValueError, match=message):
         rate_pulse(0.5, GAMMA, 0.1, law)
 
 
-def test_a_stiff_law_beside_weak_leaf_springs_ends_in_one_line(monkeypatch):
-    """The work is 2.4 s at gamma = 1e-6, and a thousand times that at 1e-12."""
+def test_a_stiff_law_with_weak_leaf_springs_is_refused_in_one_line(monkeypatch):
+    """The computation takes 2.4 s at gamma = 1e-6, and a thousand times longer at 1e-12."""
     law = sp.friction("bounded_rate", limit=0.3, v_0=0.2)
-    monkeypatch.setattr(law_pulses, "MOST_EVALUATIONS", 20_000)
+    monkeypatch.setattr(law_pulses, "MAX_EVALUATIONS", 20_000)
     with pytest.raises(ValueError, match=r"^gamma: 1e-12, where .*; allowed: [^\n]*$"):
         rate_pulse(0.5, 1e-12, 0.5, law)
     assert rate_pulse(0.5, 0.1, 0.5, law).sticks

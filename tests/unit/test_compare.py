@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from PIL import Image
+from report.test_pages import check_accessible
 
 from slippulse_paper.report.compare import compare, main
 
@@ -40,8 +42,8 @@ DIFFERENT = [
     # The measured numbers are compared, whatever an older study has.
     ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: 1 against 1.03"),
     ({}, {"speed": 1.03}, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
-    ({}, {"run": {"left": -2.0}}, "sweep.csv: other runs"),
-    ({}, {"run": {"gamma": 0.3}}, "sweep.csv: other runs"),
+    ({}, {"run": {"left": -2.0}}, "sweep.csv: 1 pair of runs differs in left"),
+    ({}, {"run": {"gamma": 0.3}}, "sweep.csv: 1 pair of runs differs in gamma"),
     ({}, {"verdict": "not reproduced"}, "speed: verdict 'reproduced' against 'not reproduced'"),
     ({}, {"config": ELASTIC}, "model.release: 'total' against 'elastic'"),
     # On one lattice everything agrees.
@@ -85,6 +87,81 @@ def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
     here = tree(tmp_path / "here", uncertainty=NAN)
     result = compare(here, tree(tmp_path / "other", speed=2.0, uncertainty=NAN, dx=0.02))
     assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
+
+
+def table_of(tree: Path, runs: list[dict]) -> None:
+    """Replace the measured runs of a folder."""
+    pd.DataFrame([RUN | {"dx": 0.01, "width_at_end": 1.0} | run for run in runs]).to_csv(
+        tree / TABLE, index=False
+    )
+
+
+def test_runs_are_joined_by_their_parameters_in_any_order(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": left, "speed": left} for left in (0.1, 0.2, 0.3)])
+    table_of(other, [{"left": left, "speed": left} for left in (0.4, 0.3, 0.2)])
+    result = compare(here, other)
+    runs = result.runs[0]
+    assert (runs["same"], runs["altered"], runs["new"], runs["old"]) == (2, 1, [], [])
+    assert result.apart == [] and result.compared == result.agree == 4
+    # What was altered is shown beside what it was, and is not judged.
+    altered = result.numbers[result.numbers["outcome"] == "altered run"]
+    assert {*altered["run"]} == {"left 0.1 (old: left 0.4)"}
+    assert altered.set_index("quantity").loc["speed", ["new", "old"]].tolist() == [0.1, 0.4]
+
+
+def test_runs_of_one_side_are_listed(tmp_path, capsys):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": left, "gamma": 0.3} for left in (0.1, 0.2)])
+    table_of(other, [{"left": left, "gamma": 0.5} for left in (0.1, 0.2, 0.3)])
+    result = compare(here, other)
+    assert result.runs[0]["altered"] == 2 and result.runs[0]["keys"] == ["gamma"]
+    assert result.runs[0]["old"] == ["left 0.3, gamma 0.5"] and result.runs[0]["new"] == []
+    assert main([str(here), str(other)]) == 1
+    assert "sweep.csv: only in the other tree: left 0.3, gamma 0.5" in capsys.readouterr().out
+
+
+def test_spacings_of_a_convergence_study_are_not_mixed(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"dx": dx, "speed": dx} for dx in (0.04, 0.02)])
+    table_of(other, [{"dx": dx, "speed": dx} for dx in (0.02, 0.01, 0.04)])
+    result = compare(here, other)
+    assert result.apart == [] and result.unknown == 0 and result.runs[0]["same"] == 2
+    assert result.runs[0]["old"] == ["dx 0.01"]
+
+
+def test_the_page_has_old_beside_new(tmp_path, capsys):
+    here = tree(tmp_path / "here", run={"gamma": 0.3}, speed=2.0, verdict="not reproduced")
+    other = tree(tmp_path / "other", config=ELASTIC)
+    for folder, names in ((here, ("fig01_one", "fig02_two")), (other, ("fig01_one",))):
+        (folder / "figures").mkdir()
+        for name in names:
+            Image.new("RGB", (1500, 900)).save(folder / f"figures/{name}.png")
+            (folder / f"figures/{name}.csv").write_text("x\n1\n")
+    page = here / "compare.html"
+    assert main([str(here), str(other), str(page)]) == 0
+    assert f"Open {page}" in capsys.readouterr().out
+    text = page.read_text(encoding="utf-8")
+    outline = check_accessible(text)
+    assert len(outline.all("img")) == 3
+    assert all(image["src"].startswith("data:image/png") for image in outline.all("img"))
+    assert {image["width"] for image in outline.all("img")} == {"1000"}
+    for shown in ("model.release", "✓ reproduced", "× not reproduced", "New: not made"):
+        assert shown in text.replace("Old: not made", "New: not made"), shown
+    assert text.count("The numbers drawn are equal.") == 1
+    assert "gamma 0.3 (old: gamma 0.65)" in text and "altered run" in text
+    numbers = pd.read_csv(here / "compare.csv")
+    assert numbers.set_index("quantity").loc["speed", "old_uncertainty"] == 0.01
+
+
+def test_a_page_without_a_folder_and_a_broken_figure_are_refused(tmp_path, capsys):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    assert main([str(here), str(other), str(tmp_path / "none/compare.html")]) == 1
+    assert "none: no such folder" in capsys.readouterr().out
+    (here / "figures").mkdir()
+    (here / "figures/fig01_one.png").write_text("text")
+    assert main([str(here), str(other), str(here / "compare.html")]) == 1
+    assert "fig01_one.png: cannot be read" in capsys.readouterr().out
 
 
 TEXT = ",".join(RUN) + "\n" + ",".join(["x"] * len(RUN)) + "\n"

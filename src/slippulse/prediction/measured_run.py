@@ -15,7 +15,7 @@ from ..model.checks import check_that
 from ..model.layer_units import layer_of
 from ..model.prestress import prestress_from
 from ..model.scene import check_run_attributes
-from ..theory.prestress_pieces import nucleations
+from ..theory.prestress_pieces import nucleation_intervals
 from .comparison import measured_row
 
 # The settings under ``measure`` in the shipped configuration. They are repeated here, because that
@@ -121,7 +121,7 @@ def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     is_held = run.attrs["boundary"] == "displacement"
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
         row |= first_stick(run)
-    has_several_nucleations = len(nucleations(profile)) > 1
+    has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
         row |= {name: math.nan for name in RUPTURE_LENGTHS if name in row}
     reason = _explain_missing_transition(row, has_several_nucleations)

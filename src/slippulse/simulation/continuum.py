@@ -13,7 +13,7 @@ from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.solution import MARGIN_BLOCKS, Solution
-from ..theory.prestress_pieces import nucleations
+from ..theory.prestress_pieces import nucleation_intervals
 from ..theory.rupture import Rupture
 from .exact_rupture import exact_rupture
 
@@ -35,7 +35,7 @@ def solve_exactly(
     if progress is not None:
         progress(0.0)
     # Without a nucleation everything stays at rest.
-    rupture = exact_rupture(scene) if nucleations(scene.prestress) else None
+    rupture = exact_rupture(scene) if nucleation_intervals(scene.prestress) else None
     # The positions are the multiples of dx in the part that is released, and a margin.
     ends = [end.x for pair in rupture.front_ends for end in pair] if rupture else [0.0]
     first, last = min(ends), max(ends)

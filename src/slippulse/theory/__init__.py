@@ -1,6 +1,7 @@
-"""Closed forms and quadratures, without simulation.
+"""Exact results of the theory: closed formulas and integrals, without simulation.
 
-They know nothing of the lattice code, so that an agreement of the two means something.
+No module in here imports the lattice code, so that an agreement of theory and simulation is a real
+test of both.
 """
 
 import lazy_loader

@@ -1,4 +1,8 @@
-"""A crack under a stress boundary, in closed form: its left front meets negative pre-stress."""
+"""A crack under a stress boundary, in closed form, whose left front meets negative pre-stress.
+
+Without leaf springs the velocity behind the fronts is a sum of two waves. The left front is slowed
+by the negative pre-stress and approaches the position x_minus, but never arrives there.
+"""
 
 from functools import partial
 
@@ -11,23 +15,23 @@ from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
-# Characteristics in each third of the pulse far away.
-SAMPLES = 400
+# Number of characteristics in each of the three sections of the far pulse.
+SAMPLES_PER_SECTION = 400
 
 
 class ArrestingCrack(ExplainsRemovedNames):
-    """The crack whose left front slows for ever, without leaf springs.
+    """A crack without leaf springs, whose left front slows down for ever.
 
     du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,
-    both from 0 where a front outruns the waves. Where tau < 0 the left front is slower than the
-    waves and, with no fracture energy, slip, slip velocity and strain vanish there. So a
-    characteristic that entered at e ends on the left front at X with
+    both from 0 on a front that outruns the waves. Where tau < 0, the left front is slower than the
+    waves, and slip, slip velocity and strain vanish on it, because there is no fracture energy. So
+    a characteristic that entered the rupture at e ends on the left front at X with
 
         Int_X^e tau dx = 0,   t = e + T(e) - X,
 
     and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is
     infinite. Source: equation (11) and section III C of the paper for x_minus; the rest follows.
-    Raises ValueError: outside these ranges; of every method, outside those that it states.
+    Raises ValueError: if an argument, here or of a method, is outside of its range.
 
     Parameters
     ----------
@@ -46,13 +50,16 @@ class ArrestingCrack(ExplainsRemovedNames):
     ) -> None:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
-        # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
+        # Beyond this position the profile is 0 to rounding, and the right front runs at the wave
+        # speed.
         self.end = max([48.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
-        self.fronts = fast_fronts(prestress, damping_ratio, release, self.end)
+        self.fronts = fast_fronts(
+            prestress, damping_ratio=damping_ratio, release=release, reach=self.end
+        )
         self.zero = float(self.fronts.edges[0])
 
-    def _entry(self, position: float) -> float:
-        """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
+    def _entry_of(self, position: float) -> float:
+        """Return the entry of the characteristic that ends on the left front at a position."""
         last, balance = self.end - 1e-9, partial(integral, self.prestress, position)
         if balance(last) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
@@ -60,7 +67,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
-        """Time when the left front reaches a position, in (x_minus, 0].
+        """Return the time at which the left front reaches a position.
 
         Parameters
         ----------
@@ -73,11 +80,11 @@ class ArrestingCrack(ExplainsRemovedNames):
         check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
-        entry = self._entry(position)
+        entry = self._entry_of(position)
         return entry + float(self.fronts.arrival(entry)) - position
 
     def transition(self, fraction: float) -> ExactTransition:
-        """Time when the left front has covered a fraction of |x_minus|, and length then.
+        """Return time and length when the left front has covered a fraction of ``|x_minus|``.
 
         Parameters
         ----------
@@ -97,24 +104,24 @@ class ArrestingCrack(ExplainsRemovedNames):
 
     @property
     def peak_velocity(self) -> float:
-        """Largest slip velocity far away: half the integral of tau to the right of its zero x*."""
+        """Largest slip velocity far away: half the integral of tau right of its zero."""
         return 0.5 * integral(self.prestress, self.zero, self.end)
 
     def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
-        """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right.
+        """Return x - t and du/dt on characteristics of the pulse that runs far to the right.
 
         Returns
         -------
         tuple of arrays : x - t of the characteristics, and du/dt on them
         """
-        right = np.linspace(0.5 * self.end, 0.0, SAMPLES)
-        left = np.linspace(0.0, self.zero, SAMPLES)
+        right = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
+        left = np.linspace(0.0, self.zero, SAMPLES_PER_SECTION)
         entries = np.concatenate([right, left[1:]])
         delay = entries - self.fronts.arrival(entries)
-        # Denser towards x_minus, which is never reached.
-        fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES)[1:]
+        # The samples are denser towards x_minus, which is never reached.
+        fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES_PER_SECTION)[1:]
         slow = self.zero + (self.balance_position - self.zero) * fraction
-        entered = np.array([self._entry(x) for x in slow])
+        entered = np.array([self._entry_of(x) for x in slow])
         slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
         positions = np.concatenate([entries, slow])
         velocity = [0.5 * integral(self.prestress, x, self.end) for x in positions]

@@ -1,4 +1,8 @@
-"""The distance that a steady pulse enters into a barrier of negative pre-stress."""
+"""The distance that a steady pulse enters into a barrier of negative pre-stress.
+
+A front at constant speed, as long as the pulse behind it, is continued into the barrier as a slow
+front (`slow_front`) until it stops.
+"""
 
 import math
 
@@ -11,20 +15,22 @@ from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
-from .prestress_pieces import uniform
+from .prestress_pieces import uniform_background
 from .slow_front import Progress, SlowFront
 
-# Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
-# cover, in units of the memory of the pulse.
-LONGEST = 2.0
-MEMORY = 1.5
-# The smallest pre-stress before a barrier, and the fastest front, whose pulse takes 12000 panels.
-LOWEST = 1e-4
-FASTEST = 5e3
-# Barriers in which slow fronts were found to be resolved: the weakest, in units of the pre-stress
-# before it, and the strongest.
-WEAKEST = 0.005
-STRONGEST = 1e6
+# Largest length of a panel before the barrier, in units of 1/sqrt(gamma).
+MAX_PANEL_LENGTH = 2.0
+# Length that the panels before the barrier cover, in units of the memory of the pulse.
+MEMORY_FACTOR = 1.5
+# The smallest pre-stress before a barrier.
+MIN_PRESTRESS = 1e-4
+# The largest front speed, for which the pulse needs 12000 panels.
+MAX_SPEED = 5e3
+# The weakest barrier in which slow fronts are known to be resolved, in units of the pre-stress
+# before it.
+MIN_BARRIER_RATIO = 0.005
+# The strongest such barrier.
+MAX_BARRIER = 1e6
 
 
 def barrier_depth(
@@ -34,14 +40,16 @@ def barrier_depth(
     damping_ratio: float = 0.0,
     release: str = "total",
 ) -> float:
-    """Depth (units of H) at which a steady pulse dies in a barrier; a shorter barrier is passed.
+    """Return the depth (units of H) at which a steady pulse dies in a barrier.
+
+    A pulse passes through a barrier that is shorter than this.
 
     Raises ValueError: outside the domain.
     Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
 
     Parameters
     ----------
-    tau0 : float, pre-stress before it, from 1e-4 to 1, whose front is no faster than 5000
+    tau0 : float, pre-stress before the barrier, from 1e-4 to 1, whose front is no faster than 5000
     tau_barrier : float, pre-stress of the barrier, from -1e6 to -tau0/200
     gamma : float, elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
@@ -55,18 +63,25 @@ def barrier_depth(
     >>> round(barrier_depth(0.5, -0.5, 0.65), 3)
     3.618
     """
-    check_number("tau0", tau0, at_least=LOWEST, below=1.0)
-    check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
+    check_number("tau0", tau0, at_least=MIN_PRESTRESS, below=1.0)
+    check_number(
+        "tau_barrier", tau_barrier, at_least=-MAX_BARRIER, at_most=-MIN_BARRIER_RATIO * tau0
+    )
     check_domains(gamma=gamma, damping_ratio=damping_ratio)
     speed = float(front_speed(tau0, damping_ratio, release))
     place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
-    check_number(f"front speed {place}", speed, at_most=FASTEST)
-    # The depth is found at gamma = 1, behind a front as far back as its pulse remembers.
-    memory = MEMORY * pulse_at_speed(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    check_number(f"front speed {place}", speed, at_most=MAX_SPEED)
+    # The depth is computed at gamma = 1, behind a front that is as long as the memory of its pulse.
+    memory = (
+        MEMORY_FACTOR
+        * pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
+        / (speed - 1.0)
+        * speed
+    )
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
-    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
+    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / MAX_PANEL_LENGTH)) + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)
-    background = uniform(tau_barrier)
+    background = uniform_background(tau_barrier)
     level = Prestress(left=tau_barrier, right=tau_barrier, width=None)
     stop, progress = None, Progress()
     while stop is None:
@@ -83,13 +98,14 @@ def barrier_depth(
 
 
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
-    """Estimate of the depth (units of H): (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
+    """Return an estimate of the depth, (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
 
     Raises ValueError: outside the domain. Source: the authors' public code of later work.
 
     Parameters
     ----------
-    tau0, tau_barrier, gamma : float, pre-stress before it, in (0, 1), in it, < 0, and gamma > 0
+    tau0, tau_barrier, gamma : floats, pre-stress before the barrier, in (0, 1), pre-stress in it,
+        < 0, and elasticity ratio, > 0
 
     Returns
     -------

@@ -1,7 +1,8 @@
-"""The steady slip pulse, with damping, and the paper's estimates."""
+"""The steady slip pulse in closed form, with damping, and the paper's estimates."""
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,17 +12,25 @@ from ..model.prestress import Prestress
 from .domains import check_domains
 
 
+class PulseProfile(NamedTuple):
+    """Slip, slip velocity and slip acceleration of a pulse at some positions."""
+
+    slip: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+
 @dataclass(frozen=True)
 class SteadyPulse:
     """A steady pulse in units of H, with xi = x - v t <= 0 behind the front at xi = 0.
 
-    `steady_pulse` and `paper_pulse` make one.
+    `steady_pulse` and `paper_pulse` compute one.
 
     Parameters
     ----------
     tau0, gamma, beta, speed, rate_strengthening : floats, as in `steady_pulse`
     width : float, distance from the front to where the slip velocity returns to 0
-    slip, stress_drop : floats, slip that is left behind, and gamma times that
+    slip, stress_drop : floats, slip that remains behind the pulse, and gamma times this slip
     peak_velocity : float, largest slip velocity
     growth, wavenumber : floats, p and q of the complex pair of roots p +- i q
     """
@@ -43,8 +52,8 @@ class SteadyPulse:
         """Position xi of the largest slip velocity."""
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
-    def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slip, slip velocity and slip acceleration, at rest outside of the pulse.
+    def profile(self, xi) -> PulseProfile:
+        """Return slip, slip velocity and slip acceleration; at rest outside of the pulse.
 
         Parameters
         ----------
@@ -52,7 +61,7 @@ class SteadyPulse:
 
         Returns
         -------
-        tuple of arrays of the shape of xi
+        PulseProfile : a tuple of arrays of the shape of xi
         """
         xi = as_numbers("xi", xi)
         p, q = self.growth, self.wavenumber
@@ -65,14 +74,14 @@ class SteadyPulse:
         size = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
         velocity = np.where(inside, -size * decay * sine, 0.0)
         acceleration = np.where(inside, self.speed * size * decay * (p * sine + q * cosine), 0.0)
-        return slip, velocity, acceleration
+        return PulseProfile(slip, velocity, acceleration)
 
 
 @np.errstate(over="raise", invalid="raise", divide="raise")
 def pulse_at_speed(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
-    """The pulse of `theory.steady_pulse` behind a front of a given speed."""
+    """Return the steady pulse (`theory.steady_pulse`) behind a front of a given speed."""
     check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)
     tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
@@ -90,24 +99,37 @@ def pulse_at_speed(
         slip = tau0 / gamma * (1.0 + np.exp(-p * width))
         amplitude = v * tau0 * np.hypot(p, q) / gamma
         peak = amplitude * np.exp(-p / q * np.arctan2(q, p))
-        sizes = float(width), float(slip), float(peak)
-        # Floats of Python overflow without an error.
-        if not all(0.0 < size < math.inf for size in sizes):
+        width, slip, peak = float(width), float(slip), float(peak)
+        # Python's floats can overflow without an error.
+        if not all(0.0 < size < math.inf for size in (width, slip, peak)):
             raise OverflowError
     except (ArithmeticError, ValueError):
         place, critical = f"at gamma = {gamma:.6g}", critical_rate_strengthening(gamma, v)
-        message = f"speed: {v:.6g} {place}; allowed: numbers whose pulse can be computed"
+        message = f"speed: {v:.6g} {place}; allowed: values whose pulse can be computed"
         if abs(alpha) > 0.5 * critical:
             allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
             message = f"rate_strengthening: {alpha!r}; allowed: {allowed}, or no pulse is steady"
         raise ValueError(message) from None
-    return SteadyPulse(tau0, gamma, beta, v, *sizes, float(gamma * slip), p, q, alpha)
+    return SteadyPulse(
+        tau0=tau0,
+        gamma=gamma,
+        beta=beta,
+        speed=v,
+        width=width,
+        slip=slip,
+        peak_velocity=peak,
+        stress_drop=float(gamma * slip),
+        growth=p,
+        wavenumber=q,
+        rate_strengthening=alpha,
+    )
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): no pulse is steady beyond +- alpha_c.
+    """Return alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2), beyond which no pulse is steady.
 
-    Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
+    It limits rate strengthening of either sign.
+    Source: the wavenumber q of the steady pulse is 0 at alpha_c (beta -> 0). Without damping of the
     front alpha_c is 2 tau_0 sqrt(gamma). Raises ValueError: outside the domain.
 
     Parameters
@@ -128,7 +150,7 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's undamped pulse, section III A and appendix C.
+    """Return the paper's undamped pulse (section III A and appendix C).
 
     Raises ValueError: outside the domain.
 
@@ -146,13 +168,13 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     2.0
     """
     check_domains(tau0=tau0)
-    return pulse_at_speed(tau0, gamma, 0.0, 1.0 / math.sqrt(1.0 - tau0 * tau0))
+    return pulse_at_speed(tau0, gamma=gamma, beta=0.0, speed=1.0 / math.sqrt(1.0 - tau0 * tau0))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
-    """The paper's estimate of the transition under a displacement boundary, section III B.
+    """Return the paper's estimate of the transition under a displacement boundary.
 
-    It neglects the elastic coupling and the Gaussian at nucleation.
+    It neglects the elastic coupling and the Gaussian at nucleation. Source: section III B.
     Raises ValueError: outside the domain.
 
     Parameters
@@ -174,17 +196,18 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 
 
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
-    """The paper's estimate of the transition under a stress boundary, section III C.
+    """Return the paper's estimate of the transition under a stress boundary.
 
-    It takes front speeds as 1. Raises as `prestress_balance_position`.
+    It takes both front speeds as 1. Source: section III C. It raises the same errors as
+    `prestress_balance_position`.
 
     Parameters
     ----------
-    prestress : Prestress, as `prestress_balance_position` takes it
+    prestress : Prestress, with the conditions of `prestress_balance_position`
 
     Returns
     -------
-    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
+    tuple of floats : ``T_trans = |x_minus|`` and ``L_trans = 2 |x_minus|``
     """
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

@@ -12,16 +12,16 @@ from .exact_transition import uniform_transition_time
 from .front_speeds import front_speed, front_speed_undamped
 from .pulse import steady_pulse
 
-FACTOR_OF_TWO = (
-    "The paper prints the strength drop over sqrt(2 G rho), half of what follows from its own unit"
-    " of slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G); the printed value"
-    " has the unit of slip under held stress, and is the peak of the mean over the height."
+PEAK_VELOCITY_NOTE = (
+    "The paper prints the strength drop divided by sqrt(2 G rho), half of what follows from its own"
+    " unit of slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G); the printed"
+    " value has the unit of slip under held stress, and is the peak of the mean over the height."
 )
-STRENGTH_DROP = (
+STRESS_DROP_NOTE = (
     "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop; stress falls by twice"
     " the initial stress above kinetic friction, by its equation (C13)."
 )
-NO_NUCLEATION = (
+TRANSITION_NOTE = (
     "The paper neglects the elastic coupling; exact for a rupture that starts at a point."
 )
 
@@ -29,7 +29,7 @@ NO_NUCLEATION = (
 def layer_results(
     layer: Layer, initial_stress: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> pd.DataFrame:
-    """Transition and steady pulse of a layer whose top is held, by the paper and exactly.
+    """Return transition and steady pulse of a layer with held top, by the paper and exactly.
 
     The initial stress is uniform. Source: section IV A of the paper for transition length, pulse
     width and peak slip velocity, as printed; section III for the others.
@@ -41,12 +41,13 @@ def layer_results(
     initial_stress : float, Pa
         Shear stress along the interface, between kinetic and static friction.
     damping_ratio, release : as in `front_speed`
-        They select the exact front speed; the pulse behind it is that of the continuum limit.
+        They determine the exact front speed; the pulse behind it is that of the continuum limit.
 
     Returns
     -------
     pandas.DataFrame
-        A row per quantity with columns unit, paper, exact, and note, which explains a difference.
+        One row for each quantity with columns unit, paper, exact, and note, which explains a
+        difference between the two values.
 
     Raises
     ------
@@ -68,20 +69,20 @@ def layer_results(
     check_number("initial_stress", initial_stress, above=lowest, below=highest)
     tau0, gamma = float(layer.convert_from_si(initial_stress, "stress")), layer.gamma
     speed = float(front_speed(tau0, damping_ratio, release))
-    time = uniform_transition_time(tau0, gamma, damping_ratio, release)
+    time = uniform_transition_time(tau0, gamma=gamma, damping_ratio=damping_ratio, release=release)
     paper, exact = paper_pulse(tau0, gamma), steady_pulse(tau0, gamma, speed=speed)
     paper_time, paper_length = paper_transition_displacement(tau0, gamma)
-    # Twice this is the peak velocity, since the peak of the paper's pulse is 1/sqrt(gamma).
+    # The peak velocity is twice this, since the peak of the paper's pulse is 1/sqrt(gamma).
     printed = layer.strength_drop / math.sqrt(2.0 * layer.shear_modulus * layer.density)
     paper_peak = layer.convert_from_si(printed, "slip_velocity")
     rows = {
         "front_speed_right": (front_speed_undamped(tau0), speed, ""),
-        "transition_time": (paper_time, time, NO_NUCLEATION),
-        "transition_length": (paper_length, 2.0 * speed * time, NO_NUCLEATION),
+        "transition_time": (paper_time, time, TRANSITION_NOTE),
+        "transition_length": (paper_length, 2.0 * speed * time, TRANSITION_NOTE),
         "pulse_width": (paper.width, exact.width, ""),
         "pulse_slip": (paper.slip, exact.slip, ""),
-        "pulse_peak_velocity": (paper_peak, exact.peak_velocity, FACTOR_OF_TWO),
-        "pulse_stress_drop": (1.0, exact.stress_drop, STRENGTH_DROP),
+        "pulse_peak_velocity": (paper_peak, exact.peak_velocity, PEAK_VELOCITY_NOTE),
+        "pulse_stress_drop": (1.0, exact.stress_drop, STRESS_DROP_NOTE),
     }
     table = []
     for name, (paper_value, exact_value, note) in rows.items():
@@ -95,9 +96,10 @@ def layer_results(
 
 
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
-    """Static stress drop of a fault with a compliant damage zone: section IV C 2 of the paper.
+    """Return the static stress drop of a fault with a compliant damage zone.
 
     It is G delta/(H + (G/G_r) H_r), in Pa, if a displacement is imposed far away on the rock.
+    Source: section IV C 2 of the paper.
     Raises ValueError: outside these ranges.
 
     Parameters

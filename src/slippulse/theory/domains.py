@@ -1,4 +1,4 @@
-"""Domains of the arguments of formulas."""
+"""Allowed ranges (domains) of the arguments of formulas, and checks of them."""
 
 from typing import Any
 
@@ -6,8 +6,8 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_number
 
-# Beyond this damping ratio, with tau_0 as near 1 as floating point comes, products of speed and
-# damping would overflow.
+# The largest damping ratio: with tau_0 as near to 1 as floating point allows, products of speed and
+# damping ratio would overflow beyond it.
 DOMAINS: dict[str, dict[str, Any]] = {
     "tau0": {"above": 0.0, "below": 1.0},
     "gamma": {"above": 0.0},
@@ -21,13 +21,16 @@ DOMAINS: dict[str, dict[str, Any]] = {
 
 
 def check_domains(**values: Any) -> None:
-    """Refuse arguments of formulas that are outside of DOMAINS."""
+    """Raise ValueError if an argument is outside of its range in DOMAINS."""
     for key, value in values.items():
         check_number(key, value, **DOMAINS[key])
 
 
 def broadcast_numbers(**values: Any) -> tuple[np.ndarray, ...]:
-    """Arrays of values, broadcast to each other; values outside of their domains are refused."""
+    """Return values as arrays that are broadcast to each other.
+
+    Raise ValueError if a value is outside of its range in DOMAINS.
+    """
     arrays = {key: as_numbers(key, value, **DOMAINS.get(key, {})) for key, value in values.items()}
     try:
         return np.broadcast_arrays(*arrays.values())

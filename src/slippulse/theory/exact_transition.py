@@ -1,4 +1,4 @@
-"""The crack-pulse transition under leaf springs, in scenes that first stick at x = 0."""
+"""The crack-pulse transition under leaf springs, in scenes that stick first at x = 0."""
 
 import numpy as np
 
@@ -11,19 +11,20 @@ from .front_speeds import front_speed
 from .part import Part
 from .two_fronts import ExactTransition, fast_fronts
 
-# Largest distance, in wave lengths, that is kept of a uniform front that hardly outruns the waves.
-FARTHEST = 10_000
+# Largest distance, in wave lengths, up to which a uniform front is computed that is hardly faster
+# than the waves.
+MAX_REACH = 10_000
 
 
 def exact_transition_displacement(
     prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> ExactTransition:
-    """T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
+    """Return T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
 
-    Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front
+    Raises ValueError: outside these ranges; if the profile also nucleates elsewhere; or if a front
     needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
     Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
-    `Rupture.transition` looks at all positions.
+    `Rupture.transition` examines all positions.
 
     Parameters
     ----------
@@ -48,29 +49,35 @@ def exact_transition_displacement(
         raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
-    # The past of (0, t) begins at x + T(x) = t, so x < t.
-    fronts = fast_fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
-    stick = float(Part(fronts, gamma, 2.0 * period).search(np.zeros(1))[0])
+    # The past of (0, t) begins where x + T(x) = t, so that x < t.
+    fronts = fast_fronts(
+        prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
+    )
+    stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        reach = float(front_speed(level, damping_ratio, release)) * stick + _extent(prestress)
-        fronts = fast_fronts(prestress, damping_ratio, release, reach, gamma)
+        reach = float(front_speed(level, damping_ratio, release)) * stick + _distance_to_uniform(
+            prestress
+        )
+        fronts = fast_fronts(
+            prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
+        )
     return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
 
 
-def _extent(prestress: Prestress) -> float:
-    """Distance beyond which the pre-stress is uniform."""
+def _distance_to_uniform(prestress: Prestress) -> float:
+    """Return the distance beyond which the pre-stress is uniform."""
     return max([20.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
 
 
 def uniform_transition_time(
     tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> float:
-    """T_trans, like 1/sqrt(gamma), in uniform pre-stress that is nucleated at one point.
+    """Return T_trans in uniform pre-stress with a point-like nucleation.
 
     Raises ValueError: outside the domain.
-    Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v. With w = 1/v and
-    q = sqrt(gamma) t/(1 + w) it is that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, which
-    depends on v alone.
+    Source: the first zero of du/dt at x = 0 behind the fronts ``T(x) = |x|/v``. With w = 1/v and
+    q = sqrt(gamma) t/(1 + w), du/dt is proportional to Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) )
+    ds, whose zero depends on v alone.
 
     Parameters
     ----------
@@ -88,10 +95,10 @@ def uniform_transition_time(
     """
     check_domains(tau0=tau0, gamma=gamma, damping_ratio=damping_ratio)
     slowness = 1.0 / float(front_speed(tau0, damping_ratio, release))
-    # A factor of the velocity does not move its zero; a tiny one would lose digits.
+    # The zero of du/dt does not depend on the size of tau, but a tiny tau would lose digits.
     tau = max(tau0, 1e-9)
-    # The fronts of a slow rupture need not be known beyond where the waves of the centre come from.
-    reach = 12.0 / max(1.0 - slowness**2, 12.0 / FARTHEST)
+    # The front of a slow rupture is needed only as far as waves from it reach the centre in time.
+    reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges, slowness, tau))
-    return float(Part(curve, 1.0, 10.0).search(np.zeros(1))[0] / np.sqrt(float(gamma)))
+    return float(Part(curve, 1.0, 10.0).find_stick_times(np.zeros(1))[0] / np.sqrt(float(gamma)))

@@ -1,4 +1,8 @@
-"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it."""
+"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)).
+
+Such a front feels nothing from behind, so that its speed depends only on the pre-stress at its
+position (`slowness`). `FastFront` integrates 1/v in panels that are divided until they resolve it.
+"""
 
 from bisect import bisect_right
 from dataclasses import dataclass, replace
@@ -10,33 +14,41 @@ from ..model.checks import check_choice, check_kind, check_number
 from ..model.prestress import Interval, Prestress
 from ..model.release import RELEASES
 from ..model.runaway import check_runaway
-from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel, Point
-from .prestress_pieces import EXTENT, Piece, analytic, pieces
+from .curve import NODE_COUNT, NODES, NODES_TO_INTEGRALS, NODES_TO_SERIES, WEIGHTS, Panel, Point
+from .prestress_pieces import GAUSSIAN_EXTENT, Piece, continued_prestress, split_into_pieces
 from .riemann import kernel_rate
 from .slowness import LARGEST_RATIO, slowness
 
-# Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
-RESOLVED = 1e-10
-NARROWEST = 1e-9
-# A panel is at most this long in units of 1/sqrt(gamma): in proper length, for the waves, and in x,
-# for the state at rest.
-LONGEST = 2.0
-LONGEST_AT_REST = 4.0
-LONGEST_WITHOUT_SPRINGS = 8.0
-MOST_PANELS = 20_000
-# Slow fronts into lower pre-stress are not followed.
-LOWEST = -1e20
-# The largest factor for the numbers of panels, positions and times.
-FINEST = 10
-# Gaussians are narrow below this width, in units of 1/sqrt(gamma).
-NARROW = 0.1
-# Edges of panels stand at these multiples of the width of a Gaussian.
-FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
+# A panel is resolved if the last two Legendre coefficients of 1/v and of tau, times its length, are
+# below this.
+SERIES_TOLERANCE = 1e-10
+# Panels shorter than this are not divided.
+MIN_PANEL_LENGTH = 1e-9
+# Largest length of a panel in units of 1/sqrt(gamma): its proper length sqrt(dx^2 - dT^2), for the
+# phase of the waves, and its length in x, for the static solution. The third number is a length in
+# x without leaf springs.
+MAX_PHASE = 2.0
+MAX_SCALED_LENGTH = 4.0
+MAX_LENGTH_WITHOUT_SPRINGS = 8.0
+MAX_PANELS = 20_000
+# Slow fronts into pre-stress below this are not followed.
+MIN_PRESTRESS = -1e20
+# The largest factor by which the numbers of panels, positions and times may be multiplied.
+MAX_REFINEMENT = 10
+# Gaussians are narrow if their width, in units of 1/sqrt(gamma), is below this.
+NARROW_WIDTH = 0.1
+# Features are these multiples of the width of a Gaussian from its centre. Panels begin and end at
+# features.
+FEATURE_MULTIPLES = np.array([-GAUSSIAN_EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, GAUSSIAN_EXTENT])
 
 
 @dataclass
 class FastFront:
-    """The law of motion of a front that outruns the waves; it makes the panels of its path."""
+    """The law of motion of a front that outruns the waves, and the panels of its path.
+
+    pieces are the pieces of positive and negative pre-stress. features are positions at which a
+    panel begins or ends. kernel_rate is the rate of the waves (`riemann.kernel_rate`).
+    """
 
     prestress: Prestress
     gamma: float
@@ -51,26 +63,28 @@ class FastFront:
         check_number("gamma", self.gamma, at_least=0.0)
         check_number("damping_ratio", self.damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
         check_choice("release", self.release, RELEASES)
-        check_number("refinement", self.refinement, integer=True, at_least=1, at_most=FINEST)
+        check_number(
+            "refinement", self.refinement, integer=True, at_least=1, at_most=MAX_REFINEMENT
+        )
         check_number("rate_strengthening", self.alpha)
         check_runaway(self.gamma, self.alpha)
         self.gamma, self.alpha = float(self.gamma), float(self.alpha)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
-        # An edge of a panel stands at each feature, so that none falls between two nodes.
+        # A panel begins at each feature, so that no feature lies unnoticed between two nodes.
         centre, width = np.array(prestress.gaussians).reshape(-1, 2).T[..., None]
-        features = centre + width * FEATURES
+        features = centre + width * FEATURE_MULTIPLES
         self.features = np.unique(features)
-        # Those of the Gaussians that a front crosses within a fraction of a period of the waves.
-        narrow = (width[:, 0] * self.kernel_rate < NARROW) | (self.kernel_rate == 0.0)
+        # Features of Gaussians that a front crosses in a small fraction of a wave period.
+        narrow = (width[:, 0] * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
         self.narrow_features = features[narrow].ravel()
         levels = np.array(prestress.intervals)[:, 2:]
         lowest = float(np.min(prestress(self.features), initial=np.min(levels)))
-        check_number("lowest prestress", lowest, at_least=LOWEST)
-        self.pieces = pieces(prestress)
+        check_number("lowest prestress", lowest, at_least=MIN_PRESTRESS)
+        self.pieces = split_into_pieces(prestress)
         self._piece_ends = [piece.right for piece in self.pieces]
 
     def mirrored(self) -> "FastFront":
-        """The law at -x."""
+        """Return the law for the pre-stress reflected at x = 0."""
         profile = self.prestress
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
@@ -80,12 +94,12 @@ class FastFront:
         return replace(self, prestress=turned)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
-        """1/v at each pre-stress."""
+        """Return 1/v at each pre-stress."""
         return slowness(tau, self.damping_ratio, self.release)
 
     @property
     def marks(self) -> list[float]:
-        """Positions where the background jumps, or the front changes between fast and slow."""
+        """Positions where the background jumps or where the front turns fast or slow."""
         return [
             piece.right
             for piece, after in pairwise(self.pieces)
@@ -95,21 +109,27 @@ class FastFront:
         ]
 
     def piece_right_of(self, x: float) -> Piece:
-        """The piece that begins at x, or holds it."""
+        """Return the piece that contains x, or that begins at x."""
         return self.pieces[bisect_right(self._piece_ends, x)]
 
-    def longest(self, background: Interval) -> float:
-        """Length of the longest panel, along which the phase of the springs changes by LONGEST."""
+    def max_panel_length(self, background: Interval) -> float:
+        """Return the length of the longest panel.
+
+        The phase of the waves changes by MAX_PHASE along it.
+        """
         level = max(background.left_value, background.right_value)
         if self.kernel_rate == 0.0:
-            return LONGEST_WITHOUT_SPRINGS / self.refinement
+            return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
         proper = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
-        longest = min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST)
-        return longest / self.kernel_rate / self.refinement
+        length = min(MAX_PHASE / max(proper, 1e-3), MAX_SCALED_LENGTH)
+        return length / self.kernel_rate / self.refinement
 
-    def rightwards(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
-        """Panels from a point towards stop, as long as tau >= 0 and T < until, and their end."""
+    def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
+        """Return panels from a point towards stop, and the point where they end.
+
+        They end where tau < 0, at the time until, or at stop.
+        """
         x, time = start
         panels: list[Panel] = []
         last_feature = float(np.max(self.features, initial=-np.inf))
@@ -124,55 +144,64 @@ class FastFront:
                 end = x + (until - time) / slowness * (1.0 + 1e-9) + 1e-9
             elif np.isinf(end):
                 end = last_feature
-            panels += self.between(piece.background, Point(x, time), end)
+            panels += self.panels_between(piece.background, Point(x, time), end)
             x, time = end, panels[-1].time_ends[1]
         return panels, Point(x, time)
 
-    def between(self, background: Interval, start: Point, end: float) -> list[Panel]:
-        """Panels of a front that goes right from a point over a part of one piece."""
-        longest = self.longest(background)
-        if (end - start.x) * self.refinement > MOST_PANELS * longest:
-            raise self._too_many(background, end - start.x)
-        # Edges of panels that are short enough for the waves, with one at each feature.
+    def panels_between(self, background: Interval, start: Point, end: float) -> list[Panel]:
+        """Return panels of a front that runs right from a point, within one piece."""
+        max_length = self.max_panel_length(background)
+        if (end - start.x) * self.refinement > MAX_PANELS * max_length:
+            raise self._too_many_panels_error(background, end - start.x)
+        # Panels that are short enough for the waves, and begin at every feature.
         inner = self.features[(self.features > start.x) & (self.features < end)]
         rough = np.concatenate([[start.x], inner, [end]])
-        count = self.refinement * np.ceil(np.diff(rough) / longest).astype(int)
+        count = self.refinement * np.ceil(np.diff(rough) / max_length).astype(int)
         parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
         edges = np.unique(np.concatenate(parts))
         edges[0], edges[-1] = start.x, end
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
-            tau = analytic(self.prestress, background, x)
+            tau = continued_prestress(self.prestress, background, x)
             slowness = self.slowness(tau)
-            tails = np.abs(np.stack([slowness, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
+            tails = np.abs(np.stack([slowness, tau]) @ NODES_TO_SERIES[-2:].T).max(axis=(0, 2))
             size = 2.0 * half[:, 0]
-            split = (tails * size > RESOLVED) & (size > NARROWEST)
+            split = (tails * size > SERIES_TOLERANCE) & (size > MIN_PANEL_LENGTH)
             if not split.any():
                 break
-            if edges.size > MOST_PANELS:
-                raise self._too_many(background, end - start.x)
+            if edges.size > MAX_PANELS:
+                raise self._too_many_panels_error(background, end - start.x)
             edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
         times = start.time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (slowness @ WEIGHTS))])
-        within = times[:-1, None] + (half * slowness) @ CUMULATIVE.T
+        within = times[:-1, None] + (half * slowness) @ NODES_TO_INTEGRALS.T
         columns = x, within, tau * half, pairwise(edges), pairwise(times)
         return [Panel(*row) for row in zip(*columns, strict=True)]
 
-    def _too_many(self, background: Interval, distance: float) -> ValueError:
+    def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
+        """Return the error for a front that needs too many panels."""
         level, gamma = background.right_value, self.gamma
         return ValueError(
             f"prestress: level {level!r} over a distance of {distance:g} at gamma = {gamma:g},"
             f" damping_ratio = {self.damping_ratio:g}; allowed: fronts that stay within"
-            f" {MOST_PANELS} panels, of {self.longest(background):.3g} at most"
+            f" {MAX_PANELS} panels, of {self.max_panel_length(background):.3g} at most"
         )
 
 
 def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Panel]:
-    """Panels of T = slowness |x| in uniform pre-stress, none of them across x = 0."""
+    """Return panels of T = slowness |x| in uniform pre-stress; x = 0 is an edge of them."""
     panels = []
     for left, right in pairwise(edges.tolist()):
         half, slope = 0.5 * (right - left), slowness if left + right > 0.0 else -slowness
         x = left + half * (1.0 + NODES)
-        source = np.full(COUNT, tau * half)
-        panels.append(Panel(x, slope * x, source, (left, right), (slope * left, slope * right)))
+        source = np.full(NODE_COUNT, tau * half)
+        panels.append(
+            Panel(
+                x=x,
+                time=slope * x,
+                source=source,
+                x_ends=(left, right),
+                time_ends=(slope * left, slope * right),
+            )
+        )
     return panels

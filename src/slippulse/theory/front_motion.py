@@ -1,27 +1,33 @@
-"""The steady front block by block: independent numbers of front speeds, and admissible fronts.
+"""The steady front, block by block: a check of front speeds that uses no Wiener-Hopf factor.
 
-Let blocks be released one after another, 1/v apart, whatever their stress. In the frame of the
-front the state a period later is an affine function of the state, so the steady state solves one
-linear system; the stress on a block at its release, per unit pre-stress, is then 1/tau_0. A front
-is admissible when the stress ahead of it stays below 1 until the release, and no block behind it
-comes to rest before the next one is released.
+Assume that blocks are released one after another at times 1/v apart, whatever the stress on them
+is. In the frame of the front the state after one such period (slip and velocity of the
+BLOCKS_BEHIND_FRONT last released blocks) is an affine function of the state before it:
+
+    state after = shift (period_matrix state before + period_load),
+
+where the shift renumbers the blocks, because a block at rest has joined at the front. The steady
+state is the fixed point, one solution of a linear system. The stress on a block at its release, for
+unit pre-stress, is then 1/tau_0. The front is admissible if the stress ahead of it remains below 1
+until the release, and if no block behind it comes to rest before the next one is released.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-# Stress is known at this number of substeps of a period.
-SUBSTEPS = 16
-# Blocks behind the front: many more than the b v/(v^2 - 1) of the layer of damped waves at it.
-BLOCKS = 100
+# Number of substeps of a period at whose ends the stress is computed.
+SUBSTEPS_PER_PERIOD = 16
+# Number of blocks behind the front. It is much larger than b v/(v^2 - 1), the number of blocks in
+# the layer of damped waves at the front.
+BLOCKS_BEHIND_FRONT = 100
 
 
 class SteadyFront(NamedTuple):
     """A front at one speed: the pre-stress into which it runs, and whether it is admissible.
 
-    ahead is the stress on the first stuck block at SUBSTEPS + 1 times from the last release to that
-    of this block, where it is 1.
+    ahead is the stress on the first stuck block, at SUBSTEPS_PER_PERIOD + 1 times from the last
+    release to the release of this block, where the stress is 1.
     """
 
     prestress: float
@@ -30,35 +36,36 @@ class SteadyFront(NamedTuple):
 
 
 def steady_front(speed: float, damping_ratio: float, springs: float, release: str) -> SteadyFront:
-    """The steady front at a speed > 1 (wave speeds); springs are gamma dx^2."""
-    # scipy.linalg is slow to load, and needed here only.
+    """Return the steady front at a speed > 1 (wave speeds); springs are gamma dx^2."""
+    # scipy.linalg is slow to import, and only needed here.
     from scipy.linalg import expm
 
-    count = BLOCKS
+    count = BLOCKS_BEHIND_FRONT
     # Block 0 has just been released; the block ahead of it is stuck, and slip has no curvature at
     # the last block.
-    bend = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
-    bend[-1, -3:] = bend[-2, -3:]
+    curvature = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
+    curvature[-1, -3:] = curvature[-2, -3:]
     size = 2 * count
     system = np.zeros((size + 1, size + 1))
     system[:count, count:size] = np.eye(count)
-    system[count:size, :count] = bend - springs * np.eye(count)
-    system[count:size, count:size] = damping_ratio * bend
+    system[count:size, :count] = curvature - springs * np.eye(count)
+    system[count:size, count:size] = damping_ratio * curvature
     system[count:size, -1] = 1.0
-    step = expm(system / (speed * SUBSTEPS))
-    period = np.linalg.matrix_power(step, SUBSTEPS)
-    # A period later each block is one position farther behind, and a block at rest leads.
-    shift = np.kron(np.eye(2), np.eye(count, k=-1))
-    matrix, load = np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
+    step = expm(system / (speed * SUBSTEPS_PER_PERIOD))
+    period = np.linalg.matrix_power(step, SUBSTEPS_PER_PERIOD)
+    # One period later each block is one position farther behind, and a block at rest leads.
+    to_next_block = np.kron(np.eye(2), np.eye(count, k=-1))
+    matrix = np.eye(size) - to_next_block @ period[:size, :size]
+    load = to_next_block @ period[:size, size]
     state = np.linalg.solve(matrix, load)
     states = [np.append(state, 1.0)]
-    for _ in range(SUBSTEPS):
+    for _ in range(SUBSTEPS_PER_PERIOD):
         states.append(step @ states[-1])
     history = np.array(states)[:, :size]
     slip, velocity = history[:, :count], history[:, count:]
     gain = damping_ratio if release == "total" else 0.0
     ahead = 1.0 + slip[:, 0] + gain * velocity[:, 0]
-    tau = 1.0 / ahead[-1]
+    prestress = 1.0 / ahead[-1]
     # The last block must slide until the next one is released.
-    admissible = np.all(tau * ahead[:-1] < 1.0) and np.all(velocity[1:, 0] > 0.0)
-    return SteadyFront(float(tau), tau * ahead, bool(admissible))
+    admissible = np.all(prestress * ahead[:-1] < 1.0) and np.all(velocity[1:, 0] > 0.0)
+    return SteadyFront(float(prestress), prestress * ahead, bool(admissible))

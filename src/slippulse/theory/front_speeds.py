@@ -1,10 +1,10 @@
 """Front speeds on the damped lattice, without leaf springs.
 
-They come from the Wiener-Hopf factor M_+ of `wiener_hopf`: the released stress is 1 when
-M_+(0) = tau_0 (release "total": the stress includes the damping force) or
-M_+(0)/M_+(i/(b v)) = tau_0 ("elastic"). The slipping part is taken to be infinitely long: sticking
-is felt at the front only where the pulse is hardly wider than the layer of damped or lattice waves
-at its tip, which is a few blocks unless b is large.
+They follow from the Wiener-Hopf factor M_+ of `wiener_hopf`. With the release rule "total" (the
+stress includes the damping force) the stress at the release is 1 if M_+(0) = tau_0; with "elastic"
+(it does not) if M_+(0)/M_+(i/(b v)) = tau_0. The sliding part is taken to be infinitely long. The
+front feels that blocks stick behind it only if the pulse is hardly wider than the layer of damped
+or lattice waves at its tip, which is a few blocks unless b is large.
 """
 
 from typing import NamedTuple
@@ -18,16 +18,17 @@ from .vector_roots import increasing_roots
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
-# So near 1, in 1 - tau_0, rounding of the quadrature is felt and the first terms in 1/v are better.
-NEARLY_ONE = {"total": 1e-10, "elastic": 1e-13}
-# Values of ln(v - 1) where v is 1 to all digits, and beyond any speed in the domain.
-SLOWEST, FASTEST = -80.0, 280.0
-# This number of elements is solved at once, which bounds the memory.
-CHUNK = 128
+# If 1 - tau_0 is below this, rounding affects the quadrature, and the first terms in 1/v are more
+# accurate.
+NEARLY_ONE_DISTANCE = {"total": 1e-10, "elastic": 1e-13}
+# The smallest ln(v - 1), for which v is 1 to all digits, and one beyond any speed in the domain.
+MIN_LOG_EXCESS, MAX_LOG_EXCESS = -80.0, 280.0
+# Number of elements that are solved at once, which limits the memory.
+ELEMENTS_PER_CHUNK = 128
 
 
 class Lattice(NamedTuple):
-    """A lattice: damping ratios of its fronts, leaf springs gamma dx^2, drag alpha dx."""
+    """A lattice: its damping ratios, release rule, leaf springs gamma dx^2 and drag alpha dx."""
 
     ratio: np.ndarray
     release: str
@@ -35,12 +36,12 @@ class Lattice(NamedTuple):
     drag: float = 0.0
 
     def log_prestress(self, x: np.ndarray, ratio: np.ndarray) -> np.ndarray:
-        """ln tau_0 of fronts at x = ln(v - 1)."""
+        """Return ln tau_0 of fronts at x = ln(v - 1)."""
         return log_prestress(np.exp(x), ratio, self.springs, self.release, self.drag)
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed (wave speeds) without damping, 1/sqrt(1 - tau_0^2).
+    """Return the front speed (wave speeds) without damping, 1/sqrt(1 - tau_0^2).
 
     Source: section III A of the paper. Raises ValueError: outside the domain.
 
@@ -61,7 +62,7 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
-    """Exact speed (wave speeds) of a steady front, leaf springs left out (gamma dx^2 << 1).
+    """Return the exact speed of a steady front without leaf springs (gamma dx^2 << 1).
 
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0
     the paper's 1/sqrt(1 - tau_0^2) for any dx. Its relative error is below 1e-12 in tau_0.
@@ -87,22 +88,24 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     tau, ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
     out = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
-    near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
+    near = (
+        damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & ((release == "total") | (ratio < 1e3))
+    )
     out[near] = 1.0 / slowness_nearly_one(tau[near], ratio[near], release)
-    rest = damped & ~near
-    if np.any(rest):
-        tau, ratio = tau[rest], ratio[rest]
-        # Neighbours in the order of the speed share a contour.
+    is_solved = damped & ~near
+    if np.any(is_solved):
+        tau, ratio = tau[is_solved], ratio[is_solved]
+        # Elements with similar speeds share a contour.
         order = np.argsort(first_guess(tau, ratio, release))
         speed = np.empty(tau.size)
-        for part in np.split(order, range(CHUNK, order.size, CHUNK)):
+        for part in np.split(order, range(ELEMENTS_PER_CHUNK, order.size, ELEMENTS_PER_CHUNK)):
             speed[part] = speeds_into(tau[part], Lattice(ratio[part], release))
-        out[rest] = speed
+        out[is_solved] = speed
     return out if out.ndim else float(out)
 
 
 def prestress_for_speed(speed, damping_ratio, release: str = "total"):
-    """Pre-stress into which a steady front runs at a speed: the inverse of `front_speed`.
+    """Return the pre-stress of a steady front of given speed, the inverse of `front_speed`.
 
     Raises ValueError: outside the domain.
 
@@ -131,9 +134,9 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
 
 
 def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
-    """1/v of fronts with v >> b, up to terms in 1/v^3.
+    """Return 1/v of fronts that are much faster than b, up to terms in 1/v^3.
 
-    -ln tau = b/v + 1/(2 v^2) under rule "total", and 1/(2 v^2) under rule "elastic".
+    It solves -ln tau = b/v + 1/(2 v^2) under rule "total", and -ln tau = 1/(2 v^2) under "elastic".
     """
     fall = -np.log(tau)
     damping = np.asarray(ratio) if release == "total" else 0.0
@@ -141,34 +144,39 @@ def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str
 
 
 def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """`log_prestress` without leaf springs, in bounded memory."""
-    parts = (slice(i, i + CHUNK) for i in range(0, excess.size, CHUNK))
+    """Return `log_prestress` without leaf springs, with limited memory."""
+    parts = (slice(i, i + ELEMENTS_PER_CHUNK) for i in range(0, excess.size, ELEMENTS_PER_CHUNK))
     values = [log_prestress(excess[part], ratio[part], 0.0, release) for part in parts]
     return np.concatenate(values)
 
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """ln(v - 1) from the limits of no and of strong damping, and from b = 1 ("total")."""
-    rest = 1.0 - tau
-    undamped = np.log(tau) * 2.0 - np.log(rest * (1.0 + tau) + np.sqrt(rest * (1.0 + tau)))
+    """Return ln(v - 1) estimated from its limits for weak and strong damping and from b = 1."""
+    distance_to_1 = 1.0 - tau
+    undamped = np.log(tau) * 2.0 - np.log(
+        distance_to_1 * (1.0 + tau) + np.sqrt(distance_to_1 * (1.0 + tau))
+    )
     if release == "elastic":
-        damped = np.log(tau) - np.log(rest + np.sqrt(rest))
+        damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
         return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
     weight = np.minimum(ratio, 1.0)
-    damped = np.log(tau / rest) + np.log(np.maximum(ratio, 1.0))
+    damped = np.log(tau / distance_to_1) + np.log(np.maximum(ratio, 1.0))
     return (1.0 - weight) * undamped + weight * damped
 
 
-def speeds_into(tau: np.ndarray, lattice: Lattice, slowest: float = SLOWEST) -> np.ndarray:
-    """Speeds v at which the pre-stress is tau, with ln(v - 1) from the slowest on."""
+def speeds_into(tau: np.ndarray, lattice: Lattice, slowest: float = MIN_LOG_EXCESS) -> np.ndarray:
+    """Return the speeds v at which the pre-stress is tau.
+
+    They are searched from ln(v - 1) = slowest on.
+    """
     target = np.log(tau) - np.log1p(-tau)
 
     def mismatch(x: np.ndarray, which: np.ndarray) -> np.ndarray:
-        """Difference in ln(tau/(1 - tau)), which is nearly linear in ln(v - 1)."""
+        """Return the error of ln(tau/(1 - tau)), which is nearly linear in ln(v - 1)."""
         log_tau = lattice.log_prestress(x, lattice.ratio[which])
-        # Where the stress is 1 to rounding, the front is faster than any target.
+        # If the stress is 1 to rounding, the front is faster than any target.
         return log_tau - np.log(np.maximum(-np.expm1(log_tau), 1e-17)) - target[which]
 
-    low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
+    low, high = np.full(tau.size, slowest), np.full(tau.size, MAX_LOG_EXCESS)
     guess = np.clip(first_guess(tau, lattice.ratio, lattice.release), low + 0.1, high - 1.0)
-    return 1.0 + np.exp(increasing_roots(mismatch, guess, low, high))
+    return 1.0 + np.exp(increasing_roots(mismatch, guess=guess, lower=low, upper=high))

@@ -1,6 +1,6 @@
-"""Front speeds with leaf springs: on the damped lattice, and in the continuum.
+"""Front speeds with leaf springs, on the damped lattice and in the continuum.
 
-That on the lattice comes from the Wiener-Hopf factor, as in `front_speeds`.
+On the lattice they follow from the Wiener-Hopf factor, as in `front_speeds`.
 """
 
 import numpy as np
@@ -9,18 +9,22 @@ from ..model.checks import check_choice, check_number
 from ..model.release import RELEASES
 from ..model.runaway import check_runaway
 from .domains import check_domains
-from .front_speeds import SLOWEST, Lattice, front_speed, speeds_into
+from .front_speeds import MIN_LOG_EXCESS, Lattice, front_speed, speeds_into
 
-# Where no reference takes the rounding of the quadrature out of 1 - M_+(0), it is felt from here.
-NEARLY_ONE = 1e-7
-# Leaf springs, gamma dx^2, and drag, alpha dx, below these make no difference; above the largest
-# leaf springs no front outruns the waves.
-LEAST_SPRINGS, LARGEST_SPRINGS, LEAST_DRAG = 1e-30, 1e30, 1e-15
-# A front is at least this much faster than the speed at which slip runs away.
-MARGIN = 1.0 + 1e-6
-# The least pre-stress is searched at SCAN speeds, then NARROWINGS times at NARROWER_SCAN more
-# around the lowest.
-SCAN, NARROWER_SCAN, NARROWINGS = 64, 17, 6
+# If 1 - tau_0 is below this, rounding affects the quadrature, since with leaf springs no reference
+# with the same rounding is subtracted.
+NEARLY_ONE_DISTANCE = 1e-7
+# Leaf springs (gamma dx^2) and drag (alpha dx) below the minimum make no difference. With stronger
+# leaf springs than the maximum no front outruns the waves.
+MIN_SPRINGS, MAX_SPRINGS, MIN_DRAG = 1e-30, 1e30, 1e-15
+# Factor by which a front is at least faster than the speed at which slip runs away.
+SPEED_MARGIN = 1.0 + 1e-6
+# The least pre-stress is first searched at this number of speeds.
+SCAN_SPEEDS = 64
+# Around the lowest one it is then searched at this number of speeds ...
+NARROW_SCAN_SPEEDS = 17
+# ... this number of times.
+NARROW_SCANS = 6
 
 
 def lattice_front_speed(
@@ -31,16 +35,16 @@ def lattice_front_speed(
     release: str = "total",
     rate_strengthening: float = 0.0,
 ) -> float:
-    """Exact front speed (wave speeds) with leaf springs, damping and drag -alpha du/dt.
+    """Return the exact front speed with leaf springs, damping and drag -alpha du/dt.
 
-    Where the least pre-stress of all fronts lies at a speed above 1 (rule "total", strong damping),
-    two speeds belong to one tau_0: the faster one is returned, which grows with tau_0.
+    With strong damping and rule "total", the front with the least pre-stress is faster than the
+    waves. Then two speeds belong to one tau_0; the higher one, which grows with tau_0, is returned.
     Source: the lattice symbol with leaf springs (`wiener_hopf`), which has a closed form without
     damping and tends to `front_speed` as gamma dx^2 -> 0. Sticking behind the front is left out.
     The relative error is below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
     Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any
-    front faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
-    velocity, so fast that slip behind it does not run away).
+    front faster than the waves and than sqrt(4 + gamma dx^2)/pi. (If friction weakens with
+    slip velocity, the front must also be so fast that slip behind it does not run away.)
 
     Parameters
     ----------
@@ -63,22 +67,24 @@ def lattice_front_speed(
     check_runaway(float(gamma), float(rate_strengthening))
     springs = float(gamma) * float(dx) * float(dx)
     drag = float(rate_strengthening) * float(dx)
-    if springs < LEAST_SPRINGS and abs(drag) < LEAST_DRAG:
+    if springs < MIN_SPRINGS and abs(drag) < MIN_DRAG:
         return float(front_speed(tau0, damping_ratio, release))
-    lattice = Lattice(np.array([float(damping_ratio)]), release, springs, drag)
-    if 1.0 - tau0 < NEARLY_ONE and damping_ratio > 0.0 and springs <= LARGEST_SPRINGS:
+    lattice = Lattice(
+        ratio=np.array([float(damping_ratio)]), release=release, springs=springs, drag=drag
+    )
+    if 1.0 - tau0 < NEARLY_ONE_DISTANCE and damping_ratio > 0.0 and springs <= MAX_SPRINGS:
         speed = front_speed(tau0, damping_ratio, release)
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
-            # The factor of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
+            # The coefficient of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
             strength = damping_ratio * speed if release == "total" else 0.0
             slowed = springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
             return speed * (1.0 - slowed)
-    slowest, least = _least_prestress(tau0, lattice)
-    if tau0 <= least:
+    slowest, least_prestress = _least_prestress(tau0, lattice)
+    if tau0 <= least_prestress:
         rate = f", rate_strengthening = {rate_strengthening:g}" if drag else ""
         raise ValueError(
-            f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at"
-            f" gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
+            f"tau0: {tau0!r}; allowed: > {least_prestress:.6g}, values whose front outruns the"
+            f" waves at gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
         )
     if damping_ratio == drag == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
@@ -87,7 +93,7 @@ def lattice_front_speed(
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
-    """Front speed (wave speeds) as dx -> 0 at fixed beta, under the rule as printed ("elastic").
+    """Return the front speed as dx -> 0 at fixed beta, under the printed rule ("elastic").
 
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y
     below the real axis, beta v Y^3 = (v^2 - 1) Y^2 + gamma; the rule is Y/(Y + 1/(beta v)) = tau.
@@ -110,7 +116,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     check_number("gamma", gamma, at_least=0.0)
     check_number("beta", beta, above=0.0)
     springs = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
-    # This is v > 1.
+    # This condition is v > 1.
     if not springs < tau0 / (1.0 - tau0):
         raise ValueError(
             f"tau0: {tau0!r}; allowed: values whose front outruns the waves at gamma = {gamma:g},"
@@ -120,28 +126,28 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
 
 
 def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
-    """ln(v - 1) of a front, and the least pre-stress of fronts, which that front has."""
+    """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress."""
     springs, ratio = lattice.springs, lattice.ratio
-    if springs > LARGEST_SPRINGS:
+    if springs > MAX_SPRINGS:
         return 0.0, 1.0
     slow = max(1.0, np.sqrt(4.0 + springs) / np.pi)
     if lattice.drag < 0.0:
-        # Behind a slower front slip runs away.
-        slow = max(slow, MARGIN / np.sqrt(1.0 - 0.25 * lattice.drag**2 / springs))
-    first = float(np.log(slow - 1.0)) if slow > 1.0 else SLOWEST
+        # Slip runs away behind a slower front.
+        slow = max(slow, SPEED_MARGIN / np.sqrt(1.0 - 0.25 * lattice.drag**2 / springs))
+    first = float(np.log(slow - 1.0)) if slow > 1.0 else MIN_LOG_EXCESS
     least = float(np.exp(lattice.log_prestress(np.array([first]), ratio)[0]))
-    # The slowest front mostly has the least pre-stress; above it there is one speed.
+    # Usually the slowest front has the least pre-stress, and each higher pre-stress has one speed.
     if tau0 > least:
         return first, least
     slowest = 1.0 + np.exp(first)
     last = np.log(slowest * (1.0 + ratio[0]) * (1.0 + springs)) + 5.0
-    inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN - 1))
+    inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN_SPEEDS - 1))
     x = np.concatenate([[first], inner])
-    for _ in range(NARROWINGS + 1):
+    for _ in range(NARROW_SCANS + 1):
         log_tau = lattice.log_prestress(x, np.full(x.size, ratio[0]))
         lowest = int(np.argmin(log_tau))
         slow, least = float(x[lowest]), float(np.exp(log_tau[lowest]))
         if slow == first:
             break
-        x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], NARROWER_SCAN)
+        x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], NARROW_SCAN_SPEEDS)
     return slow, least

@@ -1,110 +1,134 @@
-"""Knots of the trailing edge: where and when it sticks, and how these predict it in between."""
+"""Knots of the trailing edge: stick times at some positions, and their interpolation in between.
+
+Between two knots the stick time is a cubic polynomial, the Hermite interpolant of the stick times
+and of their slopes at both knots. An interval is fine enough when this cubic predicts a third
+knot in its middle (`Knots.predicts_middle`); otherwise `trailing_edge` halves it.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from .curve import SAME
+from .curve import EQUALITY_TOLERANCE
 
-# Kinds of a knot: it slides at the end; it has stuck, where the edge outruns the waves or not; or
-# it slid too briefly to tell, next to the point where a slow front has stopped.
-SLIDES, FAST, SLOW, BRIEF = range(4)
-# Stick times halfway between knots are predicted to this fraction of the interval, their slopes to
-# this.
-PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
-# Where in its interval an edge that is nearly slow is looked at, apart from halfway.
-SHIFTED = 0.382
+# Kinds of a knot. At a SLIDING knot the block has not stuck until the end. At the others it has:
+# where the edge is faster than the waves, where it is slower, and, next to the point where a slow
+# front has stopped, after a slip too brief to tell which of the two it is.
+SLIDING, FASTER_THAN_WAVES, SLOWER_THAN_WAVES, BRIEF_SLIP = range(4)
+# An interval is resolved if its cubic predicts the stick time in its middle to this fraction of its
+# length ...
+STICK_TIME_TOLERANCE = 1e-5
+# ... and the slope of the stick time there to this error.
+SLOPE_TOLERANCE = 0.05
+# An edge that is nearly as slow as the waves is checked again at this fraction of each interval,
+# which differs from the middle that has been checked before.
+OFF_CENTRE_FRACTION = 0.382
 
 
 class Knots(NamedTuple):
-    """Positions, stick times (the end for none), kinds, and du/dt and its slopes by xi and eta.
+    """Knots of the trailing edge from left to right; interval k lies between the knots k and k + 1.
 
-    Interval k lies between the knots k and k + 1.
+    stick is the stick time (the final time if the block still slides), kind is one of the four
+    kinds above, velocity is du/dt at that time, and the last two are its derivatives by xi = t - x
+    and eta = t + x.
     """
 
     x: np.ndarray
     stick: np.ndarray
     kind: np.ndarray
     velocity: np.ndarray
-    by_xi: np.ndarray
-    by_eta: np.ndarray
+    velocity_by_xi: np.ndarray
+    velocity_by_eta: np.ndarray
 
     @property
-    def pace(self) -> np.ndarray:
-        """Derivative of the stick time by position."""
-        fall = self.by_xi + self.by_eta
-        return (self.by_xi - self.by_eta) / np.where(fall == 0.0, np.nan, fall)
+    def slope(self) -> np.ndarray:
+        """Derivative of the stick time by position; NaN where du/dt does not change."""
+        fall = self.velocity_by_xi + self.velocity_by_eta
+        return (self.velocity_by_xi - self.velocity_by_eta) / np.where(fall == 0.0, np.nan, fall)
 
     def joined(self, other: "Knots") -> "Knots":
-        """These knots and others, in order."""
+        """Return these knots combined with others, in order of position."""
         _, first = np.unique(np.append(self.x, other.x), return_index=True)
         return Knots._make(np.append(a, b)[first] for a, b in zip(self, other, strict=True))
 
-    def interval(self, x: np.ndarray) -> np.ndarray:
-        """The interval of each position, the nearest one beyond the knots."""
+    def interval_of(self, x: np.ndarray) -> np.ndarray:
+        """Return the interval of each position; the first or last one outside of the knots."""
         k = np.searchsorted(self.x, x, side="right") - 1
         return np.clip(k, 0, self.x.size - 2)
 
     @property
-    def sliding(self) -> np.ndarray:
-        """Ends [left and right, interval] of the intervals that slide at the end."""
+    def sliding_intervals(self) -> np.ndarray:
+        """Ends [left and right, interval] of the intervals whose two knots slide at the end."""
         k = np.arange(self.x.size - 1)
-        k = k[self.of_kinds(k, SLIDES, SLIDES)]
+        k = k[self.has_end_kinds(k, SLIDING, SLIDING)]
         return self.x[np.array([k, k + 1])]
 
     @property
-    def nearly_slow(self) -> np.ndarray:
-        """Positions in the intervals whose edge, if it turns on as it does, may become slow."""
-        k = np.arange(self.x.size - 1)
-        pace = np.abs([self.pace[:-1], self.pace[1:]])
-        k = k[self.outruns(k) & (pace.max(axis=0) + np.abs(np.diff(self.pace)) > 1.0)]
-        return self.x[k] + SHIFTED * (self.x[k + 1] - self.x[k])
+    def positions_to_recheck(self) -> np.ndarray:
+        """One position in each interval whose edge may become slower than the waves.
 
-    def of_kinds(self, k: np.ndarray, one: int, other: int) -> np.ndarray:
-        """Mask of the intervals whose two ends have these kinds in any order."""
+        This is so if the slope of its edge, continued to change as it does now, would exceed 1.
+        """
+        k = np.arange(self.x.size - 1)
+        steepness = np.abs([self.slope[:-1], self.slope[1:]])
+        k = k[self.outruns_waves(k) & (steepness.max(axis=0) + np.abs(np.diff(self.slope)) > 1.0)]
+        return self.x[k] + OFF_CENTRE_FRACTION * (self.x[k + 1] - self.x[k])
+
+    def has_end_kinds(self, k: np.ndarray, one: int, other: int) -> np.ndarray:
+        """Return a mask of the intervals whose two knots have these kinds, in either order."""
         left, right = self.kind[k], self.kind[k + 1]
         return ((left == one) & (right == other)) | ((left == other) & (right == one))
 
-    def outruns(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals in which the edge outruns the waves."""
-        return self.of_kinds(k, FAST, FAST) & ~self.jumps(k)
+    def outruns_waves(self, k: np.ndarray) -> np.ndarray:
+        """Return a mask of the intervals in which the edge is faster than the waves."""
+        return self.has_end_kinds(k, FASTER_THAN_WAVES, FASTER_THAN_WAVES) & ~self.has_jump(k)
 
-    def brief(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals with an end that slid too briefly."""
-        return (self.kind[k] == BRIEF) | (self.kind[k + 1] == BRIEF)
+    def touches_brief_slip(self, k: np.ndarray) -> np.ndarray:
+        """Return a mask of the intervals with at least one knot of the kind BRIEF_SLIP."""
+        return (self.kind[k] == BRIEF_SLIP) | (self.kind[k + 1] == BRIEF_SLIP)
 
-    def jumps(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals in which the edge jumps, or changes from fast to slow."""
+    def has_jump(self, k: np.ndarray) -> np.ndarray:
+        """Return a mask of the intervals in which the edge jumps or turns from fast to slow."""
         change = np.abs(self.stick[k + 1] - self.stick[k])
-        steep = change >= (self.x[k + 1] - self.x[k]) * (1.0 + SAME)
-        told = ~self.brief(k) & ~self.of_kinds(k, SLOW, SLOW)
-        return (steep & told) | self.of_kinds(k, FAST, SLOW)
+        steep = change >= (self.x[k + 1] - self.x[k]) * (1.0 + EQUALITY_TOLERANCE)
+        is_resolved = ~self.touches_brief_slip(k) & ~self.has_end_kinds(
+            k, SLOWER_THAN_WAVES, SLOWER_THAN_WAVES
+        )
+        return (steep & is_resolved) | self.has_end_kinds(k, FASTER_THAN_WAVES, SLOWER_THAN_WAVES)
 
-    def fast_ends(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Knots at which the edge last outruns the waves before it jumps, and lengths of jumps."""
-        k = k[self.jumps(k)]
+    def ends_before_jumps(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return, for each interval with a jump, the knot before the jump and the interval length.
+
+        It is the last knot at which the edge is faster than the waves.
+        """
+        k = k[self.has_jump(k)]
         left, right = self.kind[k], self.kind[k + 1]
-        # The edge ends at the earlier of two knots, unless only the other one outruns the waves.
+        # The edge is fast up to the earlier of the two knots, unless only the other one is of the
+        # kind FASTER_THAN_WAVES.
         right_first = self.stick[k] >= self.stick[k + 1]
-        at_right = np.where(left == right, right_first, right == FAST)
+        at_right = np.where(left == right, right_first, right == FASTER_THAN_WAVES)
         return np.where(at_right, k + 1, k), self.x[k + 1] - self.x[k]
 
-    def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Stick times by cubics in intervals."""
+    def interpolate(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Return stick times at positions x in the intervals k, by cubic interpolation."""
         span = self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
-        bow = span * ((1.0 - s) * self.pace[k] - s * self.pace[k + 1])
+        bow = span * ((1.0 - s) * self.slope[k] - s * self.slope[k + 1])
         rise = self.stick[k + 1] - self.stick[k]
         return self.stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
-    def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
-        """Mask of the intervals whose ends predict the knot in the middle."""
+    def predicts_middle(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
+        """Return a mask of the intervals k whose cubic predicts the knot in its middle."""
         one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         half = middle.x - self.x[k]
-        slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
-        slope -= 0.25 * (self.pace[k] + self.pace[k + 1])
-        near = np.abs(middle.stick - self.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
-        # The closer the edge is to the speed of the waves, the less it may turn unseen.
-        steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
-        near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        return one_kind & (near | (middle.kind != FAST))
+        cubic_slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
+        cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
+        near = (
+            np.abs(middle.stick - self.interpolate(k, middle.x))
+            <= 2.0 * STICK_TIME_TOLERANCE * half
+        )
+        # The closer the edge comes to the wave speed, the smaller a change of its slope must be to
+        # be accepted.
+        steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
+        near &= np.abs(middle.slope - cubic_slope) <= np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
+        return one_kind & (near | (middle.kind != FASTER_THAN_WAVES))

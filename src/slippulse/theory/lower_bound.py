@@ -1,98 +1,131 @@
-"""Whether du/dt stays above 0 between two positions that slide, by a bound that holds in between.
+r"""A lower bound of du/dt between two positions that slide, to prove that nothing sticks there.
 
-In xi = t - y and eta = t + y, w = exp(alpha t/2) du/dt obeys w_xi_eta = -k w/4. So w = F - W: F is
-half the integral of tau exp(alpha T/2) along the curve in the past of a point, and W is k/4 times
-that of w over the region of its past; it grows with xi and eta as long as w > 0 there, if k > 0.
-Let a and b be positions at a time, h apart, and c the point from which their characteristics went
-apart. Then w in the whole triangle is at least
+Samples of du/dt alone cannot exclude a stick between them; the bound can. In the coordinates xi = t
+- y and eta = t + y, w = exp(alpha t/2) du/dt obeys w_xi_eta = -k w/4. Hence w = F - W. F is half
+the integral of tau exp(alpha T/2) along the part of the curve in the past of a point. W is k/4
+times the integral of w over the region of its past. If k > 0, W grows with xi and with eta as long
+as w > 0 in this region.
+
+Let a and b be two positions at the same time, a distance h apart, and c the point from which their
+characteristics went apart, at (a + b)/2 and h/2 earlier:
+
+     a ------ b     time t
+      \      /
+       \    /
+        \  /
+         c          time t - h/2
+
+For k > 0, w in the whole triangle is at least
 
     w(a) + w(b) - w(c) - J - k h^2/16 (w(c) + J),
 
-where J is what positive pre-stress added to F between c and a, and c and b. For k <= 0 it is at
-least w(c) less what negative pre-stress took. Behind a front that outruns the waves, where c has
-not slipped, w > 0 as long as the pre-stress is positive and J0 is: up to its first zero. Intervals
-are cut until the bound is above 0, or to a length that is felt in no answer.
+where J is the gain of F by positive pre-stress between c and a and between c and b. For k <= 0, w
+is at least w(c) less the loss of F by negative pre-stress. If c has not slipped, behind a front
+that outruns the waves, w > 0 as long as the pre-stress is positive and J0 is before its first zero.
+
+An interval is divided until the bound is positive, or until it is too short to change any result.
 """
 
 import numpy as np
 
 from .curve import WEIGHTS
 from .part import Part
-from .riemann import LARGEST_EXPONENT, partial_weights
+from .riemann import MAX_EXPONENT, partial_weights
 
-# The square of the first zero of J0.
-FIRST_ZERO = 5.783185962946784
-# An interval without a bound is cut into CUTS parts, down to the shortest ones, in units of
-# `Part.scale`: with slip velocity at both ends, and next to a position that does not move yet.
-CUTS, SHORTEST, SHORTEST_AT_REST = 4, 1e-6, 1e-3
-# So near the first stick, in these units, the trailing edge shows that it is the first.
-NEAR_FIRST = 0.2
-# Slip velocities of this size are 0.
-ROUNDING = 1e-12
-# Strong rate strengthening leaves a creep that may be far smaller than what pre-stress adds to it,
-# and the bound with it. Where du/dt is below FAINT at both ends of an interval that is not cut yet,
-# it is cut to SHORTEST_FAINT at most.
-FAINT, SHORTEST_FAINT = 1e-5, 1e-2
+# Points on the curve, from left to right: where the past of a begins, where that of c begins and
+# ends, and where that of b ends.
+A_BEGINS, C_BEGINS, C_ENDS, B_ENDS = range(4)
+# The square of the first zero of the Bessel function J0.
+SQUARED_FIRST_ZERO = 5.783185962946784
+# An interval whose bound is not positive is cut into this number of parts.
+PARTS_PER_CUT = 4
+# Shortest interval that is cut, in units of `Part.scale`, if both ends have slip velocity.
+MIN_INTERVAL = 1e-6
+# Shortest interval that is cut if one end does not move yet.
+MIN_INTERVAL_AT_REST = 1e-3
+# Within this distance of the first stick, in units of `Part.scale`, the trailing edge itself shows
+# that this one is the first.
+FIRST_STICK_DISTANCE = 0.2
+# Slip velocities below this are 0.
+ROUNDING_ERROR = 1e-12
+# Slip velocity below which motion is faint. Strong rate strengthening leaves a creep that is much
+# slower than what pre-stress adds to it, and than the error of the bound.
+FAINT_VELOCITY = 1e-5
+# Shortest interval that is cut if the motion was faint at both ends of the first interval.
+MIN_FAINT_INTERVAL = 1e-2
 
 
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
-    """Positions found to have stuck until a time between pairs [left and right, pair] that slide.
+    """Return positions between pairs of sliding ones that have stuck until a time.
 
-    There are none if the bound holds. The position that sticks at that time may be known.
+    The result is empty if nothing has stuck. x is [left and right, pair]. first is the position
+    that sticks at this time, if it is known.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:
+        """Return du/dt at positions of any shape."""
         return part.velocity(x.ravel(), np.full(x.size, time)).reshape(x.shape)
 
     velocity = velocity_at(x)
-    faint = velocity.max(axis=0) < FAINT
+    is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
-        least = np.where(velocity.min(axis=0) > ROUNDING, SHORTEST, SHORTEST_AT_REST)
-        least[faint] = SHORTEST_FAINT
-        wide = (x[1] - x[0] > least * part.scale) & ~stays_positive(part, x, velocity, time)
-        wide &= np.abs(x - first).max(axis=0) > NEAR_FIRST * part.scale
-        edges = np.linspace(x[0, wide], x[1, wide], CUTS + 1)
-        inner = velocity_at(edges[1:-1])
-        if np.any(inner < -ROUNDING):
-            return edges[1:-1][inner < -ROUNDING]
-        values = np.concatenate([velocity[:1, wide], inner, velocity[1:, wide]])
-        faint = np.tile(faint[wide], CUTS)
+        min_length = np.where(
+            velocity.min(axis=0) > ROUNDING_ERROR, MIN_INTERVAL, MIN_INTERVAL_AT_REST
+        )
+        min_length[is_faint] = MIN_FAINT_INTERVAL
+        is_open = x[1] - x[0] > min_length * part.scale
+        is_open &= ~stays_positive(part, x=x, velocity=velocity, time=time)
+        is_open &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
+        edges = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
+        inner_velocity = velocity_at(edges[1:-1])
+        if np.any(inner_velocity < -ROUNDING_ERROR):
+            return edges[1:-1][inner_velocity < -ROUNDING_ERROR]
+        values = np.concatenate([velocity[:1, is_open], inner_velocity, velocity[1:, is_open]])
+        is_faint = np.tile(is_faint[is_open], PARTS_PER_CUT)
         x, velocity = (np.array([rows[:-1], rows[1:]]).reshape(2, -1) for rows in (edges, values))
     return np.empty(0)
 
 
 def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float) -> np.ndarray:
-    """Mask of pairs of positions, with du/dt, [left and right, pair]: no stick between until time.
+    """Return a mask of the pairs between which nothing sticks until a time.
 
-    Both slide until then, or a front has just come there, and so does all in their past.
+    x and velocity (du/dt) are [left and right, pair]. Both positions and everything in their past
+    must slide until the time, or a front has just arrived there.
     """
     (left, right), curve, alpha = x, part.curve, part.alpha
-    span, middle, early = right - left, 0.5 * (left + right), time - 0.5 * (right - left)
+    span, middle = right - left, 0.5 * (left + right)
+    apex_time = time - 0.5 * (right - left)
+    # Where the past of a begins on the curve, and where that of b ends.
     begin, end = curve.crossings(middle, time - left, time + right)
-    past = part.past(middle, early)
-    k, slipped = past.stiffness, curve.arrival(middle) < early
-    points = [np.concatenate(at) for at in zip(begin, past.left, past.right, end, strict=True)]
+    domains = part.domains(middle, apex_time)
+    k, slipped = domains.stiffness, curve.arrival(middle) < apex_time
+    # In the order of A_BEGINS, C_BEGINS, C_ENDS and B_ENDS.
+    points = [
+        np.concatenate(at) for at in zip(begin, domains.left, domains.right, end, strict=True)
+    ]
 
-    # In units of exp(alpha t/2).
-    exponent = np.clip(0.5 * alpha * (curve.time - time), -LARGEST_EXPONENT, LARGEST_EXPONENT)
+    # In units of exp(alpha t/2), where t is the time.
+    exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
 
-    def gains(sign: float) -> np.ndarray:
-        """Integrals of pre-stress of one sign, from c to a or b, and over both pasts."""
+    def gains(sign: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return what pre-stress of one sign adds to F: from c to a and to b, and in total."""
         source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
-        whole = source @ WEIGHTS
+        panel_integrals = source @ WEIGHTS
         panel, s, _ = points
         cut = np.sum(partial_weights(s) * source[panel], axis=-1)
-        at = ((np.cumsum(whole) - whole)[panel] + cut).reshape(4, -1)
-        return np.array([at[1] - at[0] + at[3] - at[2], at[3] - at[0]])
+        integral = ((np.cumsum(panel_integrals) - panel_integrals)[panel] + cut).reshape(4, -1)
+        outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
+        return outside_c, integral[B_ENDS] - integral[A_BEGINS]
 
-    before = np.exp(-0.25 * alpha * span) * past.slip_velocity()
-    taken, negative = gains(-1.0)
+    at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
+    lost, negative = gains(-1.0)
     if k > 0.0:
-        added = gains(1.0)[0]
-        lowest = sum(velocity) - before - added - k * span**2 / 16.0 * (before + added)
+        added, _ = gains(1.0)
+        curved = k * span**2 / 16.0 * (at_apex + added)
+        lowest = sum(velocity) - at_apex - added - curved
     else:
-        lowest = before - taken
-    to_end = time - left - curve.evaluate("early", end.panel, end.s)
-    to_begin = time + right - curve.evaluate("late", begin.panel, begin.s)
-    young = (negative <= 0.0) & (k * to_end * to_begin < FIRST_ZERO)
-    return (slipped & (lowest > 0.0)) | young
+        lowest = at_apex - lost
+    to_end = time - left - curve.evaluate("t_minus_x", end.panel, end.s)
+    to_begin = time + right - curve.evaluate("t_plus_x", begin.panel, begin.s)
+    is_before_first_zero = (negative <= 0.0) & (k * to_end * to_begin < SQUARED_FIRST_ZERO)
+    return (slipped & (lowest > 0.0)) | is_before_first_zero

@@ -1,4 +1,8 @@
-"""A connected part of a rupture behind one curve: fields at points that slide, and stick times."""
+"""A connected part of a rupture behind one curve: fields where it slides, and stick times.
+
+`PartWithEdge` (module `trailing_edge`) adds the trailing edge to it, and `SolvedPart` the fields
+where the part has stuck.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,60 +11,72 @@ from functools import cached_property
 import numpy as np
 
 from .curve import Curve
-from .riemann import Past, Rest, kernel_rate
+from .riemann import DependenceDomains, StaticSolution, kernel_rate
 from .stick_search import StickSearch
 
-# Steps of a search in time, in units of `Part.scale`.
-SEARCH = 0.2
-# `Part.scale` without leaf springs and drag, as a fraction of the duration: no answer owes anything
-# to it, and a length of the scene would make a long search expensive.
+# Time step of the search for sticks, in units of `Part.scale`.
+SEARCH_STEP = 0.2
+# `Part.scale` without leaf springs and drag, as a fraction of the duration. The results do not
+# depend on it. A length of the scene in its place would make a long search expensive.
 SCALE_WITHOUT_SPRINGS = 5.0 / 64.0
 
 
 @dataclass
 class Part:
-    """A connected part of the rupture behind a curve, until a time."""
+    """A connected part of a rupture behind a curve, until a time.
+
+    marks are positions from which waves come that change du/dt at once, or faster than a search
+    step. refinement divides the search step. With one_side the part is symmetric, and only x >= 0
+    is computed. alpha is the coefficient of the drag -alpha du/dt.
+    """
 
     curve: Curve
     gamma: float
     until: float
-    # Positions from which waves come that change du/dt at once, or faster than a search steps.
     marks: Sequence[float] | np.ndarray = ()
     refinement: int = 1
-    # The part is symmetric: x >= 0 tells everything.
     one_side: bool = False
     alpha: float = 0.0
 
     @property
     def scale(self) -> float:
-        """Time over which du/dt changes, for want of leaf springs a fraction of the duration."""
+        """Time over which du/dt changes; without leaf springs and drag, part of the duration."""
         rate = kernel_rate(self.gamma, self.alpha)
         return 1.0 / rate if rate > 0.0 else SCALE_WITHOUT_SPRINGS * self.until
 
     @cached_property
-    def rest(self) -> Rest:
-        """A state at rest, for slip and strain."""
-        return Rest(self.curve, self.gamma)
+    def static_solution(self) -> StaticSolution:
+        """The static solution that the formulas for slip and strain need."""
+        return StaticSolution(self.curve, self.gamma)
 
-    def past(self, x: np.ndarray, time: np.ndarray) -> Past:
-        """Domains of dependence of points that slide."""
-        return Past(self.curve, self.gamma, self.alpha, x, time)
+    def domains(self, x: np.ndarray, time: np.ndarray) -> DependenceDomains:
+        """Return the domains of dependence of points (x, time) that slide."""
+        return DependenceDomains(
+            curve=self.curve, gamma=self.gamma, alpha=self.alpha, y=x, time=time
+        )
 
     def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """du/dt at points that slide."""
-        return self.past(x, time).slip_velocity() if x.size else np.zeros(0)
+        """Return du/dt at points (x, time) that slide."""
+        return self.domains(x, time).slip_velocity() if x.size else np.zeros(0)
 
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """A field at points that slide."""
-        past = self.past(x, time)
-        return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
+        """Return "slip_velocity", "slip" or "strain" at points (x, time) that slide."""
+        domains = self.domains(x, time)
+        return (
+            domains.slip_velocity()
+            if name == "slip_velocity"
+            else getattr(domains, name)(self.static_solution)
+        )
 
-    def search(self, x: np.ndarray, until: float | None = None) -> np.ndarray:
-        """Stick times at positions, from release on, without help from other positions."""
+    def find_stick_times(self, x: np.ndarray, until: float | None = None) -> np.ndarray:
+        """Return stick times, searched from the release on; NaN if a block never sticks.
+
+        Each position is searched independently of the others.
+        """
         if not x.size:
             return np.zeros(0)
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
-        step = SEARCH * self.scale / self.refinement
+        step = SEARCH_STEP * self.scale / self.refinement
         search = StickSearch(self.velocity, step, until or self.until)
-        return search.stick_time(x, self.curve.arrival(x), arrivals)
+        return search.find_stick_times(x, self.curve.arrival(x), arrivals)

@@ -1,4 +1,9 @@
-"""A pre-stress in smooth pieces of one sign, and the intervals that are released at t = 0."""
+"""Divide a pre-stress into smooth pieces, and find the intervals that are released at t = 0.
+
+A profile is piecewise linear (the background) plus Gaussians. `split_into_pieces` cuts it where the
+background changes and where the profile crosses a value: 0, where fronts change between fast and
+slow, or 1, where the rupture nucleates.
+"""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -8,33 +13,40 @@ import numpy as np
 from ..model.prestress import TABLE_THRESHOLD_TOLERANCE, Interval, Prestress
 from ..model.roots import root_between
 
-# A Gaussian is its level to rounding beyond this many widths.
-EXTENT = 9.0
-# Samples a width that show each sign change.
-SAMPLES = 32
-ROUNDING = 1e-15
+# Beyond this many widths a Gaussian is 0 to rounding.
+GAUSSIAN_EXTENT = 9.0
+# Samples for each width of a Gaussian, which are dense enough to show every sign change.
+SAMPLES_PER_WIDTH = 32
+# Smaller differences from a value are rounding errors.
+ROUNDING_ERROR = 1e-15
 
 
 class Piece(NamedTuple):
-    """An interval on which the pre-stress is smooth, and on one side of a value."""
+    """An interval on which the pre-stress is smooth and lies on one side of a value.
+
+    above is True if tau >= the value. For the value 0 a front is faster than the waves there.
+    """
 
     left: float
     right: float
     background: Interval
-    above: bool  # tau >= the value; for 0, a front outruns the waves
+    above: bool
 
 
-def uniform(level: float) -> Interval:
-    """The background of one level everywhere."""
-    return Interval(-np.inf, np.inf, level, level)
+def uniform_background(level: float) -> Interval:
+    """Return the background of one level everywhere."""
+    return Interval(left=-np.inf, right=np.inf, left_value=level, right_value=level)
 
 
-def analytic(prestress: Prestress, background: Interval, x: np.ndarray) -> np.ndarray:
-    """Pre-stress with one linear background everywhere: analytic, and exact in its interval."""
+def continued_prestress(prestress: Prestress, background: Interval, x: np.ndarray) -> np.ndarray:
+    """Return the pre-stress with the linear background of one interval continued everywhere.
+
+    It is analytic, and exact in the interval.
+    """
     left, right, first, last = background
     level: np.ndarray | float = first
     if first != last:
-        # Exact at both ends.
+        # This form is exact at both ends.
         fraction = (x - left) / (right - left)
         level = (1.0 - fraction) * first + fraction * last
     tau = np.broadcast_to(level, x.shape)
@@ -46,25 +58,36 @@ def analytic(prestress: Prestress, background: Interval, x: np.ndarray) -> np.nd
     return tau
 
 
-def pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
-    """The pieces from left to right; one where tau only touches the value has no length."""
-    # Positions that show each change of a Gaussian; between them the pre-stress is linear.
-    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
+    """Return the pieces from left to right.
+
+    A piece has no length where the pre-stress only touches the value.
+    """
+    # Positions dense enough to show every change of a Gaussian. Between them the pre-stress is
+    # linear.
+    fine = np.linspace(
+        -GAUSSIAN_EXTENT, GAUSSIAN_EXTENT, int(2 * GAUSSIAN_EXTENT * SAMPLES_PER_WIDTH) + 1
+    )
     rows = [centre + width * fine for centre, width in prestress.gaussians]
     samples = np.unique(np.concatenate([[], *rows]))
     out = []
     for background in prestress.intervals:
-        above, changes = _changes(prestress, background, samples, value)
+        above, changes = _sign_changes(
+            prestress, background=background, samples=samples, value=value
+        )
         for start, end in pairwise([background.left, *changes, background.right]):
-            out.append(Piece(start, end, background, above))
+            out.append(Piece(left=start, right=end, background=background, above=above))
             above = not above
     return out
 
 
-def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
-    """Intervals with tau >= 1 (points, where tau only touches 1), from left to right."""
+def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
+    """Return the intervals with tau >= 1 from left to right.
+
+    An interval is a point where tau only touches 1.
+    """
     merged: list[tuple[float, float]] = []
-    for left, right, _, above in pieces(prestress, 1.0):
+    for left, right, _, above in split_into_pieces(prestress, 1.0):
         if above and merged and left <= merged[-1][1]:
             merged[-1] = (merged[-1][0], right)
         elif above:
@@ -72,23 +95,27 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     return merged
 
 
-def _changes(
+def _sign_changes(
     prestress: Prestress, background: Interval, samples: np.ndarray, value: float
 ) -> tuple[bool, list[float]]:
-    """Tell whether tau >= value at the left end, and where that changes: twice at a contact."""
+    """Return if tau >= value at the left end, and the positions where this changes.
+
+    A position appears twice where tau only touches the value.
+    """
     left, right, *_ = background
     inner = samples[np.searchsorted(samples, left, "right") : np.searchsorted(samples, right)]
-    # Beyond every Gaussian the outermost intervals are uniform.
+    # The outermost intervals are infinite, but uniform beyond every Gaussian.
     first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
     x = np.concatenate([[first], inner, [last]])
 
     def excess(position: float) -> float:
-        return float(analytic(prestress, background, np.asarray(position))) - value
+        """Return tau - value at a position."""
+        return float(continued_prestress(prestress, background, np.asarray(position))) - value
 
-    differences = analytic(prestress, background, x) - value
-    # The far tail of a bump leaves a difference of rounding where there is none.
-    rounding = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING
+    differences = continued_prestress(prestress, background, x) - value
+    # The far tail of a Gaussian leaves differences as small as rounding errors.
+    rounding = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING_ERROR
     differences[np.abs(differences) <= rounding] = 0.0
     above = differences >= 0.0
     changes = []

@@ -1,4 +1,4 @@
-"""The steady slip pulse, with damping, behind a front of given speed or of given damping ratio."""
+"""The steady slip pulse, with damping, behind a front of a given speed or damping ratio."""
 
 from .closed_pulse import SteadyPulse, pulse_at_speed
 from .domains import check_domains
@@ -15,19 +15,20 @@ def steady_pulse(
     release: str = "total",
     rate_strengthening: float = 0.0,
 ) -> SteadyPulse:
-    """Steady pulse in uniform pre-stress behind a front.
+    """Return the steady pulse in uniform pre-stress behind a front.
 
     Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
     complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
-    is dropped. alpha = beta = 0 gives appendix C of the paper before its last step, at any speed.
+    is dropped. With alpha = beta = 0 it is the result of appendix C of the paper before its last
+    step, at any speed.
     Raises ValueError: outside these ranges, or where the pulse is too large or small.
 
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
-    beta : float, damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
+    beta : float, damping, >= 0; 0 gives the limit dx -> 0 at any damping ratio
     speed : float, front speed (wave speeds), > 1, or None
-    damping_ratio, release : where speed is None it is that of `front_speed`
+    damping_ratio, release : if speed is None, the speed is `front_speed` at these
     rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
         in size
 
@@ -45,4 +46,6 @@ def steady_pulse(
     if speed is None:
         check_domains(tau0=tau0, damping_ratio=damping_ratio)
         speed = float(front_speed(tau0, damping_ratio, release))
-    return pulse_at_speed(tau0, gamma, beta, speed, rate_strengthening)
+    return pulse_at_speed(
+        tau0, gamma=gamma, beta=beta, speed=speed, rate_strengthening=rate_strengthening
+    )

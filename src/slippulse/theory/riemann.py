@@ -1,106 +1,143 @@
 """Riemann's formula behind a rupture front: slip, velocity and strain as integrals along t = T(x).
 
-Each position feels its pre-stress from T(x) on. u_tt + alpha u_t = u_xx - gamma u + tau has the
-retarded solution E J0/2 in the future of an impulse, since exp(alpha t/2) u obeys the equation
-without alpha, with k = gamma - alpha^2/4 for gamma. With xi = t - y, eta = t + y, g = T - x,
-h = T + x, E = exp(-alpha (t - T)/2), and K(z) = J0(sqrt z) at z = k (xi - g)(eta - h), between the
-points x_l and x_r where the characteristics through (y, t) meet the curve,
+Each position slides under its pre-stress from the arrival time T(x) of the front on, so that the
+slip u obeys
+
+    u_tt + alpha u_t = u_xx - gamma u + tau(x)   for t > T(x).
+
+For this linear wave equation an impulse has a known response, Riemann's function (Courant and
+Hilbert, Methods of Mathematical Physics II, chapter V). It is E J0/2 in the future of the impulse
+and 0 elsewhere: exp(alpha t/2) u obeys the equation without alpha, with k = gamma - alpha^2/4 in
+place of gamma. A field at (y, t) is then an integral over the part of the front in its past,
+between the points x_l and x_r where the characteristics through (y, t) meet the front (see the
+sketch in `curve`). With
+
+    xi = t - y,   eta = t + y,   g = T - x,   h = T + x,
+    E = exp(-alpha (t - T)/2),   K(z) = J0(sqrt z)   at   z = k (xi - g) (eta - h),
+
+these integrals are
 
     2 du/dt = Int tau E K dx
     2 u     = 2 p(y) - E p(x_l) - E p(x_r)
               + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }
 
-as long as no stuck point lies in the past of (y, t). p(x) is any solution at rest,
-p'' - gamma p + tau = 0. K is an entire function of z. It is evaluated by polynomials, with an error
-below 1e-11, in a third of the time of scipy's j0 (a fifth of that of i0, for z < 0). Where k < 0 it
-is I0, whose size would cost the polynomials their digits.
+as long as no stuck point lies in the past of (y, t). Here p(x) is any static solution, p'' - gamma
+p + tau = 0.
+
+K is an entire function of z. Polynomials evaluate it with an error below 1e-11, in a third of the
+time of scipy's j0 (a fifth of that of i0, for z < 0). For k < 0 K is I0, which is computed directly
+because it is so large that polynomials would lose their digits.
 """
 
 import math
 from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
 from .curve import (
-    COUNT,
-    CUMULATIVE,
-    MANY_PANELS,
-    PARTIAL,
-    SLOPE,
-    TO_POWERS,
+    MAX_EAGER_PANELS,
+    NODE_COUNT,
+    NODES_TO_DERIVATIVES,
+    NODES_TO_INTEGRALS,
+    NODES_TO_POWERS,
+    POWERS_TO_WEIGHTS,
     WEIGHTS,
+    Crossing,
     Curve,
     value_and_slope,
 )
 
-# Number of points whose integrals are computed together: their arrays stay in the cache.
-CHUNK = 96
-# A polynomial would cancel beyond this z.
-LARGEST = 256.0
-AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
-# Larger exponents occur only outside the domain of integration.
-LARGEST_EXPONENT = 300.0
+# Number of points whose integrals are computed together, so that their arrays fit in the cache.
+POINTS_PER_CHUNK = 96
+# For larger arguments z the terms of a polynomial would cancel, and scipy is used.
+MAX_POLYNOMIAL_ARGUMENT = 256.0
+# K and its first two derivatives at z = 0.
+KERNEL_AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
+# Larger exponents occur only outside of the domain of integration, where they do not count.
+MAX_EXPONENT = 300.0
 
 
-class Rest:
-    """One solution p of p'' - gamma p + tau = 0 along a curve: which one makes no difference to u.
+class StaticValues(NamedTuple):
+    """A static solution p along a curve, and derivatives of the curve by its parameter s.
 
-    For gamma > 0 the bounded one: exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)) convolved with tau, which
-    keeps its outermost values beyond the curve. The sum runs in the direction in which it decays.
+    With g = T - x and h = T + x: p, dp/dx, dT/ds, dg/ds and dh/ds.
+    """
+
+    p: np.ndarray
+    slope: np.ndarray
+    d_time: np.ndarray
+    d_t_minus_x: np.ndarray
+    d_t_plus_x: np.ndarray
+
+
+class StaticSolution:
+    """One static solution p of p'' - gamma p + tau = 0 along a curve.
+
+    Which solution it is makes no difference to u. For gamma > 0 it is the bounded one, tau
+    convolved with exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)), where tau keeps its outermost values
+    beyond the curve. It is the sum of two parts, each accumulated in the direction in which it
+    decays.
     """
 
     def __init__(self, curve: Curve, gamma: float) -> None:
         if gamma == 0.0:
-            # p = p' = 0 at the left end.
+            # Without leaf springs the solution with p = p' = 0 at the left end is used.
             slope = -_integral(curve.source)
-            p = _integral(slope * (curve.x @ SLOPE.T))
+            p = _integral(slope * (curve.x @ NODES_TO_DERIVATIVES.T))
         else:
             k = float(np.sqrt(gamma))
-            right = _decaying(k, curve.x, curve.source, curve.edges)
-            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])
+            right = _decaying(k, x=curve.x, source=curve.source, edges=curve.edges)
+            left = _decaying(
+                k, x=-curve.x[::-1, ::-1], source=curve.source[::-1, ::-1], edges=-curve.edges[::-1]
+            )
             left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
-        derivatives = (values @ SLOPE.T for values in (curve.time, curve.early, curve.late))
-        # p, p', and dT/ds, dg/ds and dh/ds, [quantity, panel, node].
-        self.at_nodes = np.stack([p, slope, *derivatives])
-        self._powers = [TO_POWERS @ values.T for values in (p, slope)]
+        derivatives = (
+            values @ NODES_TO_DERIVATIVES.T
+            for values in (curve.time, curve.t_minus_x, curve.t_plus_x)
+        )
+        # The fields of StaticValues at the nodes, [field, panel, node].
+        self.node_values = np.stack([p, slope, *derivatives])
+        self._powers = [NODES_TO_POWERS @ values.T for values in (p, slope)]
 
-    def on(self, panels: slice) -> np.ndarray:
-        """The values at the nodes of some panels, [quantity, node]."""
-        return self.at_nodes[:, panels].reshape(len(self.at_nodes), -1)
+    def on(self, panels: slice) -> StaticValues:
+        """Return the values at the nodes of some panels."""
+        return StaticValues(*self.node_values[:, panels].reshape(len(self.node_values), -1))
 
     def evaluate(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
-        """p (order 0) or p' (1) at a parameter on panels."""
+        """Return p (order 0) or p' (order 1) at a parameter on each panel."""
         return value_and_slope(self._powers[order].take(panel, axis=-1), s)[0]
 
 
 def _integral(values: np.ndarray) -> np.ndarray:
-    """From the left end of the curve, of values per unit of the parameter."""
+    """Return the integral of values ds from the left end of the curve, [panel, node]."""
     gain = values @ WEIGHTS
-    return (np.cumsum(gain) - gain)[:, None] + values @ CUMULATIVE.T
+    return (np.cumsum(gain) - gain)[:, None] + values @ NODES_TO_INTEGRALS.T
 
 
 def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Int_{-inf}^x exp(-k (x - x')) tau dx' at the nodes."""
+    """Return Int_{-inf}^x exp(-k (x - x')) tau dx' at the nodes, [panel, node]."""
     within = np.exp(k * (x - edges[:-1, None]))
     loss = np.exp(-k * np.diff(edges))
     gains = loss * ((source * within) @ WEIGHTS)
-    first = float(source[0, 0] / (SLOPE[0] @ x[0])) / k
+    first = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0])) / k
     steps = zip(loss, gains, strict=True)
     starts = list(accumulate(steps, lambda p, step: p * step[0] + step[1], initial=first))
-    return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
+    return (np.array(starts[:-1])[:, None] + (source * within) @ NODES_TO_INTEGRALS.T) / within
 
 
-class Past:
+class DependenceDomains:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
-    An integrand along some panels of the curve is a function of xi - g and eta - h, with one row a
-    point and one column a node; of a function of the order, K or a derivative of it; and of the
-    slice of these panels.
+    Every field is an integral over these domains (`_integrate`). Its integrand is a function of
+    four arguments: xi - g and eta - h, with a row for each point and a column for each node; a
+    function that returns K or a derivative of it, by order; and the slice of the panels to which
+    the columns belong.
     """
 
     def __init__(
@@ -112,22 +149,21 @@ class Past:
         self.left, self.right = curve.crossings(y, self.xi, self.eta)
 
     def slip_velocity(self) -> np.ndarray:
-        """du/dt."""
+        """Return du/dt at the points."""
         source = self.curve.source
-        return 0.5 * self._along(lambda _, __, kernel, panels: kernel(0) * source[panels].ravel())
+        return 0.5 * self._integrate(
+            lambda _, __, kernel, panels: kernel(0) * source[panels].ravel()
+        )
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of du/dt by t - y and by t + y, from its ends and its kernel."""
-        # E tau dx by dg and by dh where the characteristics meet the curve.
-        per_slope = []
-        ends = zip(("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True)
-        for name, end, decayed in ends:
-            slope = self.curve.evaluate(name, end.panel, end.s, order=1)
-            # Where the slope is 0 so is tau, and the end contributes nothing.
-            slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-            per_slope.append(decayed * self.curve.evaluate("source", end.panel, end.s) / slope)
-        left, right = per_slope
-        # E falls with both alike.
+        """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
+
+        Each consists of what enters at the end of the integral and of the change of the kernel.
+        """
+        decay_left, decay_right = self._decay_at_ends()
+        left = self._source_at_end("t_minus_x", self.left, decay_left)
+        right = self._source_at_end("t_plus_x", self.right, decay_right)
+        # The decay E depends on xi and on eta in the same way.
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
             return -0.5 * left - lag, 0.5 * right - lag
@@ -137,141 +173,172 @@ class Past:
             growth = kernel(1) * source[panels].ravel()
             return np.stack([growth * d_eta, growth * d_xi])
 
-        by_xi, by_eta = self._along(integrand, (2,))
+        by_xi, by_eta = self._integrate(integrand, (2,))
         return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
 
-    def slip(self, rest: Rest) -> np.ndarray:
-        """u."""
+    def _source_at_end(self, phase: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
+        """Return E tau dx/dg or E tau dx/dh at an end of each integral."""
+        slope = self.curve.evaluate(phase, end.panel, end.s, order=1)
+        # Where this slope is 0, tau is 0 too, and the end contributes nothing.
+        slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
+        return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
+
+    def slip(self, static_solution: StaticSolution) -> np.ndarray:
+        """Return u at the points."""
         k, alpha = self.stiffness, self.alpha
 
         def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.on(panels)
-            push = -slope * d_time - 0.25 * alpha * p * (d_late - d_early)
-            sides = d_eta * (k * p * d_early) - d_xi * (k * p * d_late)
-            return kernel(0) * push + kernel(1) * sides
+            at = static_solution.on(panels)
+            # These are the factors of K and of K' in the formula for 2 u.
+            with_kernel = -at.slope * at.d_time
+            with_kernel -= 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
+            with_slope = d_eta * (k * at.p * at.d_t_minus_x)
+            with_slope -= d_xi * (k * at.p * at.d_t_plus_x)
+            return kernel(0) * with_kernel + kernel(1) * with_slope
 
-        return self._less_ends(rest, 0) + 0.5 * self._along(integrand)
+        return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
-    def strain(self, rest: Rest) -> np.ndarray:
-        """du/dx, the derivative of the formula for u."""
+    def strain(self, static_solution: StaticSolution) -> np.ndarray:
+        """Return du/dx at the points, by the derivative of the formula for u."""
         k, alpha, curve = self.stiffness, self.alpha, self.curve
-        out = self._less_ends(rest, 1)
+        out = self._minus_mean_of_ends(static_solution, 1)
         if k == alpha == 0.0:
             return out
 
         def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.on(panels)
+            at = static_solution.on(panels)
             first = kernel(1)
-            growth = k**2 * kernel(2) * (d_eta * (p * d_early) - d_xi * (p * d_late))
-            sides = first * (k * p * (d_early + d_late))
-            push = k * (slope * d_time + 0.25 * alpha * p * (d_late - d_early))
-            return (d_eta - d_xi) * (first * push - growth) + sides
+            growth = d_eta * (at.p * at.d_t_minus_x) - d_xi * (at.p * at.d_t_plus_x)
+            growth = k**2 * kernel(2) * growth
+            sides = first * (k * at.p * (at.d_t_minus_x + at.d_t_plus_x))
+            push = at.slope * at.d_time + 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
+            return (d_eta - d_xi) * (first * (k * push) - growth) + sides
 
-        at_left, at_right = self._at_ends(rest, 0)
-        d_xi = self.xi - curve.evaluate("early", self.right.panel, self.right.s)
-        d_eta = self.eta - curve.evaluate("late", self.left.panel, self.left.s)
+        at_left, at_right = self._at_ends(static_solution, 0)
+        d_xi = self.xi - curve.evaluate("t_minus_x", self.right.panel, self.right.s)
+        d_eta = self.eta - curve.evaluate("t_plus_x", self.left.panel, self.left.s)
         sides = 0.125 * k * (d_xi * at_right - d_eta * at_left)
         out += sides - 0.25 * alpha * (at_right - at_left)
-        return out + 0.5 * self._along(integrand)
+        return out + 0.5 * self._integrate(integrand)
 
-    def _less_ends(self, rest: Rest, order: int) -> np.ndarray:
-        """p or p' at the points less its mean, after decay, at the ends of their integrals."""
-        here = rest.evaluate(*self.curve.locate(self.y), order)
-        return here - 0.5 * sum(self._at_ends(rest, order))
+    def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
+        """Return p or p' at the points, less its decayed mean at both ends of their integrals."""
+        at_points = static_solution.evaluate(*self.curve.locate(self.y), order)
+        return at_points - 0.5 * sum(self._at_ends(static_solution, order))
 
-    def _at_ends(self, rest: Rest, order: int) -> list[np.ndarray]:
-        """E p or E p' at the left and the right end of each integral."""
+    def _at_ends(self, static_solution: StaticSolution, order: int) -> list[np.ndarray]:
+        """Return E p or E p' at the left and at the right end of each integral."""
         ends = zip((self.left, self.right), self._decay_at_ends(), strict=True)
-        return [rest.evaluate(end.panel, end.s, order) * decayed for end, decayed in ends]
+        return [
+            static_solution.evaluate(end.panel, end.s, order) * decayed for end, decayed in ends
+        ]
 
     def _decay_at_ends(self) -> tuple[np.ndarray | float, np.ndarray | float]:
-        """E at the left and the right end of each integral."""
+        """Return E at the left and at the right end of each integral."""
         if not self.alpha:
             return 1.0, 1.0
-        d_eta = self.eta - self.curve.evaluate("late", self.left.panel, self.left.s)
-        d_xi = self.xi - self.curve.evaluate("early", self.right.panel, self.right.s)
+        d_eta = self.eta - self.curve.evaluate("t_plus_x", self.left.panel, self.left.s)
+        d_xi = self.xi - self.curve.evaluate("t_minus_x", self.right.panel, self.right.s)
         return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
-    def _along(
+    def _integrate(
         self, integrand: Callable[..., np.ndarray], components: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Integrals over each domain of an integrand, per unit of the parameter of the panels."""
-        if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MANY_PANELS:
-            return self._by_sums(integrand)
+        """Return the integral of an integrand over each domain, [component, point].
+
+        The integrand is given per unit of the parameter of the panels.
+        """
+        if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
+            return self._integrate_without_kernel(integrand)
         curve, out = self.curve, np.empty((*components, self.xi.size))
-        # Points of about the same panels are computed together.
+        # Points whose integrals cover similar panels are computed together.
         order = np.lexsort((self.right.panel, self.left.panel))
-        for start in range(0, order.size, CHUNK):
-            points = order[start : start + CHUNK]
+        for start in range(0, order.size, POINTS_PER_CHUNK):
+            points = order[start : start + POINTS_PER_CHUNK]
             high = self.right.panel[points]
             low = np.minimum(self.left.panel[points], high)
             first, last = int(low.min()), int(high.max()) + 1
             panels = slice(first, last)
             low, high = low - first, high - first
             ends = np.arange(low.size), np.array([high, low])
-            d_xi = self.xi[points, None] - curve.early[panels].ravel()
-            d_eta = self.eta[points, None] - curve.late[panels].ravel()
+            d_xi = self.xi[points, None] - curve.t_minus_x[panels].ravel()
+            d_eta = self.eta[points, None] - curve.t_plus_x[panels].ravel()
             z = self.stiffness * d_xi
             z *= d_eta
-            kernel = kernel_of(self.stiffness, z, z.reshape(low.size, -1, COUNT)[ends])
+            # Only the panels at the two ends, which are cut, may have nodes outside of the domain.
+            kernel = kernel_function(self.stiffness, z, z.reshape(low.size, -1, NODE_COUNT)[ends])
             values = integrand(d_xi, d_eta, kernel, panels)
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)
-            boxes = values.reshape(*components, low.size, -1, COUNT)
-            # The panels between both ends, and those that are cut there.
-            here = np.arange(last - first)
-            inside = (here >= low[:, None]) & (here < high[:, None])
-            total = np.add.reduce((boxes @ WEIGHTS) * inside, axis=-1)
+            by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
+            # Sum over the whole panels between both ends, and over the parts of the panels at the
+            # ends.
+            panel = np.arange(last - first)
+            inside = (panel >= low[:, None]) & (panel < high[:, None])
+            total = np.add.reduce((by_panel @ WEIGHTS) * inside, axis=-1)
             weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-            cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
+            cut = np.add.reduce(
+                by_panel[..., *ends, :] * weights.reshape(2, -1, NODE_COUNT), axis=-1
+            )
             out[..., points] = total + cut[..., 0, :] - cut[..., 1, :]
-        # The domain of a point on the curve, at the end of a panel, is empty.
+        # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
-    def _by_sums(self, integrand: Callable[..., np.ndarray]) -> np.ndarray:
-        """The same for a kernel of 1, where an integrand is the same for all points."""
-        zero, every = np.zeros((1, 1)), slice(0, len(self.curve.panels))
+    def _integrate_without_kernel(self, integrand: Callable[..., np.ndarray]) -> np.ndarray:
+        """Return the integrals if the kernel is 1, where all points have the same integrand.
+
+        Then they are differences of cumulative sums.
+        """
+        zero, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
         values = np.broadcast_to(
-            integrand(zero, zero, lambda _: 1.0, every), (1, self.curve.x.size)
+            integrand(zero, zero, lambda _: 1.0, all_panels), (1, self.curve.x.size)
         )
-        boxes = values.reshape(-1, COUNT)
-        sums = np.concatenate([[0.0], np.cumsum(boxes @ WEIGHTS)])
+        by_panel = values.reshape(-1, NODE_COUNT)
+        sums = np.concatenate([[0.0], np.cumsum(by_panel @ WEIGHTS)])
         low, high = np.minimum(self.left.panel, self.right.panel), self.right.panel
-        at_low = sums[low] + np.add.reduce(partial_weights(self.left.s) * boxes[low], axis=-1)
-        at_high = sums[high] + np.add.reduce(partial_weights(self.right.s) * boxes[high], axis=-1)
+        at_low = sums[low] + np.add.reduce(partial_weights(self.left.s) * by_panel[low], axis=-1)
+        at_high = sums[high] + np.add.reduce(
+            partial_weights(self.right.s) * by_panel[high], axis=-1
+        )
         return np.where(self.left.panel > self.right.panel, 0.0, at_high - at_low)
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
-    """Weights at a panel's nodes of the integral from its left end to a parameter."""
-    return np.vander(s, COUNT + 1, increasing=True) @ PARTIAL
+    """Return the weights at the nodes that integrate from the left end of a panel to s."""
+    return np.vander(s, NODE_COUNT + 1, increasing=True) @ POWERS_TO_WEIGHTS
 
 
 def kernel_rate(gamma: float, alpha: float) -> float:
-    """The fastest rate at which the kernel E K changes."""
+    """Return the fastest rate at which the kernel E K changes in time."""
     return max(float(np.sqrt(gamma)), 0.5 * abs(alpha))
 
 
 def decay(alpha: float, d_xi: np.ndarray, d_eta: np.ndarray) -> np.ndarray:
-    """E = exp(-alpha (t - T)/2), where d_xi + d_eta = 2 (t - T)."""
-    return np.exp(np.minimum(-0.25 * alpha * (d_xi + d_eta), LARGEST_EXPONENT))
+    """Return E = exp(-alpha (t - T)/2), where d_xi + d_eta = 2 (t - T)."""
+    return np.exp(np.minimum(-0.25 * alpha * (d_xi + d_eta), MAX_EXPONENT))
 
 
-def kernel_of(stiffness: float, z: np.ndarray, cut: np.ndarray) -> Callable:
-    """K and its derivatives at z, by order; z below 0 counts where the domain is cut only."""
+def kernel_function(stiffness: float, z: np.ndarray, cut: np.ndarray) -> Callable:
+    """Return a function that computes K or a derivative of it at z, by order.
+
+    cut holds the values of z at the ends of the domains. Only there may z be negative.
+    """
     if stiffness < 0.0:
         return partial(_bessel, z)
-    return partial(riemann, z, (float(cut.min()), float(z.max())))
+    return partial(riemann_kernel, z, (float(cut.min()), float(z.max())))
 
 
-def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.ndarray:
-    """J0(sqrt z), with J0(i y) = I0(y), or its derivative of order 1 or 2, for z within bounds."""
+def riemann_kernel(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.ndarray:
+    """Return J0(sqrt z), or its derivative of order 1 or 2, for z within bounds.
+
+    For negative z it is I0(sqrt(-z)).
+    """
     lower, upper = min(bounds[0], 0.0), max(bounds[1], 0.0)
     if lower == upper == 0.0:
-        return np.full(z.shape, AT_ZERO[order])
-    if max(-lower, upper) > LARGEST:
+        return np.full(z.shape, KERNEL_AT_ZERO[order])
+    if max(-lower, upper) > MAX_POLYNOMIAL_ARGUMENT:
         return _bessel(np.clip(z, lower, upper), order)
-    # A few polynomials serve all ranges.
+    # Bounds are rounded up to powers of two, so that a few polynomials serve all ranges.
     lower, upper = _power_of_two(lower), _power_of_two(upper)
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)
@@ -285,13 +352,16 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
 
 
 def _power_of_two(bound: float) -> float:
-    """The next power of two, from 1 on, away from 0; or 0."""
+    """Return a bound rounded away from 0 to a power of two, at least 1 in size; 0 remains 0."""
     return bound and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(bound)))), bound)
 
 
 @lru_cache(maxsize=256)
 def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
-    """Coefficients of powers, the highest first, of a variable from -1 to 1 between the bounds."""
+    """Return the coefficients of the polynomial for K between bounds, highest power first.
+
+    Its variable runs from -1 to 1 between the bounds.
+    """
     points = chebyshev.chebpts1(41)
     values = _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * points, order)
     series = chebyshev.chebfit(points, values, 40)
@@ -300,6 +370,7 @@ def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
 
 
 def _bessel(z: np.ndarray, order: int) -> np.ndarray:
+    """Return J0(sqrt z) or its derivative of order 1 or 2, from scipy's Bessel functions."""
     root = np.maximum(np.sqrt(np.abs(z)), 1e-9)
     outside = np.where(z < 0.0, root, 0.0)
     even = np.where(z >= 0.0, j0(root), i0(outside))
@@ -308,7 +379,8 @@ def _bessel(z: np.ndarray, order: int) -> np.ndarray:
     slope = np.where(z >= 0.0, -j1(root), -i1(outside)) / (2.0 * root)
     if order == 1:
         return slope
-    # Bessel's equation, z f'' + f' + f/4 = 0, and its series where that cancels.
+    # The second derivative follows from Bessel's equation, z f'' + f' + f/4 = 0. Near 0, where its
+    # terms cancel, it is a series.
     small = np.abs(z) < 0.1
     series = (1.0 - z / 12.0 * (1.0 - z / 32.0 * (1.0 - z / 60.0 * (1.0 - z / 96.0)))) / 32.0
     return np.where(small, series, -(slope + 0.25 * even) / np.where(small, 1.0, z))

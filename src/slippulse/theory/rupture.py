@@ -1,9 +1,16 @@
 """A whole rupture in the continuum limit, dx -> 0 at fixed beta/dx.
 
-A front outruns the waves while tau(x) > 0: T(x) is the integral of 1/v(tau(x), beta/dx), and the
-damping, beta = (beta/dx) dx -> 0, acts at the front alone (`fast_front`). Where tau < 0 the front
-is a free boundary (`slow_front`). The undamped equation behind the fronts has Riemann's solution
-(`riemann`), up to the trailing edge (`trailing_edge`).
+The construction has four steps, each in a module of its own:
+
+1. Where tau(x) > 0, a front is faster than the waves (`fast_front`). Its arrival time T(x) is the
+   integral of 1/v(tau(x), beta/dx). The damping beta = (beta/dx) dx tends to 0 and acts at the
+   front alone.
+2. Where tau < 0, the front is slower than the waves, and a free boundary (`slow_front`).
+3. Behind the fronts the undamped equation has Riemann's solution (`riemann`).
+4. It holds up to the trailing edge, where blocks stick (`trailing_edge`).
+
+`spreading` combines the first two steps for all nucleation points, and `Rupture` answers questions
+about the result.
 """
 
 from collections.abc import Sequence
@@ -16,7 +23,7 @@ from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
-from .curve import SAME
+from .curve import EQUALITY_TOLERANCE
 from .domains import broadcast_numbers, check_domains
 from .fast_front import FastFront
 from .solved_part import SolvedPart
@@ -24,20 +31,23 @@ from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
 from .two_fronts import ExactTransition
 
-# The construction goes on beyond the duration, relative, so that the end is a time like any other.
-BEYOND = 1e-6
-# The largest exponent, alpha times the duration, with room to the end of floating point.
-MOST_DECAY = 600.0
+# The construction continues beyond the duration by this fraction of it, so that the final time is a
+# time like any other.
+EXTRA_DURATION = 1e-6
+# The largest product of alpha and the duration, which leaves exponentials far from overflow.
+MAX_DECAY = 600.0
+# Names of the fields.
 FIELDS = ("slip_velocity", "slip", "strain")
-# The largest map, which takes 100 bytes a point.
-MOST_POINTS = 10**7
+# The largest number of points of a map, which takes 100 bytes for each.
+MAX_MAP_POINTS = 10**7
+# Reasons of limits that come from the trailing edge.
 SLOW_EDGE = "the trailing edge is slower than the waves"
 FALLING_SLIP = "the slip would fall"
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A point in whose future the construction says nothing."""
+    """A point in whose future the construction makes no statement, and the reason."""
 
     x: float
     time: float
@@ -45,7 +55,7 @@ class Limit:
 
 
 class FrontEnd(Limit):
-    """The last point of a front: where it stops, or at the end of the time asked for."""
+    """The last point of a front: where it stops, or where it is at the end of the duration."""
 
 
 class Rupture(ExplainsRemovedNames):
@@ -56,17 +66,18 @@ class Rupture(ExplainsRemovedNames):
     prestress : Prestress that reaches 1 somewhere: each such position is a nucleation point
     gamma : float, elasticity ratio, > 0; or 0 for the stress boundary
     damping_ratio, release : beta/dx, from 0 to 1e6, at which dx -> 0; "total" or "elastic"
-    duration : float, time up to which the rupture is wanted, >= 1e-9
-    refinement : int, from 1 to 10, of the panels, to see what the result owes to them
-    rate_strengthening : float, alpha of a term -alpha du/dt, at most 600/duration; above the value
-        where slip runs away
+    duration : float, time up to which the rupture is computed, >= 1e-9
+    refinement : int, from 1 to 10, factor of the numbers of panels and of search steps, to check
+        that the result does not depend on them
+    rate_strengthening : float, alpha of a term -alpha du/dt, at most 600/duration, and above the
+        value at which slip runs away
 
     Methods take positions x and times up to ``duration``, numbers or arrays, and return arrays of
-    their shape, NaN where nothing is known: beyond `horizon`, and for what has not come until
-    ``duration``.
+    their shape, NaN where nothing is known: beyond `horizon`, and for events that have not
+    happened until ``duration``.
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a
-    front needs more than 20000 panels; of a search for sticks, if it would take more than 3 GB (a
-    minute); of every method, if a position or a time is not finite.
+    front needs more than 20000 panels. Methods raise it if a position or a time is not finite, or
+    if the search for sticks would take more than 3 GB (a minute).
     Source: derived in the supplement; the lattice tends to it at first order in dx.
 
     Examples
@@ -88,16 +99,21 @@ class Rupture(ExplainsRemovedNames):
     ) -> None:
         check_domains(duration=duration)
         self.law = FastFront(
-            prestress, gamma, damping_ratio, release, refinement, rate_strengthening
+            prestress=prestress,
+            gamma=gamma,
+            damping_ratio=damping_ratio,
+            release=release,
+            refinement=refinement,
+            alpha=rate_strengthening,
         )
-        check_number("rate_strengthening", rate_strengthening, at_most=MOST_DECAY / duration)
+        check_number("rate_strengthening", rate_strengthening, at_most=MAX_DECAY / duration)
         self.prestress = prestress
         self.gamma = self.law.gamma
         self.duration = float(duration)
-        # A time up to here is the duration but for rounding.
-        self._last = self.duration * (1.0 + SAME)
-        until = self.duration * (1.0 + BEYOND)
-        self.stretches, self._unknown = spread(self.law, until)
+        # A later time than this is beyond the duration, apart from rounding.
+        self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
+        until = self.duration * (1.0 + EXTRA_DURATION)
+        self.stretches, self._unknown_points = spread(self.law, until)
         self._parts = []
         for stretch in self.stretches:
             curve, law = stretch.curve(), self.law
@@ -107,28 +123,37 @@ class Rupture(ExplainsRemovedNames):
                 [0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features]
             )
             marks = marks[curve.covers(marks)]
-            keys = curve, self.gamma, until, marks, law.refinement, prestress.symmetric, law.alpha
-            self._parts.append(SolvedPart(*keys))
-        # A symmetric scene is solved at x >= 0.
+            part = SolvedPart(
+                curve=curve,
+                gamma=self.gamma,
+                until=until,
+                marks=marks,
+                refinement=law.refinement,
+                one_side=prestress.symmetric,
+                alpha=law.alpha,
+            )
+            self._parts.append(part)
+        # A symmetric scene is computed at x >= 0 only.
         one_side = prestress.symmetric
         self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0 or not one_side]
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
-        """Left and right end of each connected part: "stops" for good, or "duration"."""
+        """Left and right end of each connected part; the reason is "stops" or "duration"."""
         pairs = zip(self._parts, self.stretches, strict=True)
         return [(self._front_end(*pair, LEFT), self._front_end(*pair, RIGHT)) for pair in pairs]
 
     def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
+        """Return the last point, until the duration, of the front on one side of a part."""
         (x, time), reason = stretch.ends[side], str(stretch.end_reason[side])
-        if reason != "duration" and time <= self._last:
+        if reason != "duration" and time <= self._latest_time:
             return FrontEnd(float(x), float(min(time, self.duration)), reason)
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
         x = part.curve.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
-        """T(x): when the first front reaches x.
+        """Return T(x), the time at which the first front reaches x.
 
         Parameters
         ----------
@@ -136,32 +161,34 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        array, NaN where no front arrives until ``duration``
+        array, NaN where no front arrives before ``duration``
         """
         x = as_numbers("x", x)
         times = [part.curve.arrival(x) for part in self._parts]
-        return self._until_end(x, np.fmin.reduce(times))
+        return self._nan_where_unknown(x, np.fmin.reduce(times))
 
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
-        """Left and right front of the connected part that holds x, which must slip by then.
+        """Return the left and right front of the connected part that contains x.
 
         Parameters
         ----------
-        time, x : a time in (0, duration], and a position that has slipped by then, or ValueError
+        time, x : a time in (0, duration], and a position that has been released by then
 
         Returns
         -------
         tuple of float, left and right
         """
-        time = self._time(time)
+        time = self._checked_time(time)
         check_number("x", x)
         for part in self._parts:
-            if part.curve.arrival(x) <= time * (1.0 + SAME):
+            if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
                 return part.curve.front_at(time, x, LEFT), part.curve.front_at(time, x, RIGHT)
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """Time at which x first sticks; it may be released again beyond the horizon.
+        """Return the time at which x first sticks.
+
+        Beyond the horizon it may be released again.
 
         Parameters
         ----------
@@ -169,25 +196,31 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        array, NaN where x does not stick until ``duration``, or beyond the horizon
+        array, NaN where x does not stick before ``duration``, and beyond the horizon
         """
         x = as_numbers("x", x)
-        return self._until_end(x, self._stick(x))
+        return self._nan_where_unknown(x, self._stick_time_beyond_end(x))
 
-    def _distinct(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Distinct positions (of one side, if symmetric), and the index of each x in them."""
+    def _distinct_positions(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the distinct positions among x, and the index of each x in them.
+
+        If the scene is symmetric, the positions are those of one side.
+        """
         x = np.abs(x) if self.prestress.symmetric else x
         positions, index = np.unique(x, return_inverse=True)
         return positions, index.reshape(x.shape)
 
-    def _stick(self, x: np.ndarray) -> np.ndarray:
-        """Stick times, also a little beyond the end and beyond the horizon; NaN for none."""
-        positions, index = self._distinct(x)
+    def _stick_time_beyond_end(self, x: np.ndarray) -> np.ndarray:
+        """Return stick times, also slightly beyond the end and beyond the horizon.
+
+        NaN if a block never sticks.
+        """
+        positions, index = self._distinct_positions(x)
         times = [part.stick_time(positions) for part in self._solved]
         return np.fmin.reduce(times)[index]
 
     def final_slip(self, x) -> np.ndarray:
-        """Slip at x after sticking, 0 where nothing has slipped.
+        """Return the slip at x after sticking.
 
         Parameters
         ----------
@@ -195,8 +228,8 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``, and where
-        the horizon comes until then
+        array, 0 where nothing has slipped, NaN where x has not stuck before ``duration``, or where
+        the horizon is earlier than ``duration``
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
@@ -207,24 +240,25 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
-        """Time and position of the first sticking; None for none until ``duration``."""
+        """Time and position of the first sticking; None if nothing sticks before ``duration``."""
         first = min(filter(None, (part.first_stick() for part in self._solved)), default=None)
-        # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
-        last = self.limit.time * (1.0 + SAME) if self.limit else np.inf
-        if not first or first.time > min(last, self._last):
+        # After a limit something else may have stuck earlier, but up to the limit the edge is
+        # known.
+        last = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
+        if not first or first.time > min(last, self._latest_time):
             return None
         return FirstStick(min(first.time, self.duration), first.x)
 
     @cached_property
     def transition(self) -> ExactTransition:
-        """T_trans and L_trans; NaN for none until ``duration``."""
+        """T_trans and L_trans; NaN if nothing sticks before ``duration``."""
         if not self.first_stick:
             return ExactTransition(np.nan, np.nan)
         left, right = self.fronts_at(*self.first_stick)
         return ExactTransition(self.first_stick.time, right - left)
 
     def pulse_width(self, time: float, side: str = "right") -> float:
-        """Distance between the "right" or "left" front and the trailing edge behind it.
+        """Return the distance between the "right" or "left" front and its trailing edge.
 
         Parameters
         ----------
@@ -235,36 +269,39 @@ class Rupture(ExplainsRemovedNames):
         float, NaN before anything sticks
         """
         check_choice("side", side, ("right", "left"))
-        time = self._time(time)
-        if not self.first_stick or time <= self.first_stick.time * (1.0 + SAME):
+        time = self._checked_time(time)
+        if not self.first_stick or time <= self.first_stick.time * (1.0 + EQUALITY_TOLERANCE):
             return np.nan
         x = self.first_stick.x
         front = self.fronts_at(time, x)[side == "right"]
 
-        def late(position: float) -> float:
-            stick = np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)
+        def delay(position: float) -> float:
+            """Return how much later than the given time a position sticks."""
+            stick = np.nan_to_num(
+                self._stick_time_beyond_end(np.array(position)), nan=2.0 * self.duration
+            )
             return float(stick) - time
 
-        # Of several trailing edges that of the pulse is next to its front.
+        # If there are several trailing edges, that of the pulse is nearest to its front.
         knots = np.concatenate([part.knots.x for part in self._solved])
         knots = np.append(knots, -knots) if self.prestress.symmetric else knots
         inner = np.append(knots[(knots - x) * (knots - front) < 0.0], x)
         inner = inner[np.argsort(np.abs(inner - front))]
-        first = int(np.argmax(self._stick(inner) <= time))
+        first = int(np.argmax(self._stick_time_beyond_end(inner) <= time))
         ahead = inner[first - 1] if first else front
         trailing = front
-        if late(front) > 0.0:
-            trailing = root_between(late, float(inner[first]), float(ahead), xtol=1e-11)
+        if delay(front) > 0.0:
+            trailing = root_between(delay, float(inner[first]), float(ahead), xtol=1e-11)
         unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
         return np.nan if unknown else abs(front - trailing)
 
     @cached_property
     def largest_velocity(self) -> float:
-        """Largest slip velocity until ``duration``, where the construction holds."""
+        """Largest slip velocity until ``duration``, as far as the construction holds."""
         return max(part.largest_velocity(self.duration, self.horizon) for part in self._solved)
 
     def slip_velocity(self, x, time) -> np.ndarray:
-        """du/dt at points.
+        """Return the slip velocity du/dt at points.
 
         Parameters
         ----------
@@ -274,10 +311,10 @@ class Rupture(ExplainsRemovedNames):
         -------
         array, NaN beyond the horizon
         """
-        return self._points(("slip_velocity",), x, time)["slip_velocity"]
+        return self._fields_at_points(("slip_velocity",), x, time)["slip_velocity"]
 
     def slip(self, x, time) -> np.ndarray:
-        """u at points.
+        """Return the slip u at points.
 
         Parameters
         ----------
@@ -287,10 +324,10 @@ class Rupture(ExplainsRemovedNames):
         -------
         array, NaN beyond the horizon
         """
-        return self._points(("slip",), x, time)["slip"]
+        return self._fields_at_points(("slip",), x, time)["slip"]
 
     def strain(self, x, time) -> np.ndarray:
-        """du/dx at points.
+        """Return the strain du/dx at points.
 
         Parameters
         ----------
@@ -300,10 +337,10 @@ class Rupture(ExplainsRemovedNames):
         -------
         array, NaN beyond the horizon
         """
-        return self._points(("strain",), x, time)["strain"]
+        return self._fields_at_points(("strain",), x, time)["strain"]
 
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Some of FIELDS on a grid of at most 1e7 points, by name: arrays [time, position].
+        """Return fields on a grid of times and positions, by name.
 
         Parameters
         ----------
@@ -322,44 +359,47 @@ class Rupture(ExplainsRemovedNames):
         x, time = as_numbers("positions", positions), as_numbers("times", times)
         if x.ndim != 1 or time.ndim != 1:
             raise ValueError(f"times, positions: {time.ndim}-d, {x.ndim}-d; allowed: one dimension")
-        check_number("times and positions", x.size * time.size, at_most=MOST_POINTS)
-        return self._points(tuple(fields), x[None, :], time[:, None])
+        check_number("times and positions", x.size * time.size, at_most=MAX_MAP_POINTS)
+        return self._fields_at_points(tuple(fields), x[None, :], time[:, None])
 
-    def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
-        """Fields at points, broadcast."""
+    def _fields_at_points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
+        """Return fields at points, whose positions and times are broadcast."""
         x, time = broadcast_numbers(x=x, time=time)
-        time = self._until_duration(time)
-        positions, index = self._distinct(x)
+        time = self._limited_to_duration(time)
+        positions, index = self._distinct_positions(x)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved:
-            part.fill(out, positions, index, time)
+            part.fill_fields(out, x=positions, index=index, time=time)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
         return {name: np.where(unknown, np.nan, values) for name, values in out.items()}
 
-    def _time(self, time: float) -> float:
+    def _checked_time(self, time: float) -> float:
+        """Return a time, checked to be positive and not later than the duration."""
         check_number("time", time, above=0.0)
-        return float(self._until_duration(np.array(time)))
+        return float(self._limited_to_duration(np.array(time)))
 
-    def _until_duration(self, time: np.ndarray) -> np.ndarray:
-        if np.any(time > self._last):
+    def _limited_to_duration(self, time: np.ndarray) -> np.ndarray:
+        """Return times, at most the duration; raise ValueError if one is later."""
+        if np.any(time > self._latest_time):
             latest = float(np.max(time))
             raise ValueError(f"time: {latest!r}; allowed: <= duration = {self.duration:g}")
         return np.minimum(time, self.duration)
 
-    def _until_end(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Times of events; NaN where they are not known to come until the duration."""
-        known = (time <= self._last) & ~self._is_beyond_horizon(x, time)
-        return np.where(known, np.minimum(time, self.duration), np.nan)
+    def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Return times of events; NaN where an event is not known to happen before the end."""
+        is_known = (time <= self._latest_time) & ~self._is_beyond_horizon(x, time)
+        return np.where(is_known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
-        return time * (1.0 + SAME) >= self.horizon(x)
+        """Return a mask of the points in whose past the construction has ended."""
+        return time * (1.0 + EQUALITY_TOLERANCE) >= self.horizon(x)
 
     @cached_property
     def _limits(self) -> list[Limit]:
-        """All points in whose future the construction says nothing."""
-        limits = [Limit(*point, reason) for point, reason in self._unknown]
+        """All points in whose future the construction makes no statement."""
+        limits = [Limit(*point, reason) for point, reason in self._unknown_points]
         for part in self._solved:
             slow = [Limit(*point, SLOW_EDGE) for point in part.slow_points()]
             falling = part.falling_slip(partial(_horizon, limits + slow))
@@ -367,15 +407,15 @@ class Rupture(ExplainsRemovedNames):
             if self.prestress.symmetric:
                 new += [Limit(-limit.x, limit.time, limit.reason) for limit in new]
             limits += new
-        return [limit for limit in limits if limit.time <= self._last]
+        return [limit for limit in limits if limit.time <= self._latest_time]
 
     @property
     def limit(self) -> Limit | None:
-        """The earliest point in whose future the construction says nothing, or None."""
+        """The earliest point in whose future the construction makes no statement, or None."""
         return min(self._limits, key=lambda limit: limit.time, default=None)
 
     def horizon(self, x) -> np.ndarray:
-        """Time from which on the construction says nothing at x; inf for none.
+        """Return the time from which on the construction makes no statement at x.
 
         Parameters
         ----------
@@ -389,5 +429,6 @@ class Rupture(ExplainsRemovedNames):
 
 
 def _horizon(limits: list[Limit], x: np.ndarray) -> np.ndarray:
+    """Return the earliest time at which waves from one of the limits reach x."""
     horizons = [limit.time + np.abs(x - limit.x) for limit in limits]
     return np.min(horizons, axis=0, initial=np.inf)

@@ -1,13 +1,38 @@
-"""The free boundary: a front into negative pre-stress, slower than the waves.
+"""The free boundary: a front into negative pre-stress, which is slower than the waves.
 
-Slip, slip velocity and strain vanish on it, for it needs no fracture energy. The characteristic
-that ends on it at (X, t) entered the rupture at e, where T - x has the same value. du/dt = 0 there
-reads, with xi = T(e) - e and eta = xi + 2 X,
+A fast front is driven by the pre-stress ahead of it. A front into negative pre-stress is driven by
+the waves that come from behind, and its path is unknown: it is a free boundary. Slip, slip velocity
+and strain vanish on it, because no fracture energy is needed to release a block.
+
+Consider the characteristic that ends on the slow front at (X, t). It entered the rupture at the
+point e of the known part of the curve, its entry:
+
+      t |                      *      (X, t)
+        |                    / *
+        |                  /  *
+        |                /    *       slow front, dT/dx > 1
+        |              /     *
+        |            /       *        characteristic T - x = const, from e to X
+        |          /        *
+        |        /          *
+        | e -> *           *          fast fronts, known
+        |         *     *
+        |            *                nucleation
+        +--------------------------- x
+
+T - x has the same value at the entry and at the front. With xi = T(e) - e and eta = xi + 2 X, the
+condition that du/dt = 0 on the front is Riemann's formula
 
     Int_e^X tau(x) E J0( sqrt(k (xi - T + x) (eta - T - x)) ) dx = 0,
 
-with E and k = gamma - alpha^2/4 as in `riemann`. X is found as a function of e, in which it stays
-smooth where the front stops: there dX/de = 0.
+where E and k = gamma - alpha^2/4 are those of `riemann`. X is computed as a function of the entry e
+instead of the time, since it remains smooth where the front stops (dX/de = 0 there).
+
+The front grows by one panel at a time (`SlowFront.next_panel`). The entries of a panel form a
+chunk, which is part of one panel of the known curve, taken from right to left. `FreeBoundary` is
+the equation above at the nodes of the chunk, solved by Newton's method for the positions X. The
+chunk is halved if the solution is not resolved, and shortened where the front stops or reaches the
+end of the negative pre-stress (a mark). The new panel belongs to the known curve from then on.
 """
 
 from dataclasses import dataclass
@@ -17,66 +42,87 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..model.prestress import Interval, Prestress
-from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
-from .prestress_pieces import analytic
-from .riemann import decay, kernel_of, partial_weights
+from .curve import (
+    NODE_COUNT,
+    NODES,
+    NODES_TO_DERIVATIVES,
+    NODES_TO_ENDS,
+    NODES_TO_INTEGRALS,
+    NODES_TO_SERIES,
+    WEIGHTS,
+    Curve,
+    Panel,
+)
+from .prestress_pieces import continued_prestress
+from .riemann import decay, kernel_function, partial_weights
 
-RESOLVED = 1e-11
-# The next chunk is at most this factor longer than one that was cut.
-GROWTH = 4.0
-# The shortest fraction of a panel of entries.
-SHORTEST = 1e-11
-# A remainder of a panel that is left to the next one.
-REMAINDER = 1e-8
-# Entries that move the front by less than a fraction of the rupture are passed over: those that are
-# rounding at first, and then, as long as they would send the front back, those that the panels do
-# not resolve.
-NEGLIGIBLE = (1e-13, 1e-12, 1e-11, 1e-10)
-# Parameters of a panel at which such entries may end, as fractions of the way to its left end.
-FRACTIONS = np.linspace(0.0, 1.0, 65)
-# Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
-# continued at their speed.
-NEAR_MARK = 1e-5
-# Length of a whole panel in its parameter.
-WHOLE = 2.0
-# Relative distance of a look beyond the end of a panel of entries for the next one.
-LOOK = 1e-11
-# An event this close to the first entry of a chunk, in its parameter, has ended the last chunk.
-AT_START = 1e-6
-# A chunk ends at an event this close to its last entry, the less exactly after many corrections.
-AT_END, NEAR_END, MANY = 1e-9, 1e-6, 5
-# A chunk that was shortened to end at an event is searched a little beyond its end.
-BEYOND = 1.2
-MOST_CHUNKS = 60
+# A solution is resolved if the last two coefficients of its Legendre series are below this
+# fraction of the size of the rupture.
+SERIES_TOLERANCE = 1e-11
+# After a chunk that was shortened, the next one is at most this factor longer.
+MAX_CHUNK_GROWTH = 4.0
+# Shortest chunk, in the parameter of its panel.
+MIN_CHUNK = 1e-11
+# A shorter remainder of a panel of entries is left to the next panel.
+MIN_REMAINDER = 1e-8
+# Entries that move the front by less than a small fraction of the size of the rupture are skipped.
+# The first fraction is that of rounding. The larger ones are used only if the front would otherwise
+# run back, since the panels do not resolve such motions.
+NEGLIGIBLE_MOTIONS = (1e-13, 1e-12, 1e-11, 1e-10)
+# Skipped entries end at one of these parameters of their panel, given as fractions of the remaining
+# way to its left end.
+ENTRY_FRACTIONS = np.linspace(0.0, 1.0, 65)
+# A front that speeds up towards the waves cannot be resolved up to the mark. At this distance from
+# it, as a fraction of the size of the rupture, it is continued at the wave speed.
+MARK_DISTANCE = 1e-5
+# Length of a panel in its parameter.
+PANEL_LENGTH = 2.0
+# The next entry is searched at this relative distance beyond the end of a panel of entries.
+SEARCH_OFFSET = 1e-11
+# An event this close to the first entry of a chunk, in its parameter, is the one that ended the
+# previous chunk.
+EVENT_AT_START = 1e-6
+# A chunk ends at an event if the event is this close to its last entry.
+EVENT_AT_END = 1e-9
+# After more corrections of the end than this number, a larger distance is sufficient.
+MAX_EXACT_CORRECTIONS = 5
+# The larger distance.
+EVENT_NEAR_END = 1e-6
+# In a chunk that was shortened to end at an event, events are searched up to this parameter, a
+# little beyond its end.
+SEARCH_LIMIT = 1.2
+# The most chunks that are tried for a panel.
+MAX_CHUNKS = 60
 # A front is not followed on a curve of more panels.
-MOST_PANELS = 100_000
-MOST_NEWTON_STEPS = 60
+MAX_PANELS = 100_000
+MAX_NEWTON_STEPS = 60
 
 
 class Progress(NamedTuple):
-    """What a slow front keeps from one panel to the next.
+    """State that a slow front keeps from one panel to the next.
 
-    The longest chunk that it tries next, and the position where the characteristic that has reached
-    it entered the curve; NaN before its first panel.
+    next_length is the longest chunk to try next. last_entry is the position where the
+    characteristic that arrives at the front now entered the curve; NaN before the first panel.
     """
 
-    longest: float = WHOLE
-    entered: float = np.nan
+    next_length: float = PANEL_LENGTH
+    last_entry: float = np.nan
 
 
 class Entry(NamedTuple):
-    """Panel (below 0: none on the curve) and parameter of the next entry.
+    """The next entry: its panel of the curve, and the parameter on it.
 
-    The entries between it and the last one, which are negligible, move the front so far.
+    The panel is negative if there is no further entry on the curve. skipped_motion is the motion of
+    the front by the negligible entries that were skipped before this one.
     """
 
     panel: int
     s: float
-    passed: float = 0.0
+    skipped_motion: float = 0.0
 
 
 class Advance(NamedTuple):
-    """The next panel, the reason why it is the last one, and what the following panel needs."""
+    """The next panel, the reason why the front ends (or None), and the state for the next one."""
 
     panel: Panel | None
     stop: str | None
@@ -84,103 +130,120 @@ class Advance(NamedTuple):
 
 
 class Chunk(NamedTuple):
-    """A range of entries on a panel of the curve, by their parameters, from right to left."""
+    """A range of entries on one panel of the curve, by their parameters, from right to left."""
 
     panel: int
     start: float
     stop: float
 
     def parameters(self, s: np.ndarray = NODES) -> np.ndarray:
-        """Parameters on the panel of the entries, from their parameters on the chunk."""
+        """Return the parameters on the panel that belong to parameters s on the chunk."""
         return self.start + 0.5 * (self.stop - self.start) * (1.0 + s)
 
     def half(self) -> "Chunk":
-        """The first half."""
+        """Return the first half of the chunk."""
         return self._replace(stop=0.5 * (self.start + self.stop))
 
 
 def _first_event(x: np.ndarray, mark: float, limit: float) -> tuple[float, str | None]:
-    """The first parameter, up to a limit, where a front stops or meets the mark, or inf."""
-    events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(SLOPE @ x, limit)]
+    """Return the parameter of the first event of a solution up to a limit, and its name.
+
+    The event is "mark" where the front reaches the mark, and None where it stops. The parameter is
+    inf if there is no event.
+    """
+    events: list[tuple[float, str | None]] = [
+        (s, None) for s in _roots_on(NODES_TO_DERIVATIVES @ x, limit)
+    ]
     if np.isfinite(mark):
         events += [(s, "mark") for s in _roots_on(x - mark, limit)]
     return min(events, key=lambda event: event[0], default=(np.inf, None))
 
 
+def _must_be_corrected(event: float, corrections: int) -> bool:
+    """Return True if a chunk does not end at an event yet (inf: none), after corrections."""
+    if event == np.inf:
+        return False
+    distance = EVENT_AT_END if corrections <= MAX_EXACT_CORRECTIONS else EVENT_NEAR_END
+    return corrections == 0 or abs(event - 1.0) >= distance
+
+
 def _goes_back(x: np.ndarray) -> bool:
-    """Tell whether a front would go back from the start of the chunk on."""
-    slope = SLOPE @ x
+    """Return True if the front would run back from the start of the chunk on."""
+    slope = NODES_TO_DERIVATIVES @ x
     first = min(_roots_on(slope, 1.0), default=1.0)
-    return bool(legendre.legval(0.5 * (first - 1.0), TO_SERIES @ slope) < 0.0)
+    return bool(legendre.legval(0.5 * (first - 1.0), NODES_TO_SERIES @ slope) < 0.0)
 
 
 def _roots_on(values: np.ndarray, limit: float) -> list[float]:
-    """Roots from -1 to a limit of the polynomial with these values at the nodes."""
-    series = TO_SERIES @ values
+    """Return the roots, up to a limit, of the polynomial with these values at the nodes."""
+    series = NODES_TO_SERIES @ values
     scale = np.max(np.abs(series))
     if scale == 0.0:
         return []
     roots = legendre.legroots(legendre.legtrim(series, 1e-13 * scale))
     real = roots.real[np.abs(roots.imag) < 1e-9 * (1.0 + np.abs(roots.real))]
-    return real[(real > -1.0 + AT_START) & (real <= limit)].tolist()
+    return real[(real > -1.0 + EVENT_AT_START) & (real <= limit)].tolist()
 
 
 class FreeBoundary:
-    """The equation of the free boundary on one chunk, as a function of the positions of the front.
+    """The equation of the free boundary on one chunk, for the positions of the front.
 
-    One row is one node of the chunk. The curve that its characteristics have crossed comes first
-    in a row (its weight includes tau), and then the nodes of the chunk.
+    There is one row for each node of the chunk. A row begins with the nodes of the known curve that
+    the characteristics have crossed, whose weights include tau, and continues with the nodes of the
+    chunk itself.
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
         curve, panel, s = front.curve, chunk.panel, chunk.parameters()
         self.front = front
-        self.early = curve.evaluate("early", np.full(COUNT, panel), s)
-        self.late = curve.late[panel:].ravel()
+        self.t_minus_x = curve.evaluate("t_minus_x", np.full(NODE_COUNT, panel), s)
+        self.t_plus_x = curve.t_plus_x[panel:].ravel()
         cut = (WEIGHTS - partial_weights(s)) * curve.source[panel]
-        later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
+        later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (NODE_COUNT, 1))
         self.weight = np.concatenate([cut, later], axis=1)
-        self.d_xi = self.early[:, None] - np.append(curve.early[panel:], self.early)
+        self.d_xi = self.t_minus_x[:, None] - np.append(curve.t_minus_x[panel:], self.t_minus_x)
         # Without leaf springs and drag the kernel is 1.
-        self.is_plain = front.stiffness == front.alpha == 0.0
-        self.plain_sum = self.weight.sum(axis=1) if self.is_plain else np.zeros(0)
+        self.has_unit_kernel = front.stiffness == front.alpha == 0.0
+        self.known_integral = self.weight.sum(axis=1) if self.has_unit_kernel else np.zeros(0)
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
-        """The step to subtract from positions; None where the front would not be stable."""
-        if self.is_plain:
-            return self.plain_step(x)
+        """Return the step to subtract from positions, or None if the front would be unstable."""
+        if self.has_unit_kernel:
+            return self.newton_step_with_unit_kernel(x)
         k, alpha = self.front.stiffness, self.front.alpha
-        eta = self.early + 2.0 * x
-        d_eta = eta[:, None] - np.append(self.late, eta)
+        eta = self.t_minus_x + 2.0 * x
+        d_eta = eta[:, None] - np.append(self.t_plus_x, eta)
         z = k * self.d_xi * d_eta
-        kernel = kernel_of(k, z, z)
+        kernel = kernel_function(k, z, z)
         lasting = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
-        # The kernel of each row, and its derivative by the position of the row.
+        # The kernel of each row, and its derivative with respect to the position of the row.
         value = lasting * kernel(0)
         slope = 2.0 * k * lasting * kernel(1) * self.d_xi - 0.5 * alpha * value
-        crossed = self.late.size
-        entered = (self.weight * value[:, :crossed]).sum(axis=1)
+        crossed = self.t_plus_x.size
+        by_entries = (self.weight * value[:, :crossed]).sum(axis=1)
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
-        # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
-        # nodes.
+        # The integral from x0 to each position, in two parts: with a kernel of 1, which is exact,
+        # and with the difference of the kernel from 1, at the nodes.
         area, tau = self.crossed_by_front(x)
         fall = tau + growth
         if not np.all(fall < 0.0):
             return None
-        # A change of x at one node changes what is left of the equation at another.
-        excess, slopes = CUMULATIVE * (value[:, crossed:] - 1.0), SLOPE @ x
-        turn = CUMULATIVE * slope[:, crossed:] * (tau * slopes)
-        matrix = (excess * tau) @ SLOPE + excess * (SLOPE @ tau) - turn
+        # The derivative of the integral at one node with respect to the positions at all nodes.
+        excess, slopes = NODES_TO_INTEGRALS * (value[:, crossed:] - 1.0), NODES_TO_DERIVATIVES @ x
+        turn = NODES_TO_INTEGRALS * slope[:, crossed:] * (tau * slopes)
+        matrix = (
+            (excess * tau) @ NODES_TO_DERIVATIVES + excess * (NODES_TO_DERIVATIVES @ tau) - turn
+        )
         matrix += np.diag(fall + turn.sum(axis=1))
-        return np.linalg.solve(matrix, entered + area + excess @ (tau * slopes))
+        return np.linalg.solve(matrix, by_entries + area + excess @ (tau * slopes))
 
-    def plain_step(self, x: np.ndarray) -> np.ndarray | None:
-        """The same with a kernel of 1."""
+    def newton_step_with_unit_kernel(self, x: np.ndarray) -> np.ndarray | None:
+        """Return the step of Newton's method if the kernel is 1."""
         area, tau = self.crossed_by_front(x)
-        return (self.plain_sum + area) / tau if np.all(tau < 0.0) else None
+        return (self.known_integral + area) / tau if np.all(tau < 0.0) else None
 
     def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Integral of the pre-stress from the start of the chunk to positions, and its values."""
+        """Return the integral of tau from the start of the chunk to positions, and tau there."""
         half = 0.5 * (x - self.front.x0)
         tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
         return half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
@@ -188,11 +251,15 @@ class FreeBoundary:
 
 @dataclass
 class SlowFront:
-    """The right end of a curve, continued into negative pre-stress for chunks of entries."""
+    """The right end of a curve and its continuation into negative pre-stress.
+
+    background is the linear piece of the pre-stress in which the front is; t0 and x0 are its end
+    point.
+    """
 
     curve: Curve
     prestress: Prestress
-    background: Interval  # where the front is
+    background: Interval
     gamma: float
     alpha: float = 0.0
 
@@ -203,198 +270,247 @@ class SlowFront:
         self.size = max(float(edges[-1] - edges[0]), abs(self.x0))
 
     def next_panel(self, mark: float, progress: Progress) -> Advance:
-        """Continue the front by one panel of entries at most, or a shorter length.
+        """Continue the front by the next panel, which covers at most one panel of entries.
 
-        mark is the end of the negative piece (may be infinite). The stop is "mark" where the new
-        panel ends there, "stops" where the front could only go back, as the solution beyond shows,
-        "unknown" where its characteristic comes from beyond the left end of the curve, and
-        "unresolved" where no panel is short enough. A panel ends where the front stops.
+        mark is the end of the negative pre-stress (may be infinite). The panel ends where the front
+        stops. The reason in the result is None if the front can go on, and otherwise one of
+
+            "mark"        the new panel ends at the mark;
+            "stops"       the front could only run back;
+            "unknown"     the characteristic comes from beyond the left end of the curve;
+            "unresolved"  no chunk is short enough.
         """
-        if len(self.curve.panels) > MOST_PANELS:
+        if len(self.curve.panels) > MAX_PANELS:
             return Advance(None, "unresolved")
-        for negligible in NEGLIGIBLE:
-            entry = self.entry(progress.entered, negligible)
+        for negligible in NEGLIGIBLE_MOTIONS:
+            entry = self.next_entry(progress.last_entry, negligible)
             if entry is None:
                 return Advance(None, "unknown")
             if entry.panel < 0:
                 return Advance(None, "stops")
-            rest = self.rest(entry)
-            if rest is not None:
-                return Advance(rest, None, Progress(entered=self.position(entry)))
-            advance = self.advance_from(entry, mark, progress.longest)
+            resting = self.resting_panel(entry)
+            if resting is not None:
+                return Advance(resting, None, Progress(last_entry=self.position(entry)))
+            advance = self.advance_from(entry, mark, progress.next_length)
             if advance.stop != "stops":
                 break
         return advance
 
-    def advance_from(self, entry: Entry, mark: float, longest: float) -> Advance:
-        """Continue the front by one panel with the entries from one on."""
+    def advance_from(self, entry: Entry, mark: float, next_length: float) -> Advance:
+        """Continue the front by one panel, whose first entry is given."""
         panel, s, _ = entry
-        chunk, corrections = Chunk(panel, s, max(s - longest, -1.0)), 0
-        for _ in range(MOST_CHUNKS):
-            if chunk.start - chunk.stop < SHORTEST:
+        chunk, corrections = Chunk(panel, s, max(s - next_length, -1.0)), 0
+        for _ in range(MAX_CHUNKS):
+            if chunk.start - chunk.stop < MIN_CHUNK:
                 return self.straight(mark)
             x = self.solve(chunk)
             if x is not None and _goes_back(x):
-                if mark - self.x0 >= NEAR_MARK * self.size:
+                if mark - self.x0 >= MARK_DISTANCE * self.size:
                     return Advance(None, "stops")
-                # This close to a mark rounding may send a front back.
+                # This close to a mark the front may run back only because of rounding.
                 x = None
             if x is None:
                 chunk, corrections = chunk.half(), 0
                 continue
-            s, stop = _first_event(x, mark, BEYOND if corrections else 1.0)
-            near = AT_END if corrections <= MANY else NEAR_END
-            if s < np.inf and (corrections == 0 or abs(s - 1.0) >= near):
-                # Beyond an event the solution may mean nothing: it is solved again to end there.
+            s, stop = _first_event(x, mark, SEARCH_LIMIT if corrections else 1.0)
+            if _must_be_corrected(s, corrections):
+                # Beyond an event the solution may be meaningless: the chunk is solved again so that
+                # it ends at the event.
                 chunk = chunk._replace(stop=float(chunk.parameters(np.array(s))))
                 corrections += 1
             elif np.any(np.diff(x, prepend=self.x0) <= 0.0):
-                # Where the equation hardly depends on the front rounding may put it behind its
-                # start.
+                # Where the equation hardly depends on the position of the front, rounding may put
+                # the front behind its start.
                 chunk, corrections = chunk.half(), 0
             else:
-                to_the_end = s < np.inf or chunk.stop == -1.0
-                length = WHOLE if to_the_end else GROWTH * (chunk.start - chunk.stop)
-                entered = self.position(Entry(chunk.panel, chunk.stop))
                 end = mark if stop == "mark" else None
-                return Advance(self.panel(chunk, x, end), stop, Progress(length, entered))
+                progress = self.progress_after(chunk, ends_at_event=s < np.inf)
+                return Advance(self.panel(chunk, x, end), stop, progress)
         return Advance(None, "unresolved")
 
+    def progress_after(self, chunk: Chunk, ends_at_event: bool) -> Progress:
+        """Return the state after a chunk; a chunk that was shortened limits the next one."""
+        length = PANEL_LENGTH
+        if not ends_at_event and chunk.stop != -1.0:
+            length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
+        return Progress(length, self.position(Entry(chunk.panel, chunk.stop)))
+
     def tau(self, x: np.ndarray) -> np.ndarray:
-        """Pre-stress ahead of the front."""
-        return analytic(self.prestress, self.background, x)
+        """Return the pre-stress ahead of the front."""
+        return continued_prestress(self.prestress, self.background, x)
 
-    def entry(self, entered: float, negligible: float) -> Entry | None:
-        """The next entry after the position of the last one; None where it is not known.
+    def next_entry(self, last_entry: float, negligible: float) -> Entry | None:
+        """Return the next entry after the position of the last one; None if it is not known.
 
-        T - x is the same to rounding on panels before the front where the pre-stress is nearly 0.
-        So an entry follows the last one along the curve, and is not looked for by its T - x. It
-        passes over entries that are negligible.
+        It follows the last one along the curve. A search for its value of T - x would fail where
+        the pre-stress is nearly 0, since T - x is constant to rounding there. Entries that move the
+        front by a negligible distance are skipped.
         """
         panel, s = len(self.curve.panels) - 1, 1.0
-        if np.isfinite(entered):
-            (panel,), (s,) = self.curve.locate(np.array([entered]))
-            # A remainder near rounding cannot be resolved: the next panel takes it over.
-            panel, s = (panel, s) if s + 1.0 >= REMAINDER else (panel - 1, 1.0)
-        gain, passed = 0.0, False
-        while panel >= 0 and not self.is_slow(panel):
-            parameters = s - (s + 1.0) * FRACTIONS
-            moves = gain + self.moves(panel, parameters)
-            # Only pre-stress that is not negative moves no front back.
+        if np.isfinite(last_entry):
+            (panel,), (s,) = self.curve.locate(np.array([last_entry]))
+            # A remainder as small as rounding errors cannot be resolved and is left to the next
+            # panel.
+            panel, s = (panel, s) if s + 1.0 >= MIN_REMAINDER else (panel - 1, 1.0)
+        gain, has_skipped = 0.0, False
+        while panel >= 0 and not self.is_slow_to_right(panel):
+            parameters = s - (s + 1.0) * ENTRY_FRACTIONS
+            motions = gain + self.motion_by_entries(panel, parameters)
+            # Only entries with negative pre-stress can move the front back.
             negative = bool(np.min(self.curve.source[panel]) < 0.0)
-            most = self.size * (NEGLIGIBLE[0] if negative else negligible)
-            last = int(np.argmin(np.append(np.abs(moves) <= most, False))) - 1
-            gain, passed = float(moves[last]), passed or last > 0
-            if last < FRACTIONS.size - 1:
-                goes_on = not negative or moves[last + 1] >= moves[last]
-                return self.chosen(
-                    Entry(int(panel), float(parameters[last])), gain, passed, goes_on
+            negligible_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if negative else negligible)
+            # The last of the entries from the first one on that are all negligible.
+            last = int(np.argmin(np.append(np.abs(motions) <= negligible_motion, False))) - 1
+            gain, has_skipped = float(motions[last]), has_skipped or last > 0
+            if last < ENTRY_FRACTIONS.size - 1:
+                goes_on = not negative or motions[last + 1] >= motions[last]
+                return self.entry_after_skipped(
+                    Entry(int(panel), float(parameters[last])),
+                    gain=gain,
+                    has_skipped=has_skipped,
+                    goes_on=goes_on,
                 )
             panel, s = panel - 1, 1.0
         if panel >= 0:
             return self.entry_behind_slow_front()
-        return Entry(-1, 1.0) if passed else None
+        return Entry(-1, 1.0) if has_skipped else None
 
-    def moves(self, panel: int, parameters: np.ndarray) -> np.ndarray:
-        """Motion of the front by the entries on a panel from its first parameter to each one."""
+    def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
+        """Return how far the entries from the first parameter to each one move the front."""
         weights = partial_weights(parameters)
         return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
 
-    def chosen(self, entry: Entry, gain: float, passed: bool, goes_on: bool) -> Entry:
-        """The entry with what was passed before it; below 0 where the front does not go on."""
-        if not passed:
+    def entry_after_skipped(
+        self, entry: Entry, gain: float, has_skipped: bool, goes_on: bool
+    ) -> Entry:
+        """Return an entry with the motion by the entries that were skipped before it.
+
+        Its panel is negative if the front does not go on.
+        """
+        if not has_skipped:
             return entry
-        return entry._replace(passed=max(gain, self.least)) if goes_on else Entry(-1, 1.0)
+        if not goes_on:
+            return Entry(-1, 1.0)
+        return entry._replace(skipped_motion=max(gain, self.min_motion))
 
     @property
-    def least(self) -> float:
-        """The least motion that counts."""
-        return 0.1 * NEGLIGIBLE[0] * self.size
+    def min_motion(self) -> float:
+        """The smallest motion of the front that is taken into account."""
+        return 0.1 * NEGLIGIBLE_MOTIONS[0] * self.size
 
     @property
     def resistance(self) -> float:
-        """Size of the negative pre-stress right ahead of the front."""
-        return abs(float(self.tau(np.array(self.x0 + NEGLIGIBLE[0] * self.size))))
+        """Magnitude of the negative pre-stress immediately ahead of the front."""
+        return abs(float(self.tau(np.array(self.x0 + NEGLIGIBLE_MOTIONS[0] * self.size))))
 
     def position(self, entry: Entry) -> float:
-        """Position of an entry on the curve."""
+        """Return the position of an entry on the curve."""
         return float(self.curve.evaluate("x", np.array([entry.panel]), np.array([entry.s]))[0])
 
-    def rest(self, entry: Entry) -> Panel | None:
-        """A panel of a front that hardly moves until the characteristic of an entry comes."""
-        early = self.curve.evaluate("early", np.array([entry.panel]), np.array([entry.s]))[0]
-        x_ends = self.x0, self.x0 + entry.passed
-        time_ends = self.t0, float(early) + x_ends[1]
-        if entry.passed == 0.0 or time_ends[1] - self.t0 < NEGLIGIBLE[0] * self.size:
+    def resting_panel(self, entry: Entry) -> Panel | None:
+        """Return a panel on which the front hardly moves until the entry's characteristic arrives.
+
+        It is None if no entry was skipped, or if the characteristic has arrived already.
+        """
+        at_entry = np.array([entry.panel]), np.array([entry.s])
+        xi = float(self.curve.evaluate("t_minus_x", *at_entry)[0])
+        x_ends = self.x0, self.x0 + entry.skipped_motion
+        time_ends = self.t0, xi + x_ends[1]
+        has_arrived = time_ends[1] - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
+        if entry.skipped_motion == 0.0 or has_arrived:
             return None
         x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
-        source = np.full(COUNT, -0.5 * self.resistance * entry.passed)
-        return Panel(x, time, source, x_ends, time_ends)
+        source = np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion)
+        return Panel(x=x, time=time, source=source, x_ends=x_ends, time_ends=time_ends)
 
-    def is_slow(self, panel: int) -> bool:
-        """True if the front that made a panel goes right and is slower than the waves."""
+    def is_slow_to_right(self, panel: int) -> bool:
+        """Return True if a panel belongs to a front that runs right, slower than the waves."""
         start, end = self.curve.edge_times[panel : panel + 2]
         return bool(end > start and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Panel and parameter where T - x next rises to its value at the front, or None."""
+        """Return where T - x next rises to its value at the front, or None if it is not known."""
         xi = self.t0 - self.x0
-        look = LOOK * max(self.size, abs(xi))
-        # A little later the next panel goes on, or another part of the rupture.
-        later = np.array([xi, xi + look])
+        offset = SEARCH_OFFSET * max(self.size, abs(xi))
+        # The second characteristic, slightly later, enters on the panel that follows, or in another
+        # part of the rupture.
+        later = np.array([xi, xi + offset])
         entries, _ = self.curve.crossings(np.full(2, self.x0), later, later + 2.0 * self.x0)
-        if not entries.known[1]:
+        if not entries.meets_curve[1]:
             return None
         panel = int(entries.panel[1])
-        # The look would leave a gap: such an entry is taken at the very end of the panel.
-        end = self.curve.ends[1, self.curve.row("early", entries.panel)][1]
-        if abs(end - xi) < 10.0 * look:
+        # The offset would leave a gap, so that an entry near the end of a panel is moved to the
+        # end.
+        end = self.curve.end_values[1, self.curve.columns("t_minus_x", entries.panel)][1]
+        if abs(end - xi) < 10.0 * offset:
             return Entry(panel, 1.0)
         s = float(entries.s[0] if entries.panel[0] == panel else entries.s[1])
-        return Entry(panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else Entry(panel, s)
+        return Entry(panel - 1, 1.0) if s + 1.0 < MIN_REMAINDER and panel > 0 else Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
-        """Positions of the front by Newton's method; None where the chunk is too long."""
+        """Return the positions of the front at the nodes of a chunk, by Newton's method.
+
+        It is None if the chunk is too long, so that the method fails or its result is not resolved.
+        """
         equation = FreeBoundary(self, chunk)
         x, change = self.guess(chunk), np.inf
-        for _ in range(MOST_NEWTON_STEPS):
+        for _ in range(MAX_NEWTON_STEPS):
             step = equation.newton_step(x)
             if step is None:
                 return None
             x = x - step
             previous, change = change, float(np.max(np.abs(step))) / self.size
-            tail = np.max(np.abs(TO_SERIES[-2:] @ x)) / self.size
-            # Further steps, which are smaller, do not resolve it either.
-            if not change <= 1e3 or (tail > 2.0 * RESOLVED and change < 0.1 * tail):
+            tail = np.max(np.abs(NODES_TO_SERIES[-2:] @ x)) / self.size
+            # Further steps are smaller, so that they will not resolve the series either.
+            if not change <= 1e3 or (tail > 2.0 * SERIES_TOLERANCE and change < 0.1 * tail):
                 return None
             if change < 1e-13 or (change < 1e-11 and change >= 0.5 * previous):
-                return x if tail <= RESOLVED else None
+                return x if tail <= SERIES_TOLERANCE else None
         return None
 
     def guess(self, chunk: Chunk) -> np.ndarray:
-        """Positions of the front as if there were no leaf springs."""
-        entries = self.curve.evaluate("x", np.full(COUNT, chunk.panel), chunk.parameters())
+        """Return the positions of the front at the nodes as if there were no leaf springs."""
+        entries = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
         start = np.array([chunk.panel]), np.array([chunk.start])
         first, source = (float(self.curve.evaluate(name, *start)[0]) for name in ("x", "source"))
-        at_entry = source / float(self.curve.evaluate("x", *start, order=1)[0])
-        here = float(self.tau(np.array(self.x0)))
-        pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
-        return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
+        source_at_entry = source / float(self.curve.evaluate("x", *start, order=1)[0])
+        stress_at_start = float(self.tau(np.array(self.x0)))
+        slope = 1.0
+        if stress_at_start < -1e-6 and source_at_entry > 0.0:
+            slope = source_at_entry / -stress_at_start
+        return self.x0 + min(max(slope, 1e-3), 10.0) * (first - entries)
 
     def panel(self, chunk: Chunk, x: np.ndarray, end: float | None) -> Panel:
-        """The new panel of the curve; its end may be known to be a mark."""
+        """Return the new panel of the curve; its end is computed unless it is given."""
         s = np.append(chunk.parameters(), chunk.stop)
-        *early, last_early = self.curve.evaluate("early", np.full(COUNT + 1, chunk.panel), s)
-        last = float(AT_ENDS[1] @ x) if end is None else end
-        x_ends, time_ends = (self.x0, last), (self.t0, float(last_early) + last)
-        return Panel(x, np.array(early) + x, self.tau(x) * (SLOPE @ x), x_ends, time_ends)
+        *t_minus_x, last_t_minus_x = self.curve.evaluate(
+            "t_minus_x", np.full(NODE_COUNT + 1, chunk.panel), s
+        )
+        last = float(NODES_TO_ENDS[1] @ x) if end is None else end
+        x_ends, time_ends = (self.x0, last), (self.t0, float(last_t_minus_x) + last)
+        return Panel(
+            x=x,
+            time=np.array(t_minus_x) + x,
+            source=self.tau(x) * (NODES_TO_DERIVATIVES @ x),
+            x_ends=x_ends,
+            time_ends=time_ends,
+        )
 
     def straight(self, mark: float) -> Advance:
-        """The last step to a mark where tau rises to 0, too short to be resolved, at wave speed."""
-        if mark - self.x0 > NEAR_MARK * self.size:
+        """Return the last step to a mark where tau rises to 0, at the wave speed.
+
+        It is used if no chunk is resolved. Farther away from the mark the front is "unresolved".
+        """
+        if mark - self.x0 > MARK_DISTANCE * self.size:
             return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
         x_ends, time_ends = (self.x0, mark), (self.t0, self.t0 + 2.0 * half)
-        panel = Panel(x, self.t0 + x - self.x0, self.tau(x) * half, x_ends, time_ends)
+        panel = Panel(
+            x=x,
+            time=self.t0 + x - self.x0,
+            source=self.tau(x) * half,
+            x_ends=x_ends,
+            time_ends=time_ends,
+        )
         return Advance(panel, "mark")

@@ -1,4 +1,19 @@
-"""The spreading of a rupture from every nucleation point, by fast and slow fronts that may meet."""
+r"""The spreading of a rupture from every nucleation point, by fast and slow fronts that may meet.
+
+A `Stretch` is a connected part of the rupture with its left and its right front. One of them begins
+at each interval that is released at t = 0. `spread` lets all fronts grow: first each front as long
+as it is faster than the waves, because such a front depends on nothing behind it. Then the slow
+fronts grow by one panel at a time, the earliest one first, because each of them depends on what the
+others did before. Where a slow front reaches positive pre-stress again, it continues as a fast one.
+Stretches whose fronts have met become one:
+
+    t |`.          .'`.          .'
+      |  `.      .'    `.      .'      the two stretches become one
+      |    `.  .'        `.  .'        where their fronts meet
+      |      `'            `'
+      +-------+-------------+------- x
+          nucleation    nucleation
+"""
 
 from dataclasses import dataclass, field
 from itertools import pairwise, product
@@ -6,68 +21,72 @@ from itertools import pairwise, product
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import SAME, Curve, Panel, Point, seen_from
+from .curve import EQUALITY_TOLERANCE, Curve, Panel, Point, turned_to_right
 from .fast_front import FastFront
-from .prestress_pieces import nucleations
+from .prestress_pieces import nucleation_intervals
 from .slow_front import Progress, SlowFront
 
-# Reasons why a slow front cannot be followed further.
-UNKNOWN = {
-    "unknown": "what decides on a slow front comes from another part of the rupture",
+# Messages for the reasons why a slow front cannot be followed further.
+REASONS_UNKNOWN = {
+    "unknown": "a slow front depends on another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
     "loaded": "a front stops where the pre-stress is positive",
 }
-OVERRUN = "a front comes to where another one has stopped"
+REASON_OVERRUN = "a front arrives where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
-# A front that takes longer than this over JUST_BEFORE the meeting point is slow.
-JUST_BEFORE = 1e-6
+# Two fronts are compared at this distance before the point where they meet. A front that needs a
+# longer time than this for it is slow.
+MEETING_DISTANCE = 1e-6
 
 
 @dataclass
 class Stretch:
-    """A connected part of the rupture and its two fronts, by side: LEFT or RIGHT."""
+    """A connected part of the rupture and its two fronts.
 
-    # The outermost known point.
+    The dictionaries hold a value for each side, LEFT or RIGHT.
+    """
+
+    # The outermost known point of each front.
     ends: dict[float, Point]
-    # Position, with the side turned to the right, of the next nucleation point.
+    # Position of the next nucleation point, with the side turned to the right.
     next_start: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
-    # Reason why a front goes no further: "stops" (for good), "duration", "met", a key of UNKNOWN,
-    # or None.
+    # Reason why a front does not go on: "stops" (for good), "duration" (the time is over), "met"
+    # (another front), or a key of REASONS_UNKNOWN; None while it goes on.
     end_reason: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
-    # Positions where a slow front outran the waves again, and where two fronts met.
+    # Positions where a slow front became faster than the waves again, and where two fronts met.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
-    # What a slow front goes on from, with its side turned to the right.
+    # State of a slow front, with its side turned to the right.
     progress: dict[float, Progress] = field(
         default_factory=lambda: dict.fromkeys(SIDES, Progress())
     )
 
-    # The panels as one curve, by the side that is turned to the right, once it was asked for.
+    # Curves that `curve` has made, by the side that is turned to the right.
     curves: dict[float, Curve] = field(default_factory=dict)
 
     def curve(self, side: float = RIGHT) -> Curve:
-        """The panels as one curve, with a side turned to the right."""
+        """Return the panels as one curve, with a side turned to the right."""
         left = [side * x for x in self.restarts[-side]]
         right = [side * x for x in self.restarts[side]]
         if side not in self.curves:
-            self.curves[side] = Curve(seen_from(side, self.panels))
+            self.curves[side] = Curve(turned_to_right(side, self.panels))
         return self.curves[side].restarted((left, right))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
-        """Append panels, and their end, of a front whose side is turned to the right."""
-        new = seen_from(side, panels)
+        """Append panels and their end to a front whose side is turned to the right."""
+        new = turned_to_right(side, panels)
         self.panels = self.panels + new if side > 0.0 else new + self.panels
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
-            self.curves[-side] = Curve(seen_from(LEFT, panels)).joined(self.curves[-side])
+            self.curves[-side] = Curve(turned_to_right(LEFT, panels)).joined(self.curves[-side])
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
-        """Take away the panels beyond x."""
+        """Remove the panels beyond x on one side."""
         kept = []
-        for panel in seen_from(side, self.panels):
+        for panel in turned_to_right(side, self.panels):
             left, right = panel.x_ends
             if right <= side * x:
                 kept.append(panel)
@@ -76,59 +95,65 @@ class Stretch:
                 if s > -1.0:
                     kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels, self.curves = seen_from(side, kept), {}
+        self.panels, self.curves = turned_to_right(side, kept), {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < side * x]
 
 
 def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
-    """Connected parts from left to right at a time, and points beyond which nothing is known."""
+    """Return the connected parts at a time, and points in whose future nothing is known.
+
+    The parts are ordered from left to right. Each point is returned with its reason.
+    """
     laws = {RIGHT: law, LEFT: law.mirrored()}
-    stretches = _nucleated(law)
+    stretches = _nucleate(law)
     for stretch, side in product(stretches, SIDES):
-        _run(laws[side], stretch, side, until)
-    stretches = _joined(stretches)
-    # The earliest slow front goes on first: each follows from what the others did before.
-    while going := [(s, side) for s, side in product(stretches, SIDES) if not s.end_reason[side]]:
-        stretch, side = min(going, key=lambda front: front[0].ends[front[1]].time)
-        _step(laws[side], stretch, side, until)
-        stretches = _joined(stretches)
-    stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
-    unknown = [(point, UNKNOWN[reason]) for point, reason in stops if reason in UNKNOWN]
-    # The motion of a front that comes to where another has stopped for good is unknown.
+        _advance_fast_front(laws[side], stretch=stretch, side=side, until=until)
+    stretches = _join_met_stretches(stretches)
+    # The earliest slow front advances first, since each depends on what the others did before.
+    while moving := [(s, side) for s, side in product(stretches, SIDES) if not s.end_reason[side]]:
+        stretch, side = min(moving, key=lambda front: front[0].ends[front[1]].time)
+        _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
+        stretches = _join_met_stretches(stretches)
+    unknown = []
+    for stretch, side in product(stretches, SIDES):
+        reason = str(stretch.end_reason[side])
+        if reason in REASONS_UNKNOWN:
+            unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
+    # The motion of a front beyond a point where another one has stopped for good is unknown.
     for (left, right), side in product(pairwise(stretches), SIDES):
-        stopped, moving = (left, right) if side == LEFT else (right, left)
+        stopped, arriving = (left, right) if side == LEFT else (right, left)
         x = stopped.ends[-side].x
-        if moving.panels and side * moving.ends[side].x > side * x:
-            moving.cut(side, x)
-            moving.end_reason[side] = "met"
-            unknown.append((moving.ends[side], OVERRUN))
+        if arriving.panels and side * arriving.ends[side].x > side * x:
+            arriving.cut(side, x)
+            arriving.end_reason[side] = "met"
+            unknown.append((arriving.ends[side], REASON_OVERRUN))
     return stretches, unknown
 
 
-def _nucleated(law: FastFront) -> list[Stretch]:
-    """One stretch for each interval that is released at t = 0."""
-    starts = nucleations(law.prestress)
+def _nucleate(law: FastFront) -> list[Stretch]:
+    """Return one stretch for each interval that is released at t = 0."""
+    starts = nucleation_intervals(law.prestress)
     if not starts:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
     out = []
-    befores = [-np.inf, *(right for _, right in starts)]
-    afters = [*(left for left, _ in starts[1:]), np.inf]
-    for before, (left, right), after in zip(befores, starts, afters, strict=False):
+    previous_ends = [-np.inf, *(right for _, right in starts)]
+    next_starts = [*(left for left, _ in starts[1:]), np.inf]
+    for previous, (left, right), following in zip(previous_ends, starts, next_starts, strict=False):
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
-        stretch = Stretch(ends, {LEFT: -before, RIGHT: after})
+        stretch = Stretch(ends, {LEFT: -previous, RIGHT: following})
         if left < right:
-            panels, _ = law.rightwards(Point(left, 0.0), right, np.inf)
+            panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         out.append(stretch)
     return out
 
 
-def _run(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Let a front go on while it outruns the waves, as far as the next nucleation point."""
+def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
+    """Advance a front while it is faster than the waves, up to the next nucleation point."""
     start, stop = stretch.ends[side], stretch.next_start[side]
-    panels, end = law.rightwards(Point(side * start.x, start.time), stop, until)
+    panels, end = law.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
     if end.time >= until:
@@ -137,55 +162,65 @@ def _run(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
         stretch.end_reason[side] = "met"
 
 
-def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
+def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
+    """Add a panel of a slow front; a fast front follows where the pre-stress is positive again."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
-    front = SlowFront(stretch.curve(side), law.prestress, piece.background, law.gamma, law.alpha)
+    front = SlowFront(
+        curve=stretch.curve(side),
+        prestress=law.prestress,
+        background=piece.background,
+        gamma=law.gamma,
+        alpha=law.alpha,
+    )
     panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
-    if stop in ("stops", *UNKNOWN):
-        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > SAME
+    if stop in ("stops", *REASONS_UNKNOWN):
+        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > EQUALITY_TOLERANCE
         stretch.end_reason[side] = "loaded" if loaded else stop
     elif stretch.ends[side].time >= until:
         stretch.end_reason[side] = "duration"
     elif stop == "mark":
-        # Where the next piece is negative, too, the next step goes on.
+        # If the next piece is negative too, the next call continues.
         if mark >= stretch.next_start[side]:
             stretch.end_reason[side] = "met"
         elif law.piece_right_of(mark).above:
             stretch.progress[side] = Progress()
             stretch.restarts[side].append(side * mark)
-            _run(law, stretch, side, until)
+            _advance_fast_front(law, stretch=stretch, side=side, until=until)
 
 
-def _joined(stretches: list[Stretch]) -> list[Stretch]:
-    """The stretches, with neighbours whose fronts have met made one."""
+def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
+    """Return the stretches, with neighbours combined if their fronts have met."""
     out = [stretches[0]]
     for right in stretches[1:]:
-        merged = _merged(out[-1], right)
+        merged = _merge_if_met(out[-1], right)
         out = [*out, right] if merged is None else [*out[:-1], merged]
     return out
 
 
-def _merged(left: Stretch, right: Stretch) -> Stretch | None:
-    """One stretch of two if their fronts have met: each position belongs to the earlier front."""
+def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
+    """Return two stretches combined into one, or None if their fronts have not met.
+
+    Each position belongs to the front that arrives first.
+    """
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None
     first, second = left.curve(), right.curve()
 
-    def lead(x: float) -> float:
+    def delay_of_left(x: float) -> float:
+        """Return how much later the left stretch reaches x than the right one."""
         return float(first.arrival(x) - second.arrival(x))
 
     low = max(right.ends[LEFT].x, float(first.edges[0]))
     high = min(left.ends[RIGHT].x, float(second.edges[-1]))
-    if not (lead(low) <= 0.0 <= lead(high)):
+    if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
         return None
-    x = root_between(lead, low, high, xtol=1e-14)
-    before, after = np.array([x - JUST_BEFORE, x]), np.array([x, x + JUST_BEFORE])
+    x = root_between(delay_of_left, low, high, xtol=1e-14)
+    before, after = np.array([x - MEETING_DISTANCE, x]), np.array([x, x + MEETING_DISTANCE])
     times = np.array([first.arrival(before), second.arrival(after)])
-    restart = [x] if np.any(np.abs(np.diff(times)) > JUST_BEFORE) else []
+    restart = [x] if np.any(np.abs(np.diff(times)) > MEETING_DISTANCE) else []
     left.cut(RIGHT, x)
     right.cut(LEFT, x)
     return Stretch(

@@ -1,17 +1,37 @@
-"""The trailing edge of one part of a rupture: when each position sticks, and the first that does.
+r"""The trailing edge of one part of a rupture: the time at which each position sticks.
 
-The trailing edge is the first zero in time of du/dt, as long as it runs faster than the waves:
-where du/dt falls along both characteristics, by xi = t - y and by eta = t + y. Then no stuck point
-lies in the past of a sliding one, and Riemann's formula holds up to sticking. The stress of a block
-that has stuck is then d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no
-block is ever released again.
+At each position the trailing edge is the first time after release at which du/dt is 0. The
+construction holds as long as the edge runs faster than the waves, that is, as long as du/dt falls
+along both characteristics, by xi = t - y and by eta = t + y. Then no stuck point lies in the past
+of a sliding one, and Riemann's formula holds up to sticking. A block that has stuck is never
+released again, because the stress on it is d2u/dt2 (1 - (dt/dx)^2) < 0, where the acceleration
+d2u/dt2 is that just before sticking and dt/dx is the slope of the edge.
 
-The edge is known at knots: at the panels of the curve, and on both sides of where waves from its
-marks meet the edge, then halfway between knots as long as these do not predict what is found there.
-No stick lies unseen between two positions that slide at a time: what sticks grows to both sides
-faster than the waves, so what neither has felt has begun in the triangle between them and the point
-from which their characteristics went apart. There du/dt is bounded (`lower_bound`): intervals that
-slide at the end, or when the first position sticks, are halved until the bound is above 0.
+The edge is computed at knots and interpolated between them (`knots`). The first knots are the ends
+of the panels of the curve, the marks (positions from which waves come that change du/dt at once)
+and the middles between all of these. Then knots are added:
+
+1. on both sides of each point where the wave from a mark meets the edge, because the edge has a
+   kink there;
+2. on both sides of each point where the edge reaches the final time;
+3. in the middle of every interval whose interpolation does not predict its middle knot, again and
+   again;
+4. in small pieces around each jump of the edge.
+
+No stick is missed between two positions that slide at the same time. A stuck region grows to both
+sides faster than the waves. If neither position has felt it yet, it began in the triangle between
+them and the point c from which their characteristics went apart:
+
+        a           b      both slide at this time
+         \         /
+          \ ..... /        a stuck region would begin in here
+           \     /
+            \   /
+              c
+
+In this triangle du/dt has a lower bound (`lower_bound`). Every interval whose ends slide, at the
+final time or when the first position sticks, is divided until the bound is positive or a stick is
+found.
 """
 
 from collections.abc import Sequence
@@ -22,32 +42,44 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import SAME, Point
-from .knots import BRIEF, FAST, SLIDES, SLOW, Knots
+from .curve import EQUALITY_TOLERANCE, Point
+from .knots import BRIEF_SLIP, FASTER_THAN_WAVES, SLIDING, SLOWER_THAN_WAVES, Knots
 from .lower_bound import stuck_between
 from .part import Part
 from .vector_roots import roots_between
 
-# The shortest interval that is halved, and the time below which sliding is brief, in units of
-# `Part.scale`; and the shortest interval in which the edge reaches the end, or a stopped front.
-SHORTEST, AT_END = 1e-3, 0.01
-# Distance of knots from where a wave from a mark meets the edge, in units of `Part.scale`.
-LANDED = 1e-5
-# Panels of the curve give one knot at most in a cell of this length, in units of `Part.scale`.
-CELL = 0.1
-# Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
-# that are cut into CUTS pieces.
-LOCATED, CUTS = 1e-10, 8
-# An interval as long as this, in units of LOCATED, has at most one jump.
-FAR_APART = 1e3
-# Size of Newton's last step to a stick time, and of the next one, about the product of the last
-# two, in units of the interval.
-STEP, NEXT_STEP = 1e-11, 1e-14
-# Stick times that differ by less are equal, and slip velocities below this are 0.
-ROUNDING = 1e-12
-# Error of du/dt, and the error of a stick time above which another knot counts as the first: next
-# to where a slow front has stopped du/dt hardly falls through 0.
-VELOCITY_ERROR, TIME_ERROR = 1e-11, 1e-9
+# Shortest interval that is halved, in units of `Part.scale`. A slip that takes less time counts as
+# brief.
+MIN_INTERVAL = 1e-3
+# Shortest interval that is halved if the edge reaches the final time or a stopped front in it, in
+# the same units.
+MIN_INTERVAL_AT_END = 0.01
+# Distance of two knots from the point between them where the wave from a mark meets the edge, in
+# units of `Part.scale`.
+LANDING_OFFSET = 1e-5
+# Of several panel ends in a cell of this length, in units of `Part.scale`, only one becomes a knot.
+CELL_LENGTH = 0.1
+# A jump of the edge, or a change of its kind, is located to this fraction of the length of the
+# part.
+JUMP_TOLERANCE = 1e-10
+# Number of pieces into which an interval with a jump is cut.
+PIECES_PER_CUT = 8
+# An interval at least this long, in units of JUMP_TOLERANCE times the length of the part, has at
+# most one jump.
+SINGLE_JUMP_LENGTH = 1e3
+# Newton's method for a stick time ends when its last step is below this.
+NEWTON_TOLERANCE = 1e-11
+# It also ends when its next step, which is about the product of the last two, is below this
+# fraction of the interval.
+NEXT_STEP_TOLERANCE = 1e-14
+# Stick times that differ by less than this are equal, and slip velocities below it are 0.
+ROUNDING_ERROR = 1e-12
+# Error of du/dt. It makes a stick time uncertain where du/dt falls through 0 slowly, as it does
+# next to where a slow front has stopped.
+VELOCITY_ERROR = 1e-11
+# Uncertainties of stick times below this are neglected. Knots whose larger uncertainty does not
+# exclude that they are the first all count as first.
+TIME_ERROR = 1e-9
 
 
 class FirstStick(NamedTuple):
@@ -57,251 +89,342 @@ class FirstStick(NamedTuple):
     x: float
 
 
-class EdgedPart(Part):
-    """A connected part whose stick times are known at knots, and found in between by their help."""
+class PartWithEdge(Part):
+    """A connected part of a rupture whose stick times are interpolated between knots."""
 
     @cached_property
     def knots(self) -> Knots:
-        """The trailing edge at knots that predict it in between."""
+        """Knots that are dense enough to interpolate the trailing edge between them."""
+        x = self._first_positions()
+        knots = self._make_knots(x, self.find_stick_times(x))
+        if x.size < 2:
+            return knots
+        # Every second knot lies in the middle between its neighbours.
+        outer = Knots._make(values[::2] for values in knots)
+        middle = Knots._make(values[1::2] for values in knots)
+        is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
+        # Left ends of the halves of the intervals that are not fine enough yet.
+        left = x[:-1][~np.repeat(is_predicted, 2)]
+        x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
+        knots = self._with_more_knots(knots, x=x, stick=self.find_stick_times(x), left=left)
+        while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
+            knots = self._with_more_knots(knots, x, self.find_stick_times(x))
+        # An edge that may become slower than the waves between two knots is checked once more.
+        x = knots.positions_to_recheck
+        return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
+
+    def _first_positions(self) -> np.ndarray:
+        """Return the positions of the first knots, every second of them in a middle.
+
+        The others are ends of panels, marks, and the positions of the fronts at the final time.
+        """
         curve = self.curve
         left, right = curve.edges[[0, -1]]
         if self.one_side:
             left = max(left, 0.0)
-        last = self.until * (1.0 - SAME)
+        last = self.until * (1.0 - EQUALITY_TOLERANCE)
         start = curve.edges[np.argmin(curve.edge_times)]
         fronts = [curve.front_at(last, start, side) for side in (-1.0, 1.0)]
-        cell = np.floor(curve.edges / (CELL * self.scale))
+        cell = np.floor(curve.edges / (CELL_LENGTH * self.scale))
         edges = curve.edges[np.diff(cell, prepend=-np.inf) > 0.0]
         x = np.unique([left, *edges, *self.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.until)]
-        x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
-        # Knots halfway are found together with the others, and as independently.
-        halfway = 0.5 * (x[:-1] + x[1:])
-        x = np.sort(np.append(x, halfway))
-        knots = self._knots_of(x, self.search(x))
-        if x.size < 2:
-            return knots
-        apart = Knots._make(values[::2] for values in knots)
-        predicted = apart.predict(np.arange(halfway.size), Knots._make(v[1::2] for v in knots))
-        again = ~np.repeat(predicted, 2)
-        x, left = np.union1d(self._landings(knots), self._near_end(knots)), x[:-1][again]
-        knots = self._with(knots, x, self.search(x), left)
-        while (x := stuck_between(self, knots.sliding, self.until)).size:
-            knots = self._with(knots, x, self.search(x))
-        # Where the edge may turn slow between knots it is looked at once more, not halfway.
-        x = knots.nearly_slow
-        return self._with(knots, x, self._stick_time(x, knots)) if x.size else knots
+        x = x[np.diff(x, append=np.inf) > EQUALITY_TOLERANCE * (right - left)]
+        return np.sort(np.append(x, 0.5 * (x[:-1] + x[1:])))
 
-    def _with(
+    def _with_more_knots(
         self, knots: Knots, x: np.ndarray, stick: np.ndarray, left: Sequence[float] = ()
     ) -> Knots:
-        """Knots with some more, and as many as predict them and the intervals right of others."""
-        todo = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval(x)]])
-        knots = knots.joined(self._knots_of(x, stick))
+        """Return knots with additional ones at x, refined until they predict the edge around these.
+
+        stick holds the stick times at x, NaN where there is none. Intervals whose left ends are
+        given are refined too.
+        """
+        todo = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval_of(x)]])
+        knots = knots.joined(self._make_knots(x, stick))
         while todo.size:
-            knots, todo = self._refined(knots, todo)
+            knots, todo = self._refine(knots, todo)
         return knots
 
-    def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
+    def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:
+        """Return knots at x with stick times that are NaN for positions that do not stick."""
         sticks = np.isfinite(stick)
         time = np.where(sticks, stick, self.until)
-        past = self.past(x, time)
-        velocity = np.zeros(x.size) if sticks.all() else past.slip_velocity()
+        domains = self.domains(x, time)
+        velocity = np.zeros(x.size) if sticks.all() else domains.slip_velocity()
         velocity[sticks] = 0.0
-        by_xi, by_eta = past.velocity_slopes()
+        by_xi, by_eta = domains.velocity_slopes()
         slow = (by_xi >= 0.0) | (by_eta >= 0.0)
-        kind = np.where(sticks, np.where(slow, SLOW, FAST), SLIDES)
-        kind[sticks & (time - self.curve.arrival(x) <= SHORTEST * self.scale)] = BRIEF
-        return Knots(x, time, kind, velocity, by_xi, by_eta)
+        kind = np.where(sticks, np.where(slow, SLOWER_THAN_WAVES, FASTER_THAN_WAVES), SLIDING)
+        kind[sticks & (time - self.curve.arrival(x) <= MIN_INTERVAL * self.scale)] = BRIEF_SLIP
+        return Knots(
+            x=x,
+            stick=time,
+            kind=kind,
+            velocity=velocity,
+            velocity_by_xi=by_xi,
+            velocity_by_eta=by_eta,
+        )
 
-    def _landings(self, knots: Knots) -> np.ndarray:
-        """Positions on both sides of those where waves from the marks meet the trailing edge."""
+    def _positions_of_landings(self, knots: Knots) -> np.ndarray:
+        """Return positions on both sides of where waves from the marks meet the trailing edge."""
         marks = np.array(self.marks)
         arrival = self.curve.arrival(marks)
-        out, near = [], LANDED * self.scale
+        out, near = [], LANDING_OFFSET * self.scale
         for side in (-1.0, 1.0):
+            # The phase is 0 where the wave that a mark sends to this side meets the edge.
             phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
-            fast = knots.outruns(np.arange(knots.x.size - 1))[:, None]
+            fast = knots.outruns_waves(np.arange(knots.x.size - 1))[:, None]
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
             left, right = knots.x[k], knots.x[k + 1]
             x = left + (right - left) * before / (before - after)
+            # Two steps of Newton's method on du/dt along the wave.
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
-                past = self.past(x, time)
-                x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
+                domains = self.domains(x, time)
+                x = x - 0.5 * side * domains.slip_velocity() / domains.velocity_slopes()[side > 0.0]
                 x = x.clip(left, right)
-            # The edge has a kink there.
+            # The edge has a kink at x, so that a knot stands on either side of it.
             out.append(np.clip([x - near, x + near], left, right).ravel())
         return np.concatenate(out)
 
     def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
+        """Return du/dt at positions at the final time.
+
+        The second argument is not used; `roots_between` passes it.
+        """
         return self.velocity(x, np.full(x.size, self.until))
 
-    def _near_end(self, knots: Knots) -> np.ndarray:
-        """Positions on both sides of those where the trailing edge reaches the end."""
+    def _positions_near_end(self, knots: Knots) -> np.ndarray:
+        """Return positions on both sides of where the trailing edge reaches the final time."""
         k = np.arange(knots.x.size - 1)
-        k = k[knots.of_kinds(k, FAST, SLIDES)]
+        k = k[knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)]
         velocity = np.array([self._velocity_at_end(knots.x[ends]) for ends in (k, k + 1)])
         meets = velocity[0] * velocity[1] < 0.0
         at_left, at_right = velocity[:, meets]
         left, right = knots.x[k[meets]], knots.x[k[meets] + 1]
-        near = 0.4 * AT_END * self.scale
-        x = roots_between(self._velocity_at_end, left, right, at_left, at_right, xtol=0.5 * near)
+        near = 0.4 * MIN_INTERVAL_AT_END * self.scale
+        x = roots_between(
+            self._velocity_at_end,
+            lower=left,
+            upper=right,
+            at_lower=at_left,
+            at_upper=at_right,
+            xtol=0.5 * near,
+        )
         return np.clip([x - near, x + near], left, right).ravel()
 
-    def _refined(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
-        """More knots in some intervals, and the left ends of the intervals to look at next."""
-        k = np.searchsorted(knots.x, left)
-        # Nothing is known in the future of a jump, wherever it is in its interval.
-        ends, lengths = knots.fast_ends(k)
-        sides = np.array([k, k + 1])[..., None]
-        earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
-        k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
-        jumps, at_end = knots.jumps(k), knots.of_kinds(k, FAST, SLIDES)
-        size, scale = self.curve.edges[-1] - self.curve.edges[0], self.scale
-        short = np.full(k.size, SHORTEST * scale)
-        short[at_end | knots.brief(k)] = AT_END * scale
-        short[jumps] = LOCATED * size
-        long = knots.x[k + 1] - knots.x[k] > short
-        cut = k[long & (jumps | at_end)]
-        halved = k[long & ~jumps & ~at_end]
-        pieces = np.linspace(knots.x[cut], knots.x[cut + 1], CUTS + 1)[:-1]
+    def _refine(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
+        """Add knots in the intervals with the given left ends, and return which to look at next.
+
+        Intervals with a jump, or in which the edge reaches the final time, are cut into
+        PIECES_PER_CUT pieces; others are halved. Halves are looked at again if the interpolation
+        did not predict the middle, pieces if they contain the jump or the end.
+        """
+        k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left))
+        jumps = knots.has_jump(k)
+        reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
+        min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
+        min_length[jumps] = JUMP_TOLERANCE * self._length
+        is_long = knots.x[k + 1] - knots.x[k] > min_length
+        cut = k[is_long & (jumps | reaches_end)]
+        halved = k[is_long & ~jumps & ~reaches_end]
+        # Left ends of the pieces, [piece, interval], and the middles of the other intervals.
+        pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
         middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
         x = np.append(pieces[1:].ravel(), middle)
         if not x.size:
             return knots, x
-        new = self._knots_of(x, self._stick_time(x, knots))
+        new = self._make_knots(x, self._stick_time(x, knots))
         in_middle = Knots._make(values[x.size - middle.size :] for values in new)
-        surprise = ~knots.predict(halved, in_middle)
+        is_predicted = knots.predicts_middle(halved, in_middle)
+        refined = knots.joined(new)
+        self._mark_steep_pieces(refined, pieces)
         halves = np.append(knots.x[halved], middle)
-        refined, left = knots.joined(new), np.append(halves, pieces)
+        left = np.append(halves, pieces)
         k = np.searchsorted(refined.x, left)
-        # A jump is in one of the pieces: where all of them are steep, the edge is slow, though its
-        # slopes say that it just outruns the waves.
-        parted, far_apart = k[halves.size :].reshape(CUTS, -1), FAR_APART * LOCATED * size
-        slow = refined.jumps(parted).all(axis=0) & (pieces[1] - pieces[0] > far_apart)
-        refined.kind[parted[:, slow]] = refined.kind[parted[-1, slow] + 1] = SLOW
-        again = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
-        again[: halves.size] = np.tile(surprise, 2)
-        return refined, left[again]
+        look_again = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        look_again[: halves.size] = np.tile(~is_predicted, 2)
+        return refined, left[look_again]
 
-    def about(self, x: np.ndarray) -> np.ndarray:
-        """Stick times to a fraction of the distance of knots; the end for none."""
+    @property
+    def _length(self) -> float:
+        """Length of the part."""
+        return self.curve.edges[-1] - self.curve.edges[0]
+
+    def _not_behind_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
+        """Return those of the intervals k that are not completely in the future of a jump.
+
+        Nothing is known in the future of a jump. Its position in its own interval is not known
+        exactly, so that twice the interval length is added to its time.
+        """
+        ends, lengths = knots.ends_before_jumps(k)
+        sides = np.array([k, k + 1])[..., None]
+        delay = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
+        is_earlier = delay.min(axis=0) < knots.stick[ends] + 2.0 * lengths
+        return k[is_earlier.all(axis=1)]
+
+    def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
+        """Set the kind SLOWER_THAN_WAVES at knots of intervals all of whose pieces are steep.
+
+        Only one of the pieces contains a jump. If all of them are steep, the edge is slower than
+        the waves, although its slopes at the knots are just below 1.
+        """
+        k = np.searchsorted(knots.x, pieces)
+        is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
+        slow = k[:, knots.has_jump(k).all(axis=0) & is_long]
+        knots.kind[slow] = knots.kind[slow[-1] + 1] = SLOWER_THAN_WAVES
+
+    def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
+        """Return stick times, accurate to a fraction of the knot spacing.
+
+        For blocks that never stick it is the final time.
+        """
         knots = self.knots
-        k = knots.interval(x)
+        k = knots.interval_of(x)
         return np.where(
-            knots.outruns(k), knots.stick_between(k, x), np.interp(x, knots.x, knots.stick)
+            knots.outruns_waves(k), knots.interpolate(k, x), np.interp(x, knots.x, knots.stick)
         )
 
     def _stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
-        """Stick times at positions, with the help of knots; NaN where there is none."""
+        """Return stick times at positions, using the knots; NaN if a block never sticks."""
         knots = knots or self.knots
         if knots.x.size < 2:
-            return self.search(x)
-        k = knots.interval(x)
+            return self.find_stick_times(x)
+        k = knots.interval_of(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        out = self._between_knots(knots, x, k, inside & knots.outruns(k))
-        # A position that slides at the end, as both knots do, has not stuck.
-        slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
+        out = self._stick_times_by_newton(
+            knots, x=x, k=k, is_requested=inside & knots.outruns_waves(k)
+        )
+        # Where both neighbouring knots slide at the final time, a position whose du/dt is positive
+        # then has not stuck before.
+        slides = np.flatnonzero(inside & knots.has_end_kinds(k, SLIDING, SLIDING))
         slides = slides[self._velocity_at_end(x[slides]) > 0.0]
         unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
-        out[unknown] = self.search(x[unknown])
+        out[unknown] = self.find_stick_times(x[unknown])
         return np.where(out <= self.until, out, np.nan)
 
-    def _between_knots(
-        self, knots: Knots, x: np.ndarray, k: np.ndarray, wanted: np.ndarray
+    def _stick_times_by_newton(
+        self, knots: Knots, x: np.ndarray, k: np.ndarray, is_requested: np.ndarray
     ) -> np.ndarray:
-        """Stick times by Newton's steps; NaN where not wanted, and where the steps go astray."""
+        """Return stick times in the intervals k by Newton's method, from the interpolated ones on.
+
+        It is NaN where it is not requested and where the steps leave the neighbourhood of the
+        start.
+        """
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
-        guess = knots.stick_between(k, x)
-        acceleration = knots.by_xi + knots.by_eta
+        guess = knots.interpolate(k, x)
+        acceleration = knots.velocity_by_xi + knots.velocity_by_eta
         acceleration = acceleration[k] * (1.0 - s) + acceleration[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
         velocity, step = np.zeros(x.shape), np.zeros(x.shape)
-        todo = np.flatnonzero(wanted)
+        todo = np.flatnonzero(is_requested)
         for _ in range(12):
             if not todo.size:
                 break
             earlier, velocity[todo] = velocity[todo], self.velocity(x[todo], time[todo])
             last = step[todo]
-            # Secants follow the first step.
+            # After the first step the acceleration is that of the secant.
             secant = (earlier - velocity[todo]) / np.where(last == 0.0, np.nan, last)
-            acceleration[todo] = np.where(np.abs(last) > STEP, secant, acceleration[todo])
+            acceleration[todo] = np.where(
+                np.abs(last) > NEWTON_TOLERANCE, secant, acceleration[todo]
+            )
             step[todo] = velocity[todo] / acceleration[todo]
             time[todo] -= step[todo]
-            good = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
+            is_near = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
             size, before = np.abs(step[todo]), np.where(last == 0.0, 1.0, np.abs(last))
-            done = good & ((size < STEP) | (size * before < NEXT_STEP * span[todo]))
+            next_size = size * before
+            done = (size < NEWTON_TOLERANCE) | (next_size < NEXT_STEP_TOLERANCE * span[todo])
+            done &= is_near
             out[todo[done]] = time[todo[done]]
-            todo = todo[good & ~done]
+            todo = todo[is_near & ~done]
         return out
 
     def slow_points(self) -> list[Point]:
-        """Points of the trailing edge where it does not outrun the waves."""
+        """Return the points where the trailing edge is not faster than the waves."""
         knots = self.knots
-        ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
-        slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
-        slow = np.union1d(slow, self._undone_stops()).astype(int)
+        ends, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
+        slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOWER_THAN_WAVES))
+        slow = np.union1d(slow, self._stops_without_edge()).astype(int)
         points = np.stack([knots.x, knots.stick], axis=1)[slow].tolist()
         return [Point(*point) for point in points]
 
-    def _undone_stops(self) -> list[int]:
-        """Knots where a front stops, but no trailing edge that outruns the waves begins."""
-        knots, told = self.knots, np.flatnonzero(self.knots.kind != BRIEF)
-        undone = []
-        for end, nearest in ((0, told[:1]), (-1, told[-1:])):
-            # A front that goes on at the end has not stopped.
-            stopped = knots.kind[end] == BRIEF and self.curve.edge_times[end] < self.until
+    def _stops_without_edge(self) -> list[int]:
+        """Return the outer knots where a front has stopped but no fast trailing edge begins."""
+        knots = self.knots
+        resolved = np.flatnonzero(knots.kind != BRIEF_SLIP)
+        stops = []
+        for end, nearest in ((0, resolved[:1]), (-1, resolved[-1:])):
+            # A front that still moves at the final time has not stopped.
+            stopped = knots.kind[end] == BRIEF_SLIP and self.curve.edge_times[end] < self.until
             if stopped and nearest.size:
                 distance = abs((knots.x[nearest] - knots.x[end]).item())
                 delay = abs((knots.stick[nearest] - knots.stick[end]).item())
-                if delay > distance * (1.0 + SAME):
-                    undone.append(end % knots.x.size)
-        return undone
+                if delay > distance * (1.0 + EQUALITY_TOLERANCE):
+                    stops.append(end % knots.x.size)
+        return stops
 
     def first_stick(self) -> FirstStick | None:
-        """The first sticking; None where nothing sticks before the end."""
-        first = self._first()
-        # The knots may have missed one: then they become more.
-        while first and (x := self._earlier(first)).size:
-            self.knots = self._with(self.knots, x, self.search(x, first.time))
-            first = self._first()
+        """Return the first sticking, or None if nothing sticks before the final time."""
+        first = self._first_at_knots()
+        # If the knots have missed an earlier one, more of them are added there.
+        while first:
+            x = self._positions_stuck_earlier(first)
+            if not x.size:
+                break
+            self.knots = self._with_more_knots(self.knots, x, self.find_stick_times(x, first.time))
+            first = self._first_at_knots()
         return first
 
-    def _first(self) -> FirstStick | None:
-        """The first sticking that the knots show."""
+    def _first_at_knots(self) -> FirstStick | None:
+        """Return the first sticking according to the knots, or None if no knot sticks."""
         knots = self.knots
-        stuck = knots.kind != SLIDES
+        stuck = knots.kind != SLIDING
         if not stuck.any():
             return None
-        # The stick time of a front that has stopped is that of the front itself.
-        fall = np.where(knots.kind == BRIEF, np.inf, np.abs(knots.by_xi + knots.by_eta))
-        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING)
-        error[error < TIME_ERROR] = 0.0
-        # The position nearest to x = 0 counts, of several that stick first.
+        error = self._stick_time_errors()
+        # If several positions stick first, the one nearest to x = 0 is returned.
         latest = np.where(stuck, knots.stick + error, np.inf)
         first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
-        k = np.arange(knots.x.size - 1)
-        # A minimum may lie in each interval at whose ends the edge, or du/dt, goes down into it.
-        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0)
-        down &= knots.outruns(k) | knots.of_kinds(k, FAST, SLIDES)
-        down &= error[:-1] + error[1:] == 0.0
-        lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
-        for low in np.flatnonzero(down & (lowest < out.time)).tolist():
-            minimum = self._minimum(*knots.x[[low, low + 1]].tolist())
-            # Neither a kink nor an equal time is taken for a minimum.
-            if minimum and minimum.time < out.time - ROUNDING:
+        # An interval cannot contain a stick before this time.
+        earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
+        for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < out.time)).tolist():
+            minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
+            # A kink or an equal time does not count as a minimum.
+            if minimum and minimum.time < out.time - ROUNDING_ERROR:
                 out = minimum
         return out
 
-    def _earlier(self, first: FirstStick) -> np.ndarray:
-        """Positions between the knots that have stuck before the first that the knots show."""
+    def _stick_time_errors(self) -> np.ndarray:
+        """Return the errors of the stick times of knots, 0 where they are negligible."""
+        knots = self.knots
+        fall = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
+        # Where a front has stopped, the stick time is that of the front itself, which is exact.
+        fall = np.where(knots.kind == BRIEF_SLIP, np.inf, fall)
+        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING_ERROR)
+        error[error < TIME_ERROR] = 0.0
+        return error
+
+    def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
+        """Return a mask of the intervals in which the trailing edge may have a minimum.
+
+        Its slope, or du/dt at the final time, falls into such an interval from both ends.
+        """
+        knots = self.knots
+        k = np.arange(knots.x.size - 1)
+        falls_inwards = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
+        is_fast = knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        return falls_inwards & is_fast & (error[:-1] + error[1:] == 0.0)
+
+    def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
+        """Return positions between knots that have stuck before the first stick at a knot."""
         knots, curve = self.knots, self.curve
-        # What begins between two knots comes later than its waves may come to both.
+        # A stick between two knots comes later than its waves need to reach both of them.
         earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
         slips = curve.arrival(knots.x) < first.time
         intervals: list[tuple[float, float]] = []
@@ -312,17 +435,21 @@ class EdgedPart(Part):
             inner = [first.x] if left < first.x < right else []
             intervals += pairwise([left, *inner, right])
         x = np.array(intervals).reshape(-1, 2).T
-        return stuck_between(self, x, first.time, first.x)
+        return stuck_between(self, x=x, time=first.time, first=first.x)
 
-    def _minimum(self, left: float, right: float) -> FirstStick | None:
-        """The first sticking between two positions, if the edge goes down into the interval."""
+    def _minimum_between(self, left: float, right: float) -> FirstStick | None:
+        """Return the first sticking between two positions.
 
-        def pace(position: float) -> float:
+        It is None if the edge does not fall into the interval from both ends.
+        """
+
+        def edge_slope(position: float) -> float:
+            """Return the slope of the trailing edge at a position."""
             x = np.array([position])
-            return float(self._knots_of(x, self._stick_time(x)).pace[0])
+            return float(self._make_knots(x, self._stick_time(x)).slope[0])
 
-        # Where rounding alone says that it does, the knot itself is the minimum.
-        if not pace(left) < 0.0 < pace(right):
+        # If it falls only by rounding errors, one of the knots is the minimum.
+        if not edge_slope(left) < 0.0 < edge_slope(right):
             return None
-        x = root_between(pace, left, right, xtol=STEP)
+        x = root_between(edge_slope, left, right, xtol=NEWTON_TOLERANCE)
         return FirstStick(float(self._stick_time(np.array([x]))[0]), x)

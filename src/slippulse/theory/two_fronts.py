@@ -1,4 +1,4 @@
-"""Both fronts of one nucleation point at x = 0."""
+"""The two fast fronts of a single nucleation point at x = 0."""
 
 from typing import NamedTuple
 
@@ -6,13 +6,17 @@ import numpy as np
 
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from .curve import Curve, Point, seen_from
+from .curve import Curve, Point, turned_to_right
 from .fast_front import FastFront
-from .prestress_pieces import nucleations
+from .prestress_pieces import nucleation_intervals
 
 
 class ExactTransition(NamedTuple):
-    """T_trans, when something first sticks or a front has stopped, and L_trans, the length then."""
+    """The crack-pulse transition: T_trans and L_trans.
+
+    T_trans is the time at which something first sticks, or a front has stopped; L_trans is the
+    length of the rupture at that time.
+    """
 
     time: float
     length: float
@@ -21,18 +25,19 @@ class ExactTransition(NamedTuple):
 def fast_fronts(
     prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
 ) -> Curve:
-    """Both fronts of a nucleation at x = 0 alone, up to a distance, while they outrun the waves.
+    """Return both fronts of a single nucleation point at x = 0, up to a distance.
 
-    Its panels resolve the waves of leaf springs of gamma.
+    They end where they are not faster than the waves. The panels resolve the waves of leaf springs
+    with the elasticity ratio gamma.
     """
-    law = FastFront(prestress, gamma, damping_ratio, release)
+    law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
-    starts = nucleations(prestress)
+    starts = nucleation_intervals(prestress)
     if len(starts) > 1 or starts[0][0] != starts[0][1]:
         raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
     start = Point(0.0, 0.0)
-    right, _ = law.rightwards(start, reach, np.inf)
+    right, _ = law.panels_to_right(start, reach, np.inf)
     left = right
     if not prestress.symmetric:
-        left, _ = law.mirrored().rightwards(start, reach, np.inf)
-    return Curve(seen_from(-1.0, left) + right)
+        left, _ = law.mirrored().panels_to_right(start, reach, np.inf)
+    return Curve(turned_to_right(-1.0, left) + right)

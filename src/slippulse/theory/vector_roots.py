@@ -1,7 +1,7 @@
-"""Roots of many functions at once.
+"""Roots of many functions at once, with array operations.
 
-They are given as one, ``function(x, which)``: it has the values at x, a flat array, of the
-functions that the indices ``which`` number.
+The functions are given as a single one, ``function(x, which)``. It returns, for each i, the value
+at x[i] of the function with the number which[i].
 """
 
 from collections.abc import Callable
@@ -9,8 +9,9 @@ from collections.abc import Callable
 import numpy as np
 
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# Secants of `increasing_roots` that are enough for any function that is nearly linear.
-MOST_SECANTS = 200
+# The most secants of `increasing_roots`, which is sufficient for any function that is nearly
+# linear.
+MAX_SECANTS = 200
 
 
 @np.errstate(divide="ignore", invalid="ignore")
@@ -22,10 +23,15 @@ def roots_between(
     at_upper: np.ndarray,
     xtol: float,
 ) -> np.ndarray:
-    """Roots of many functions by Chandrupatla's method, which is Brent's without branches."""
+    """Return the roots of many functions, each between a lower and an upper bound.
+
+    It is Chandrupatla's method, which is similar to Brent's but has only one decision for each
+    step: inverse quadratic interpolation or bisection. at_lower and at_upper are the values at the
+    bounds, and xtol is the error of a root.
+    """
     if np.any(at_lower * at_upper > 0.0):
         raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
-    # x1 is the newest end of the bracket, x2 the other one, and x3 the end that x1 replaced.
+    # x1 is the newest end of the bracket, x2 the other end, and x3 the end that x1 has replaced.
     x1, f1 = lower, at_lower
     x2, f2 = upper, at_upper
     out = np.array(upper)
@@ -38,33 +44,36 @@ def roots_between(
         x3, x2 = np.where(keeps_sign, (x1, x2), (x2, x1))
         f3, f2 = np.where(keeps_sign, (f1, f2), (f2, f1))
         out[alive] = np.where(np.abs(f2) < np.abs(f), x2, x)
-        # No finer than floating point.
-        least = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
-        going = (least < 0.5) & (f != 0.0)
+        # The tolerance is at least the spacing of floating-point numbers.
+        min_fraction = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
+        going = (min_fraction < 0.5) & (f != 0.0)
         alive = alive[going]
         x1, x2, x3 = np.array([x, x2, x3])[:, going]
         f1, f2, f3 = np.array([f, f2, f3])[:, going]
         xi = (x1 - x2) / (x3 - x2)
         phi = (f1 - f2) / (f3 - f2)
-        # Inverse quadratic interpolation where it stays in the bracket, else the middle.
+        # Inverse quadratic interpolation if it stays in the bracket, otherwise the middle.
         first = f1 / (f2 - f1) * f3 / (f2 - f3)
         second = (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         inside = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
         fraction = np.where(inside, first + second, 0.5)
-        fraction = np.clip(fraction, least[going], 1.0 - least[going])
+        fraction = np.clip(fraction, min_fraction[going], 1.0 - min_fraction[going])
     return out
 
 
 def increasing_roots(
     function: Functions, guess: np.ndarray, lower: np.ndarray, upper: np.ndarray
 ) -> np.ndarray:
-    """Roots of many increasing functions that are nearly linear, by secants or the middle."""
+    """Return the roots of many increasing functions that are nearly linear.
+
+    Each step is that of a secant, or leads to the middle of the bracket if the secant leaves it.
+    """
     low, high = np.array(lower), np.array(upper)
     alive = np.arange(guess.size)
     before = np.array(guess)
     value_before = function(before, alive)
     x = np.clip(before - np.clip(value_before, -2.0, 2.0), low, high)
-    for _ in range(MOST_SECANTS):
+    for _ in range(MAX_SECANTS):
         value = function(x[alive], alive)
         high[alive] = np.where(value > 0.0, np.minimum(high[alive], x[alive]), high[alive])
         low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
@@ -74,7 +83,8 @@ def increasing_roots(
         step = np.where(flat, 0.0, -value * last / np.where(flat, 1.0, change))
         following = x[alive] + step
         outside = (following <= low[alive]) | (following >= high[alive])
-        # A secant's error is the product of the last two steps, up to a factor of order 1.
+        # The error of a secant step is the product of the last two steps, up to a factor of order
+        # 1.
         error = np.abs(step) * np.minimum(np.abs(last), 1.0)
         tiny = error <= 1e-15 * (1.0 + np.abs(x[alive]))
         middle = 0.5 * (low[alive] + high[alive])

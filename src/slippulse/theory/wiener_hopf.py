@@ -1,27 +1,47 @@
-"""The Wiener-Hopf factor of a front on the lattice, leaf springs and damping included.
+"""The Wiener-Hopf factor of a front on the lattice, with leaf springs and damping.
 
-In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the front
-has the symbol
+In the frame of a front at speed v, the equation of motion holds with unknown slip behind the front
+and unknown stress ahead of it. Its Fourier transform is one equation for both unknowns. The method
+of Wiener and Hopf solves it by writing the symbol M(k) of the equation as a product of two factors,
+one without zeros and poles in the upper and one in the lower half plane of k. (See Slepyan, Models
+and Phenomena in Fracture Mechanics, for fronts on lattices.) The factor at k = 0 gives the
+pre-stress of the front.
+
+In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the
+symbol is
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
-with M_+ analytic and free of zeros for Im k > 0. The symbol is an exact product of an algebraic
-function and two factors that decay on opposite sides of the axis,
+where M_+ is analytic and without zeros for Im k > 0. The symbol is an exact product of an algebraic
+function and two factors that decay on opposite sides of the real axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
-    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w),
+    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w).
 
-with the branch points of r and q above the contour: those of q, w = +-sqrt(g) at a = 0, and the
-waves that are radiated behind the front lie there by causality, since damping moves them up. (For
-a < 0 waves grow behind the front, and the contour leaves 0 more steeply, below them.) Then every
-factor but 1 - rho e^{ik} is analytic and free of zeros below the contour C, which passes below all
-of them, and closing C downwards leaves
+An integration contour C passes below the branch points of r and q, and below the waves that are
+radiated behind the front. (At a = 0 the branch points of q are w = +-sqrt(g). The waves lie above C
+by causality, since damping moves them up. For a < 0 waves grow behind the front, and C leaves 0
+more steeply, below them.) Then every factor except 1 - rho e^{ik} is analytic and without zeros
+below C. Closing C downwards leaves
 
     ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
 
-C is bent upwards at its ends, where e^{iz} decays and nothing oscillates: no tail is left, whatever
-b is. At b = 1, g = 0 the root is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed
-form, hence M_+(0) = 1 - 1/v; for g = 0 only the ratio to it is integrated.
+The right half of C (the left half is its mirror image):
+
+    Im z |                     / leg: upwards at 60 degrees,
+         |                    /  where e^{iz} decays
+    -----0-------------------/---- Re z
+         | ` - .            /
+         |       ` - .     /
+         |             ` -/  ray: at CONTOUR_ANGLE below the axis,
+         |                   up to the distance CONTOUR_REACH
+
+Since nothing oscillates on the legs, no tail of the integral is left, whatever b is. At b = 1 and
+g = 0 the root r is 1 + i w/2, and the factor has a closed form,
+
+    M_+(k) = (1 + i v k - e^{ik})/(i v k),   hence   M_+(0) = 1 - 1/v.
+
+For g = 0 only the ratio to this closed form is integrated.
 """
 
 from functools import lru_cache
@@ -29,30 +49,30 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Gauss-Legendre nodes on each panel.
+# Gauss-Legendre nodes and weights of each panel.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)
 # The contour leaves 0 at this angle below the real axis, away from branch points and waves above
-# it. It goes beyond the farthest of them, |k| <= pi, and stays short of the zeros of M below the
-# axis, Re k > pi.
-ANGLE = 0.5
-REACH = 3.5
-# Then it goes up at 60 degrees to where e^{-Im z} is 1e-14.
+# it. Its ray ends beyond the farthest of them, |k| <= pi, and before the zeros of M below the axis,
+# Re k > pi.
+CONTOUR_ANGLE = 0.5
+CONTOUR_REACH = 3.5
+# Edges of the panels on its leg, which rises at 60 degrees to where e^{-Im z} is 1e-14.
 LEG_EDGES = np.array([0.0, 1.2, 3.0, 7.0, 14.0, 24.0, 38.0])
 LEG_DIRECTION = np.exp(1j * np.pi / 3.0)
 # Length of the panels along the ray, in ln |z|.
-PANEL = 0.9
-# Below these sizes differences of nearly equal numbers are taken from their series.
-SMALL = 0.5
-SMALL_ARTANH = 0.1
+LOG_PANEL_LENGTH = 0.9
+# Arguments below which differences of nearly equal numbers are computed from their series.
+SERIES_LIMIT = 0.5
+ARTANH_SERIES_LIMIT = 0.1
 
 
 class Nodes(NamedTuple):
-    """Nodes z of the right half of the contour, with weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+    """Nodes z of the right half of the contour, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
 
     z: np.ndarray
     weight: np.ndarray
-    bent: np.ndarray
-    curved: np.ndarray
+    exp_minus_1: np.ndarray
+    exp_minus_2_terms: np.ndarray
 
 
 def log_prestress(
@@ -62,57 +82,74 @@ def log_prestress(
     release: str = "total",
     drag: float = 0.0,
 ) -> np.ndarray:
-    """ln tau_0 of steady fronts at speeds v = 1 + excess.
+    """Return ln tau_0 of steady fronts at speeds v = 1 + excess.
 
-    excess and ratio are 1-d; excess > 0, or >= 0 with leaf springs g = gamma dx^2, and
-    v >= sqrt(4 + g)/pi. drag is a = alpha dx, with springs only, above -2 sqrt(g (1 - 1/v^2)). The
-    release is "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0. Both hold with
-    springs as without: a block ahead of the front has not slipped, so its leaf spring is relaxed.
+    excess and ratio (beta/dx) have one dimension. excess is > 0, or >= 0 with leaf springs (springs
+    = g = gamma dx^2), and v >= sqrt(4 + g)/pi. drag is a = alpha dx, which requires springs and is
+    above -2 sqrt(g (1 - 1/v^2)). The release rule is "total", M_+(0) = tau_0, or "elastic",
+    M_+(0)/M_+(i/(b v)) = tau_0. Both hold with leaf springs as without: a block ahead of the front
+    has not slipped, so that its leaf spring is relaxed.
     """
-    # Below this size no zero or branch point comes near 0, where the contour starts.
+    contour, angle = _choose_contour(excess, ratio=ratio, springs=springs, drag=drag)
+    log_values = log_factor(
+        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
+    )
+    out = (log_values @ (contour.weight / contour.z)).imag / np.pi
+    if springs > 0.0:
+        edge = 0.5 * np.sqrt(springs)
+        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
+        # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
+        # residue.
+        out = (0.5 - angle / np.pi) * origin + out
+    else:
+        # The closed form at b = 1, whose ratio to the factor has been integrated.
+        out += np.log(excess / (1.0 + excess))
+    if release == "elastic" and np.any(ratio > 0.0):
+        # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
+        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
+        from_pole = contour.z - 1j * y[:, None]
+        at_pole = np.sum(log_values * (contour.weight / from_pole), axis=1).imag / np.pi
+        if springs == 0.0:
+            at_pole += np.log((excess * y + _exp_minus_two_terms(-y).real) / ((1.0 + excess) * y))
+        out -= np.where(ratio > 0.0, at_pole, 0.0)
+    return out
+
+
+def _choose_contour(
+    excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> tuple[Nodes, float]:
+    """Return a contour that serves all fronts, and the angle at which it leaves 0."""
+    # No zero and no branch point lies nearer to 0, where the contour starts, than this.
     nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
-    angle = ANGLE
+    angle = CONTOUR_ANGLE
     if drag:
         nearest = min(nearest, springs / abs(drag))
     if drag < 0.0:
         slowest = float(np.min(excess))
         size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
-        angle = max(ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
+        angle = max(CONTOUR_ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    contour = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)), angle)
-    f = log_factor(contour, excess[:, None], ratio[:, None], springs, drag)
-    out = (f @ (contour.weight / contour.z)).imag / np.pi
-    if springs > 0.0:
-        edge = 0.5 * np.sqrt(springs)
-        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
-        # The contour leaves 0 at an angle: the value there enters with the rest of half a residue.
-        out = (0.5 - angle / np.pi) * origin + out
-    else:
-        out += np.log(excess / (1.0 + excess))
-    if release == "elastic" and np.any(ratio > 0.0):
-        # With b = 0 both rules are the same: M_+(i infinity) = 1.
-        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
-        from_pole = contour.z - 1j * y[:, None]
-        at_pole = np.sum(f * (contour.weight / from_pole), axis=1).imag / np.pi
-        if springs == 0.0:
-            at_pole += np.log((excess * y + _exp_beyond(-y).real) / ((1.0 + excess) * y))
-        out -= np.where(ratio > 0.0, at_pole, 0.0)
-    return out
+    panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH))
+    return nodes(panels, angle), angle
 
 
 def log_factor(
     contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
 ) -> np.ndarray:
-    """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1; excess, ratio are columns."""
+    """Return ln(1 - rho e^{iz}) at the nodes, [front, node]; for g = 0 less its value at b = 1.
+
+    excess and ratio are columns.
+    """
     z = contour.z
     iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio, springs, drag)
+    q, r = roots(iw, ratio=ratio, springs=springs, drag=drag)
     both = r + q
     rho = (1.0 + ratio * iw) / both**2
-    factor = 2.0 * q / both - rho * contour.bent
-    # Near 0 both parts cancel as v -> 1: there it is -expm1(i z + ln rho), ln rho = -2 artanh(q/r).
+    factor = 2.0 * q / both - rho * contour.exp_minus_1
+    # Near 0 both parts of the factor cancel as v -> 1. There it is -expm1(i z + ln rho), with ln
+    # rho = -2 artanh(q/r).
     slope = q / r
-    close = (np.abs(slope) < SMALL) & (np.abs(z) < SMALL) & (excess < 1.0)
+    close = (np.abs(slope) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess < 1.0)
     if np.any(close):
         last = int(np.flatnonzero(close.any(axis=0))[-1]) + 1
         part = np.s_[:, :last]
@@ -122,27 +159,30 @@ def log_factor(
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
             lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
-        # artanh h - h without cancellation.
-        square, large = h * h, np.abs(h) >= SMALL_ARTANH
-        curved = h * square * _ARTANH(square)
-        curved[large] = np.arctanh(h[large]) - h[large]
-        exponent = np.where(close[part], 1j * lag - 2.0 * curved, 0.0)
+        # artanh h - h, computed without cancellation.
+        square, large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
+        artanh_minus_h = h * square * _ARTANH(square)
+        artanh_minus_h[large] = np.arctanh(h[large]) - h[large]
+        exponent = np.where(close[part], 1j * lag - 2.0 * artanh_minus_h, 0.0)
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
         return log(factor)
-    reference = (1j * excess * z - contour.curved) / (1.0 + iw)
+    reference = (1j * excess * z - contour.exp_minus_2_terms) / (1.0 + iw)
     return log(factor / reference)
 
 
 def log(z: np.ndarray) -> np.ndarray:
-    """The logarithm, in a fifth of the time of `np.log` of complex numbers."""
+    """Return the logarithm of complex numbers, in a fifth of the time of `np.log`."""
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
 def roots(
     iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """q and r (module docstring) with cuts that run straight up from their branch points."""
+    """Return q and r (see the module docstring).
+
+    Their branch cuts run straight up from the branch points.
+    """
     four = 4.0 + springs
     ratio = ratio + 0.25 * drag
     under = 4.0 * ratio**2 - four
@@ -159,30 +199,36 @@ def roots(
 
 @lru_cache(maxsize=32)
 def nodes(panels: int, angle: float) -> Nodes:
-    """Nodes on the contour, with its ray in panels."""
-    edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
+    """Return the nodes on the contour, whose ray has a given number of panels."""
+    edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
     leg, leg_weight = _panels(LEG_EDGES)
     turn, size = np.exp(-1j * angle), np.exp(ray)
-    z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
+    z = np.concatenate([inner * turn, size * turn, CONTOUR_REACH * turn + leg * LEG_DIRECTION])
     weights = inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION
     weight = np.concatenate(weights)
-    return Nodes(z, weight, np.expm1(1j * z), _exp_beyond(1j * z))
+    return Nodes(
+        z=z,
+        weight=weight,
+        exp_minus_1=np.expm1(1j * z),
+        exp_minus_2_terms=_exp_minus_two_terms(1j * z),
+    )
 
 
 def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return nodes and weights on panels between edges."""
     half = 0.5 * np.diff(edges)[:, None]
     return (edges[:-1, None] + half * (1.0 + NODES)).ravel(), (half * WEIGHTS).ravel()
 
 
-# artanh h - h = h^3 P(h^2) for small h, and e^x - 1 - x = x^2 P(x) for small x.
+# Series of artanh h - h = h^3 P(h^2) for small h, and of e^x - 1 - x = x^2 P(x) for small x.
 _ARTANH = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
 _EXP = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
 
 
-def _exp_beyond(x: np.ndarray) -> np.ndarray:
-    """e^x - 1 - x without cancellation."""
+def _exp_minus_two_terms(x: np.ndarray) -> np.ndarray:
+    """Return e^x - 1 - x, computed without cancellation."""
     x = np.asarray(x, dtype=complex)
-    series = np.where(np.abs(x) < SMALL, x, 0.0)
-    return np.where(np.abs(x) < SMALL, series**2 * _EXP(series), np.expm1(x) - x)
+    series = np.where(np.abs(x) < SERIES_LIMIT, x, 0.0)
+    return np.where(np.abs(x) < SERIES_LIMIT, series**2 * _EXP(series), np.expm1(x) - x)

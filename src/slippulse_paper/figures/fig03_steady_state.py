@@ -1,4 +1,4 @@
-"""Figure 3: slip velocity of the steady pulses, both boundary conditions, with theory."""
+"""Figure 3: slip velocity of steady pulses under both boundary conditions, beside theory."""
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "steady_displacement": "boundary displacement and a level above 0",
     "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
@@ -28,7 +28,7 @@ DRAWS = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of `pulse_table` for both sweeps, with the slip velocity alone."""
+    """Return `pulse_table` for both sweeps, without slip and acceleration."""
     return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 
 

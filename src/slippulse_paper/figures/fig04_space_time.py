@@ -1,4 +1,6 @@
-"""Figure 4: slip velocity over time and position, of cracks that become two pulses and one."""
+"""Figure 4: slip velocity in time and space, of a crack that becomes two pulses and of another one
+that becomes a single pulse.
+"""
 
 import numpy as np
 import pandas as pd
@@ -16,7 +18,7 @@ NEEDS = {
     "studies": ["exact_space_time"],
     "settings": ["measure.fraction"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "space_time_displacement": "boundary displacement and equal levels above 0",
     "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
@@ -27,10 +29,11 @@ COLUMNS = ["panel", "role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of `run_rows` of the first run of both sweeps, exact edges, and the transition by role.
+    """Return the rows of the first run of both sweeps, with these additional roles.
 
-    measured, paper, last_release : both fronts (series) at a time, and the length between them
-    fraction : that of |x_minus| which the left front has covered at T_trans under held stress
+    exact_front, exact_trailing : edges of the exact solution
+    measured, paper, last_release : both fronts (series) at a time, and their distance (value)
+    fraction : part of |x_minus| that the left front has covered at T_trans, with the stress held
     """
     parts = []
     for panel in PANELS:
@@ -60,7 +63,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the figure; the legend has what is drawn in either panel."""
+    """Draw the figure; the legend has an entry for everything that either panel shows."""
     figure = Figure(figsize=(PAGE_WIDTH, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
@@ -83,13 +86,13 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw exact edges, arrows for T_trans and L_trans, the paper's estimate, the last release."""
+    """Draw exact edges, arrows for T_trans and L_trans, the paper's estimate and last release."""
     look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
     time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
-    # A run that is too short for its transition has none to draw.
+    # A run that ends before its transition has no arrows.
     if np.isfinite(time):
         low, high = axes.get_ylim()
         height = high - low

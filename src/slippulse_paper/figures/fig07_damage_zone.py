@@ -1,4 +1,4 @@
-"""Figure 7: a fault with a damaged core, and the stress drop against the contrast of stiffness."""
+"""Figure 7: a fault with a damaged core, and its stress drop by contrast of stiffness."""
 
 import matplotlib
 import numpy as np
@@ -9,17 +9,17 @@ from matplotlib.patches import Rectangle
 
 from slippulse.plotting.style import BLACK, BLUE, COLUMN_WIDTH, GREY, ORANGE, as_given, new_panels
 
-from .shared.sketch import BOTH, MUTED, arrow, label
+from .shared.sketch import MUTED_GREY, TWO_HEADS, arrow, label
 
 NEEDS = {"studies": ["damage_zone"]}
 table = as_given
 
-# Width of the sketch and position of displacement 0, in thicknesses of the zone.
-WIDTH, ORIGIN = 4.2, 1.95
+# Width of the sketch and position of zero displacement, in thicknesses of the damage zone.
+SKETCH_WIDTH, ZERO_DISPLACEMENT = 4.2, 1.95
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the sketch above, and below it the stress drop against G/G_r with its limit."""
+    """Draw the sketch above, and below it the stress drop as a function of G/G_r."""
     figure, (above, axes) = new_panels(COLUMN_WIDTH, 4.1, "a;b", height_ratios=[1.0, 1.1])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
     curves = table[table["role"] == "curve"]
@@ -40,35 +40,41 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
-    """Draw the damage zone under host rock, and the displacement over the height."""
+    """Draw the damage zone under host rock, and the displacement as a function of height."""
     top = float(after["y"].max())
     slip = float(after["displacement"].iloc[0] - before["displacement"].iloc[0])
     imposed = float(after["displacement"].iloc[-1])
-    axes.add_patch(Rectangle((0.0, 0.0), WIDTH, 1.0, facecolor="#f6d9b8"))
-    axes.add_patch(Rectangle((0.0, 1.0), WIDTH, top - 1.0, facecolor="#d7dde4"))
+    axes.add_patch(Rectangle((0.0, 0.0), SKETCH_WIDTH, 1.0, facecolor="#f6d9b8"))
+    axes.add_patch(Rectangle((0.0, 1.0), SKETCH_WIDTH, top - 1.0, facecolor="#d7dde4"))
     for y, width in ((0.0, 1.8), (1.0, 0.7), (top, 1.0)):
-        axes.plot([0.0, WIDTH], [y, y], color=BLACK, linewidth=width)
-    axes.plot([ORIGIN, ORIGIN], [0.0, top], color=MUTED, linewidth=0.7, linestyle=":")
-    x_before, x_after = (ORIGIN + rows["displacement"] for rows in (before, after))
+        axes.plot([0.0, SKETCH_WIDTH], [y, y], color=BLACK, linewidth=width)
+    axes.plot(
+        [ZERO_DISPLACEMENT, ZERO_DISPLACEMENT],
+        [0.0, top],
+        color=MUTED_GREY,
+        linewidth=0.7,
+        linestyle=":",
+    )
+    x_before, x_after = (ZERO_DISPLACEMENT + rows["displacement"] for rows in (before, after))
     axes.plot(x_before, before["y"], color=GREY, linewidth=1.2, linestyle="--", gid="before")
     axes.plot(x_after, after["y"], color=BLUE, linewidth=1.6, gid="after")
     axes.fill_betweenx(after["y"], x_before, x_after, color=BLUE, alpha=0.18, linewidth=0.0)
-    arrow(axes, (ORIGIN, -0.14), (ORIGIN + slip, -0.14), ORANGE)
-    arrow(axes, (ORIGIN, top + 0.14), (ORIGIN + imposed, top + 0.14), BLACK)
-    arrow(axes, (WIDTH + 0.16, 0.0), (WIDTH + 0.16, 1.0), MUTED, **BOTH)
-    arrow(axes, (WIDTH + 0.16, 1.0), (WIDTH + 0.16, top), MUTED, **BOTH)
-    arrow(axes, (-0.12, 0.0), (-0.12, top + 0.35), MUTED)
+    arrow(axes, (ZERO_DISPLACEMENT, -0.14), (ZERO_DISPLACEMENT + slip, -0.14), ORANGE)
+    arrow(axes, (ZERO_DISPLACEMENT, top + 0.14), (ZERO_DISPLACEMENT + imposed, top + 0.14), BLACK)
+    arrow(axes, (SKETCH_WIDTH + 0.16, 0.0), (SKETCH_WIDTH + 0.16, 1.0), MUTED_GREY, **TWO_HEADS)
+    arrow(axes, (SKETCH_WIDTH + 0.16, 1.0), (SKETCH_WIDTH + 0.16, top), MUTED_GREY, **TWO_HEADS)
+    arrow(axes, (-0.12, 0.0), (-0.12, top + 0.35), MUTED_GREY)
     label(axes, 0.12, 0.5, "damage zone\n$G$", ha="left")
     label(axes, 0.12, 0.5 + 0.5 * top, "host rock\n$G_r > G$", ha="left")
-    label(axes, ORIGIN + 0.5 * slip, -0.22, r"slip $\delta$", ORANGE, va="top")
-    label(axes, ORIGIN + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")
-    label(axes, ORIGIN + 1.45, 1.5, "before", "0.35", ha="right")
-    label(axes, ORIGIN + 1.45, 0.4, "after", BLUE, ha="left")
-    label(axes, ORIGIN + 0.61 * slip, 0.15, "change", BLUE, fontsize=7.0)
-    label(axes, WIDTH + 0.26, 0.5, "$H$", MUTED, ha="left")
-    label(axes, WIDTH + 0.26, 0.5 + 0.5 * top, "$H_r$", MUTED, ha="left")
+    label(axes, ZERO_DISPLACEMENT + 0.5 * slip, -0.22, r"slip $\delta$", ORANGE, va="top")
+    label(axes, ZERO_DISPLACEMENT + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")
+    label(axes, ZERO_DISPLACEMENT + 1.45, 1.5, "before", "0.35", ha="right")
+    label(axes, ZERO_DISPLACEMENT + 1.45, 0.4, "after", BLUE, ha="left")
+    label(axes, ZERO_DISPLACEMENT + 0.61 * slip, 0.15, "change", BLUE, fontsize=7.0)
+    label(axes, SKETCH_WIDTH + 0.26, 0.5, "$H$", MUTED_GREY, ha="left")
+    label(axes, SKETCH_WIDTH + 0.26, 0.5 + 0.5 * top, "$H_r$", MUTED_GREY, ha="left")
     for y, text in ((0.0, "fault  $0$"), (1.0, "$H$"), (top, "$H + H_r$")):
-        label(axes, -0.2, y, text, MUTED, ha="right")
-    label(axes, -0.04, top + 0.32, "$y$", MUTED, ha="left")
-    axes.set(xlim=(-1.0, WIDTH + 0.65), ylim=(-0.55, top + 0.55), aspect="equal")
+        label(axes, -0.2, y, text, MUTED_GREY, ha="right")
+    label(axes, -0.04, top + 0.32, "$y$", MUTED_GREY, ha="left")
+    axes.set(xlim=(-1.0, SKETCH_WIDTH + 0.65), ylim=(-0.55, top + 0.55), aspect="equal")
     axes.set_axis_off()

@@ -1,4 +1,4 @@
-"""Figure 9: slip, slip velocity and acceleration of the pulses under a stress boundary."""
+"""Figure 9: slip, slip velocity and acceleration of steady pulses under a stress boundary."""
 
 from .shared.pulse_panels import plot_fields, pulse_table
 
@@ -9,7 +9,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
 }

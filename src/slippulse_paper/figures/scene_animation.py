@@ -1,4 +1,4 @@
-"""A scene as an animation: slip velocity and slip over position, as time goes on."""
+"""Animate a scene: slip velocity and slip as functions of position."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from slippulse.plotting.selection import spaced_indices
 from slippulse.plotting.space_time import drawn_range
 from slippulse.plotting.style import BLUE, GREY, ORANGE
 
-FRAMES, PER_SECOND = 61, 12
+FRAME_COUNT, FRAMES_PER_SECOND = 61, 12
 DOTS_PER_INCH = 90
 FIELDS = {
     "sample_velocity": (r"slip velocity $\dot u$", BLUE),
@@ -28,17 +28,17 @@ def save_animation(
 ) -> None:
     """Write an animated GIF of frames that are evenly spread over the samples of a run.
 
-    With a layer its axes are in SI units.
+    With a layer, the axes are in SI units.
     """
     lower, upper = drawn_range(run)
     inside = (run["sample_position"].values >= lower) & (run["sample_position"].values <= upper)
-    x, unit_of_x = _drawn(run["sample_position"].values, "length", layer)
-    times, unit_of_time = _drawn(run["sample_time"].values, "time", layer)
-    frames = spaced_indices(times.size, FRAMES)
+    x, unit_of_x = _drawn_values(run["sample_position"].values, "length", layer)
+    times, unit_of_time = _drawn_values(run["sample_time"].values, "time", layer)
+    frames = spaced_indices(times.size, FRAME_COUNT)
     figure, lines = Figure(figsize=(6.4, 3.6), layout="constrained"), []
     panels = figure.subplots(2, 1, sharex=True)
     for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
-        values, unit = _drawn(run[name].values[:, inside], QUANTITIES[name], layer)
+        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
         label += f" ({unit})" if unit else ""
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         (line,) = axes.plot(x[inside], values[0], color=colour)
@@ -56,15 +56,18 @@ def save_animation(
             line.set_ydata(values[frame])
         clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
 
-    # The layout is found once, for the longest title, and kept: the frames must not jump.
+    # The layout is computed once, for the longest title, so that frames do not jump.
     draw(int(frames[-1]))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    animation, writer = FuncAnimation(figure, draw, frames=frames), PillowWriter(fps=PER_SECOND)
+    animation, writer = (
+        FuncAnimation(figure, draw, frames=frames),
+        PillowWriter(fps=FRAMES_PER_SECOND),
+    )
     write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))
 
 
-def _drawn(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
+def _drawn_values(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
     """Return values as they are drawn, and their unit, which is empty without a layer."""
     if layer is None:
         return values, ""

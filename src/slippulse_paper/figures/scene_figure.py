@@ -1,4 +1,4 @@
-"""A scene: slip velocity over time and position, fields at the end, and numbers beside theory."""
+"""Draw a scene: slip velocity in time and space, fields at the end, and numbers beside theory."""
 
 import math
 from typing import Any
@@ -14,14 +14,14 @@ from slippulse.plotting.selection import spaced_indices
 from slippulse.plotting.si_tables import table_in_si, with_unit
 from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE_WIDTH, Look, by_role, panel_letter
 
-from ..text.numerals import MOST, number, with_uncertainty
+from ..text.numerals import MAX_DIGITS, number, with_uncertainty
 from .shared.main_numbers import with_symbols
 
-# The number of blocks drawn of a profile.
+# How many blocks of a profile are drawn.
 PROFILE_POINTS = 400
 FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
-# The size of a steady pulse that is the largest value of each field.
-LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
+# The number of a steady pulse that equals the largest value of each field.
+LARGEST_VALUES = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
 def table(
@@ -31,22 +31,25 @@ def table(
     title: str,
     layer: Layer | None = None,
 ) -> pd.DataFrame:
-    """Rows of a run by role: those of `run_rows`, profile (a field at the end), steady (its largest
-    value in the exact steady pulse of each side), number (`shared.numbers.scene_numbers`), title.
+    """Return everything that the figure shows, with a role in each row.
 
-    ``theory`` is the row of measured and predicted numbers of the run. With a layer the table is in
-    SI units (`shared.si_tables`), and so must be ``numbers``.
+    The roles of `run_table` are joined by title, profile (a field at the end), steady (the largest
+    value of a field in the exact steady pulse of each side) and number (a row of ``numbers``).
+
+    numbers : from `main_numbers.scene_numbers`; in SI units if there is a layer
+    theory : measured and predicted numbers of the run
+    layer : the layer in SI units, which the table then has, too
     """
     lower, upper = space_time.drawn_range(run)
     x = run["x"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     parts = [pd.DataFrame([{"role": "title", "series": title}]), space_time.run_table(run)]
-    # The right pulse is measured; on the left there is one once blocks stick.
+    # The right pulse has a measured state. On the left there is a pulse if any block has stuck.
     ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
     if math.isfinite(run.attrs["first_stick_time"]):
         ends = {"exact_left": lower} | ends
     steady = []
-    for name, largest in LARGEST.items():
+    for name, largest in LARGEST_VALUES.items():
         values = run[name].values
         spaced = inside[spaced_indices(inside.size, PROFILE_POINTS)]
         kept = np.union1d(spaced, inside[np.argmax(values[inside])])
@@ -64,7 +67,7 @@ def table(
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw pre-stress and map, both fields at the end with exact steady pulses, and numbers."""
+    """Draw pre-stress and map, both fields at the end with exact steady pulses, and the numbers."""
     roles, none = by_role(table), table.iloc[:0]
     numbers, steady = roles.get("number", none), roles.get("steady", none)
     rows = math.ceil(len(numbers) / 2)
@@ -86,11 +89,11 @@ def draw(table: pd.DataFrame) -> Figure:
         look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
         for pulse in steady[steady["series"] == field].itertuples():
             axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
-        # The velocity is 0 in the middle; one entry of the legend stands for both sides and panels.
+        # The velocity is 0 in the middle, where the legend fits. Its entries hold for both panels.
         if len(axes.lines) > 2 and field == "slip_velocity":
             axes.legend(handles=axes.lines[1:3], loc="center")
         axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
-        # With a unit it would be longer than the panel is high.
+        # A label with a unit needs a second line, since the panel is low.
         end = "\nat the end" if "unit" in roles else " at the end"
         axes.set_ylabel(with_unit(name, roles, field) + end)
         axes.set_xlim(ends["position"].min(), ends["position"].max())
@@ -99,7 +102,7 @@ def draw(table: pd.DataFrame) -> Figure:
         measured = f"{with_uncertainty(row.value, row.uncertainty)} {_unit(row)}".strip()
         line = f"{with_symbols(row.label)}: {measured}"
         if math.isfinite(row.theory):
-            line += f" (theory {number(row.theory, MOST)})"
+            line += f" (theory {number(row.theory, MAX_DIGITS)})"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center")
     return figure

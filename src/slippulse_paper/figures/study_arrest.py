@@ -1,4 +1,7 @@
-"""The arrest of the left front under a stress boundary, which takes for ever, and exact theory."""
+"""The arrest of the left front under a stress boundary, on lattices and by exact theory.
+
+In the continuum the front approaches its final position for ever.
+"""
 
 import numpy as np
 import pandas as pd
@@ -15,19 +18,19 @@ NEEDS = {
     "studies": ["arrest_path"],
     "settings": ["measure.fraction"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "arrest": "boundary stress, left level below 0, right level 0 and no steps",
 }
 
 PATH_POINTS = 150
-PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
+SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The path of each left front (roles path and exact_path), and when runs come to rest (run)."""
+    """Return the path of each left front (roles path, exact_path) and arrest times (run)."""
     runs = tables["arrest"]
-    # Times are in units of |x_minus|, by which the paper estimates the time of the transition.
+    # Times are in units of |x_minus|, the paper's estimate of the transition time.
     scale = runs["paper_transition_time"]
     numbers = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
@@ -46,15 +49,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
+    """Draw (a) the remaining distance, (b) the times of the stated fraction and last release."""
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
-        # The scale of colours is logarithmic, and has none for 0.
+        # The colour scale is logarithmic and has no colour for 0.
         look: Look = {"color": style.colour("damping_ratio", ratio) if ratio else ORANGE}
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
-        path_axes.plot(simulated["time"], simulated["to_go"], **PALE | look)
+        path_axes.plot(simulated["time"], simulated["to_go"], **SIMULATION_LOOK | look)
         path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
         last, label = simulated.iloc[-1], f"$b$ = {ratio:g}"
         path_axes.plot(last["time"], last["to_go"], marker, label=label, **look)
@@ -62,7 +65,7 @@ def draw(table: pd.DataFrame) -> Figure:
         spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
         spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN_MARKER | look)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
-    looks = {"simulation": PALE, "exact": {"linewidth": 0.9}}
+    looks = {"simulation": SIMULATION_LOOK, "exact": {"linewidth": 0.9}}
     looks["last release (does not converge)"] = {"marker": "o"}
     fraction_label = f"{100.0 * table['fraction'].max():g} % of the way (converges)"
     looks |= {fraction_label: {"marker": "o"} | OPEN_MARKER, "the same, exact": {"marker": "<"}}

@@ -1,4 +1,4 @@
-"""Ruptures from beginning to end, exact and on lattices, and how the difference falls."""
+"""Whole ruptures, exact and on lattices, and how their difference falls with the spacing."""
 
 import numpy as np
 import pandas as pd
@@ -24,16 +24,16 @@ from ..text.numerals import setting
 NEEDS = {"studies": ["exact_rupture"]}
 table = style.as_given
 
-SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress": GREEN}
-MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
+SCENE_COLOURS = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress": GREEN}
+QUANTITY_MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
+    """Draw (a) the map, (b) fronts and trailing edges, (c) slip, (d) the difference by spacing."""
     figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(
         PAGE_WIDTH, 5.4, "ab;cd"
     )
-    rows = table[table["scene"] == next(iter(SCENES))]
+    rows = table[table["scene"] == next(iter(SCENE_COLOURS))]
     draw_halves(map_axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
     exact = rows[rows["role"] == "exact"]
     for quantity, dashes in (("release", "-"), ("stick", "--")):
@@ -42,7 +42,7 @@ def draw(table: pd.DataFrame) -> Figure:
         map_axes.text(0.03, height, half, transform=map_axes.transAxes)
     map_axes.set_xlim(0.0, None)
     look: Look = {"markersize": 2.2} | OPEN_MARKER
-    for scene, colour in SCENES.items():
+    for scene, colour in SCENE_COLOURS.items():
         rows = table[table["scene"] == scene]
         for role, front, trailing in (("exact", "-", "--"), ("lattice", "o", "s")):
             line = rows[rows["role"] == role]
@@ -56,7 +56,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for mark, label in looks.items():
         edge_axes.plot([], [], mark, color=GREY, label=label, **OPEN_MARKER)
     edge_axes.legend(loc="upper left", fontsize=SMALL_TEXT)
-    # Edges have time on the horizontal axis, as in every figure.
+    # Time is on the horizontal axis, as in every figure with fronts.
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
     lines = []
@@ -64,17 +64,17 @@ def draw(table: pd.DataFrame) -> Figure:
         gamma = {"gamma": row.gamma} if row.gamma > 0.0 else {}
         levels = ", ".join(dict.fromkeys([setting(row.left), setting(row.right)]))
         name = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
-        lines.append(style.entry(name, color=SCENES[str(row.scene)]))
+        lines.append(style.entry(name, color=SCENE_COLOURS[str(row.scene)]))
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     _draw_differences(difference_axes, table[table["role"] == "difference"].sort_values("dx"))
     return figure
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the difference of each quantity of each scene over the spacing."""
-    for quantity, marker in MARKERS.items():
+    """Draw the difference of each quantity as a function of spacing, with a line for each scene."""
+    for quantity, marker in QUANTITY_MARKERS.items():
         for scene, line in rows[rows["quantity"] == quantity].groupby("scene"):
-            look: Look = {"color": SCENES[str(scene)], "linewidth": 0.7}
+            look: Look = {"color": SCENE_COLOURS[str(scene)], "linewidth": 0.7}
             axes.plot(line["dx"], line["difference"], marker + "-", **look)
         label = "slip velocity" if quantity == "velocity" else quantity
         axes.plot([], [], marker, color=GREY, label=label)

@@ -1,4 +1,4 @@
-"""The transition against the paper's formulas and exact theory, and what the formulas leave out."""
+"""Compare measured transitions with the paper's formulas and with exact theory."""
 
 import numpy as np
 import pandas as pd
@@ -17,22 +17,22 @@ NEEDS = {
     },
     "studies": ["gaussian_transition"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "scaling_displacement": "boundary displacement and equal levels above 0",
     "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
 }
 
-KINDS = {"displacement": (BLUE, r"$\Gamma = 1$"), "stress": (ORANGE, r"$\Gamma = 0$")}
-REFERENCES = {"exact": ("from exact theory", "-"), "paper": ("from the paper's formula", "--")}
-QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
+BOUNDARY_LOOKS = {"displacement": (BLUE, r"$\Gamma = 1$"), "stress": (ORANGE, r"$\Gamma = 0$")}
+REFERENCE_LOOKS = {"exact": ("from exact theory", "-"), "paper": ("from the paper's formula", "--")}
+QUANTITY_LOOKS = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans and L_trans of runs (role sweep or refinement); and the study (role gaussian)."""
+    """Return T_trans and L_trans of runs (role sweep or refinement) and the study (gaussian)."""
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
-        kept += [f"{source}_{quantity}" for quantity in QUANTITIES]
+        kept += [f"{source}_{quantity}" for quantity in QUANTITY_LOOKS]
     roles = zip(NEEDS["measured"], ("sweep", "sweep", "refinement"), strict=True)
     parts = [tables[name][kept].assign(role=role) for name, role in roles]
     parts.append(tables["gaussian_transition"].assign(role="gaussian"))
@@ -40,22 +40,22 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a, b) distributions of errors, (c) refined lattices, (d) exact T_trans alone."""
+    """Draw (a, b) error distributions, (c) refined lattices, (d) the exact transition time."""
     figure, (*distributions, refined, gaussian) = style.new_panels(PAGE_WIDTH, 5.0, "ab;cd")
     roles = style.by_role(table)
     sweep, runs = roles["sweep"], roles["refinement"]
-    for axes, quantity in zip(distributions, QUANTITIES, strict=True):
-        for boundary, (colour, boundary_name) in KINDS.items():
+    for axes, quantity in zip(distributions, QUANTITY_LOOKS, strict=True):
+        for boundary, (colour, boundary_name) in BOUNDARY_LOOKS.items():
             sound = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
-            for reference, (name, line) in REFERENCES.items():
+            for reference, (name, line) in REFERENCE_LOOKS.items():
                 predicted = sound[f"{reference}_transition_{quantity}"]
                 error = (sound[f"transition_{quantity}"] / predicted - 1.0).dropna().abs()
                 axes.ecdf(error, color=colour, linestyle=line, label=f"{boundary_name}, {name}")
         symbol = scaling.QUANTITIES[quantity]
         axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
-        axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs that are nearer")
+        axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs with a smaller error")
     spacing = runs["dx"] / runs["width"]
-    for quantity, (marker, colour) in QUANTITIES.items():
+    for quantity, (marker, colour) in QUANTITY_LOOKS.items():
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
         refined.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN_MARKER)
         largest, label = error.groupby(spacing).max(), f"${scaling.QUANTITIES[quantity]}$, largest"

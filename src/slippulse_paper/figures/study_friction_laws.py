@@ -1,4 +1,4 @@
-"""Other laws of friction: where pulses stick or creep, and the front speed at fixed damping."""
+"""Other friction laws: where pulses stick or creep, and the front speed at fixed damping."""
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -9,27 +9,27 @@ from slippulse.plotting.style import BLACK, BLUE, GREY, MARKERS, OPEN_MARKER, PA
 NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
 
-RATE, WEAKENING = r"$F/\tau_0$", r"$\gamma d_c/\tau_0^2$"
-# Laws of a plane: the label of its axis, and the strength of the friction.
-PLANES = {
-    ("rate_weakening", "bounded_rate"): (RATE, r"$-\min(a\dot u,F)$, $F\dot u/(\dot u+v_0)$"),
-    ("slip_weakening",): (WEAKENING, r"$1-u/d_c$"),
-    ("exponential_weakening",): (WEAKENING, r"$\mathrm{e}^{-u/d_c}$"),
+RATE_LABEL, WEAKENING_LABEL = r"$F/\tau_0$", r"$\gamma d_c/\tau_0^2$"
+# The laws of each panel, with its axis label and the formula of the friction strength.
+PANEL_LAWS = {
+    ("rate_weakening", "bounded_rate"): (RATE_LABEL, r"$-\min(a\dot u,F)$, $F\dot u/(\dot u+v_0)$"),
+    ("slip_weakening",): (WEAKENING_LABEL, r"$1-u/d_c$"),
+    ("exponential_weakening",): (WEAKENING_LABEL, r"$\mathrm{e}^{-u/d_c}$"),
 }
-COLOURS = (SKY, BLUE)
+LEVEL_COLOURS = (SKY, BLUE)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
+    """Draw regimes of (a) bounded rate laws and (b, c) slip weakening, and (d) front speeds."""
     figure, (*planes, speeds) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     roles = style.by_role(table)
     runs, fronts = roles["plane"], roles["selection"]
-    for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):
+    for axes, (laws, (label, title)) in zip(planes, PANEL_LAWS.items(), strict=True):
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    for colour, (level, rows) in zip(COLOURS, fronts.groupby("level"), strict=True):
+    for colour, (level, rows) in zip(LEVEL_COLOURS, fronts.groupby("level"), strict=True):
         for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
             resolution = points["d_c"] / dx
             speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
@@ -43,7 +43,7 @@ def draw(table: pd.DataFrame) -> Figure:
     speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(speeds.xaxis, (1, 2, 4, 8))
     speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$")
-    # The legend stands below the fast fronts, left of the slow ones.
+    # The legend is below the fast fronts and to the left of the slow ones.
     speeds.set_ylim(0.7, None)
     speeds.legend(loc="lower left")
     handles = style.labelled(planes)

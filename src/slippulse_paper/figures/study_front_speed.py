@@ -1,4 +1,4 @@
-"""The front speed by pre-stress, beta/dx and leaf springs; lattices refined at fixed beta/dx."""
+"""The front speed by pre-stress, beta/dx and leaf springs, and its limit on refined lattices."""
 
 import numpy as np
 import pandas as pd
@@ -30,15 +30,18 @@ NEEDS = {
     "studies": ["front_law"],
 }
 
-RULES = ("total", "elastic")
-# Narrower pulses stick within the layer of lattice waves at their front, which theory leaves out.
-FEWEST_BLOCKS = 4.0
+RELEASE_RULES = ("total", "elastic")
+# Narrower pulses stick inside the lattice waves at their front, which the theory leaves out.
+MIN_PULSE_BLOCKS = 4.0
 COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx"]
 COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Lines of the study front_law (role theory), and runs by panel, sound where it should hold."""
+    """Return the lines of the study front_law (role theory) and the runs of each panel.
+
+    The column sound is True if the theory should hold for a run.
+    """
     lines = tables["front_law"].assign(role="theory")
     uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
     springs = tables["front_speed_springs"]
@@ -49,16 +52,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ratio = ratio.assign(held="b", fixed=ratio["damping_ratio"])
     betas = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
     refined = pd.concat([ratio, betas.assign(held="beta", fixed=betas["beta"])])
-    # The lines are drawn of some of the refined scenes only.
+    # The study has lines for only some of the refined scenes.
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
     refined = refined.merge(drawn.drop_duplicates()).assign(panel="refined")
     runs = pd.concat([uniform.assign(panel="prestress"), springs, refined])
-    wide = (runs["pulse_state"] == "steady") & (runs["pulse_width"] >= FEWEST_BLOCKS * runs["dx"])
+    wide = (runs["pulse_state"] == "steady") & (
+        runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
+    )
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     runs = runs[COLUMNS].assign(
         role="simulation",
         speed=runs["front_speed_right"],
-        # The theory of refined lattices stands in the lines.
+        # For refined lattices, the lines already contain the theory.
         theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
         sound=runs["run_flags"].isna() & (wide | (runs["panel"] == "prestress")),
@@ -67,18 +72,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
+    """Draw (a, b) both release rules, (c) leaf springs and (d) refined lattices."""
     figure, grid = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     panels = {str(panel): rows for panel, rows in table.groupby("panel")}
     uniform = panels["prestress"]
-    uniform = uniform.assign(over=uniform["speed"] * np.sqrt(1.0 - uniform["left"] ** 2))
-    for axes, rule in zip(grid, RULES, strict=False):
+    uniform = uniform.assign(scaled_speed=uniform["speed"] * np.sqrt(1.0 - uniform["left"] ** 2))
+    for axes, rule in zip(grid, RELEASE_RULES, strict=False):
         rows = uniform[uniform["release"] == rule]
         for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
             line = group[group["role"] == "theory"]
             look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
-            axes.plot(line["left"], line["over"], **look)
-            _points(axes, group, "left", "over", marker, f"{ratio:g}")
+            axes.plot(line["left"], line["scaled_speed"], **look)
+            _points(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
         axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress")
     grid[0].set(yscale="log", ylim=(0.93, 30.0))
@@ -110,6 +115,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
+    """Draw front speeds on refined lattices, with both limits as horizontal lines."""
     names = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])
     for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
@@ -135,7 +141,10 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
 def _points(
     axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None
 ) -> None:
-    """Mark simulated speeds in colours of damping ratios, open where theory should not hold."""
+    """Mark simulated speeds in the colour of their damping ratio.
+
+    Markers are open if the theory should not hold.
+    """
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
         look: Look = {"label": label} if sound else OPEN_MARKER

@@ -1,4 +1,4 @@
-"""A specification curve: claims judged by numbers, at each choice that the paper leaves open."""
+"""A specification curve: claims judged by numbers, for every choice that the paper leaves open."""
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -22,29 +22,32 @@ from ..claims.ledger import BAND
 
 NEEDS = {"lists": ["results/claims.json"]}
 
-NUMERIC = ("exact", "approximate", "scaling")
-# A deviation below this fraction of the tolerance is given as a bound.
-LEAST = 1e-2
-LOOKS: dict[str, Look] = {
-    "fraction": {"color": ORANGE, "label": "fraction that is arrest"},
+NUMERIC_KINDS = ("exact", "approximate", "scaling")
+# A deviation below this fraction of the tolerance is shown as an upper bound.
+MIN_SHOWN_RATIO = 1e-2
+CHOICE_LOOKS: dict[str, Look] = {
+    "fraction": {"color": ORANGE, "label": "fraction of the path"},
     "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
     "criterion": {"color": PURPLE, "label": "criterion of the transition"},
     "release": {"color": GREEN, "label": "release rule"},
-    "": {"color": GREY, "label": "none is open"},
+    "": {"color": GREY, "label": "no open choice"},
 }
-MARKERS: dict[str, Look] = {
+SOLUTION_MARKERS: dict[str, Look] = {
     "exact": {"marker": "o"},
     "lattice": {"marker": "s"} | OPEN_MARKER,
 }
-# Distance above its row at which a deviation is drawn, by release rule.
-APART = {"elastic": -0.17, "total": 0.17}
+# Offset of a deviation from its row, by release rule.
+ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a claim and combination of choices; a claim without choices has one row."""
+    """Return one row for each claim and combination of choices.
+
+    A claim without open choices has one row.
+    """
     rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
     for claim in tables["claims"].to_dict("records"):
-        if claim["kind"] in NUMERIC and claim["tolerance"]:
+        if claim["kind"] in NUMERIC_KINDS and claim["tolerance"]:
             for choices in claim["choices"] or [{"deviation": claim["deviation"]}]:
                 judged = {name: claim[name] for name in names}
                 rows.append({"release": "", "solution": "lattice"} | choices | judged)
@@ -54,7 +57,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw deviation over tolerance, a claim a row, the largest deviation above."""
+    """Draw deviations divided by tolerances, with a row for each claim, the largest on top."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(farthest)), layout="constrained")
@@ -63,19 +66,23 @@ def draw(table: pd.DataFrame) -> Figure:
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
     for position, (id, _) in enumerate(farthest.index):
         for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
-            look = {"color": LOOKS.get(str(choice), LOOKS[""])["color"]} | MARKERS[str(solution)]
-            height = position + rows["release"].map(APART).fillna(0.0)
-            axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
-        if table.loc[table["id"] == id, "over"].min() < LEAST:
-            bound = rf"$\leq$ {LEAST:g}"
-            axes.text(LEAST, position, bound, va="center", path_effects=TEXT_OUTLINE)
-    axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
+            look = {
+                "color": CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])["color"]
+            } | SOLUTION_MARKERS[str(solution)]
+            height = position + rows["release"].map(ROW_OFFSETS).fillna(0.0)
+            axes.plot(
+                rows["over"].mask(rows["over"] < MIN_SHOWN_RATIO), height, linestyle="none", **look
+            )
+        if table.loc[table["id"] == id, "over"].min() < MIN_SHOWN_RATIO:
+            bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
+            axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)
+    axes.set(xscale="log", xlabel="deviation / tolerance", xlim=(0.7 * MIN_SHOWN_RATIO, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)
     figure.supylabel("claim")
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
-    shown = [name for name in LOOKS if (table["choice"] == name).any()]
-    handles = [entry(marker="o", **LOOKS[name]) for name in shown]
-    handles += [entry(name, color=BLACK, **look) for name, look in MARKERS.items()]
+    shown = [name for name in CHOICE_LOOKS if (table["choice"] == name).any()]
+    handles = [entry(marker="o", **CHOICE_LOOKS[name]) for name in shown]
+    handles += [entry(name, color=BLACK, **look) for name, look in SOLUTION_MARKERS.items()]
     style.legend_below(figure, handles, 2)
     return figure

@@ -1,4 +1,4 @@
-"""The steady pulse against damping: the paper's formulas, exact theory, simulations, dx -> 0."""
+"""The steady pulse as a function of damping: formulas of the paper, exact theory, simulations."""
 
 import numpy as np
 import pandas as pd
@@ -20,24 +20,26 @@ NEEDS = {
     "studies": ["damped_pulse"],
 }
 
-QUANTITIES = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
-# The columns that are measured on refined lattices.
-REFINED = {name: f"pulse_{name}" for name in QUANTITIES} | {"front_speed": "front_speed_right"}
+QUANTITY_LABELS = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
+# The measured columns on refined lattices.
+REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
+    "front_speed": "front_speed_right"
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Quantities by role: simulation, theory, and refined (over dx, with the limit as theory)."""
+    """Return quantities by role: simulation, theory, refined (by dx, with the limit as theory)."""
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     lines = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [lines.assign(role="theory")]
-    for quantity in QUANTITIES:
+    for quantity in QUANTITY_LABELS:
         sources = {"value": "", "theory": "exact_", "paper": "paper_"}
         values = {name: runs[f"{source}pulse_{quantity}"] for name, source in sources.items()}
         values |= {"role": "simulation", "quantity": quantity}
         parts.append(runs[["left", "gamma", "damping_ratio", "run_flags"]].assign(**values))
     runs = tables["continuum_fixed_ratio"]
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
-    for quantity, column in REFINED.items():
+    for quantity, column in REFINED_COLUMNS.items():
         values = {"value": runs[column], "theory": limits[quantity], "quantity": quantity}
         rows = runs[["left", "gamma", "damping_ratio", "dx"]]
         parts.append(rows.assign(**values, role="refined"))
@@ -45,11 +47,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
+    """Draw (a to c) each quantity divided by the paper's formula, (d) refined lattices."""
     figure, (*grid, refined) = style.new_panels(PAGE_WIDTH, 4.6, "ab;cd")
     roles = style.by_role(table)
     gamma = roles["simulation"]["gamma"].iloc[0]
-    for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
+    for axes, (quantity, label) in zip(grid, QUANTITY_LABELS.items(), strict=True):
         axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
         for left, group in table[table["quantity"] == quantity].groupby("left"):
             colour = style.colour("tau_0", left)
@@ -64,10 +66,10 @@ def draw(table: pd.DataFrame) -> Figure:
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, grid[0])
     rows = roles["refined"]
-    for quantity, shade, marker in zip(REFINED, COLOUR_CYCLE, MARKERS, strict=False):
+    for quantity, shade, marker in zip(REFINED_COLUMNS, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
-        label = QUANTITIES.get(quantity, "front speed")
+        label = QUANTITY_LABELS.get(quantity, "front speed")
         refined.plot(line["dx"], error, marker=marker, color=shade, label=label)
     style.draw_first_order(refined, rows["dx"], 0.4, GREY)
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]

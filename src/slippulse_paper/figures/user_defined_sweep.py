@@ -1,4 +1,4 @@
-"""A user-defined sweep: main numbers against what varies, with exact theory where there is any."""
+"""A user-defined sweep: its main numbers as functions of what varies, beside exact theory."""
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -17,16 +17,33 @@ from slippulse.plotting.style import (
 
 from .shared.main_numbers import main_numbers, with_symbols
 
-# Columns that may vary in a sweep, and the names of those without a symbol.
-VARYING = ("tau_0", "left", "right", "gamma", "damping_ratio", "width", "beyond", "release", "dx")
-# With tables of pre-stress, their numbers say more than the levels at their ends.
-OF_TABLES = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
-WORDS = {"beyond": "level beyond the step", "release": "release rule"}
-WORDS |= {"profile": "profile", "seed": "seed"}
+# Columns that may vary in a sweep.
+VARYING_COLUMNS = (
+    "tau_0",
+    "left",
+    "right",
+    "gamma",
+    "damping_ratio",
+    "width",
+    "beyond",
+    "release",
+    "dx",
+)
+# The same for a sweep with pre-stress tables, which seed and profile number describe better than
+# the levels at their ends.
+TABLE_SWEEP_COLUMNS = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
+# Names of columns without a symbol.
+COLUMN_WORDS = {"beyond": "level beyond the step", "release": "release rule"}
+COLUMN_WORDS |= {"profile": "profile", "seed": "seed"}
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """`main_numbers` of each run with its flags, axis, x, series (what else varies), and fixed."""
+    """Return `main_numbers` of each run, with its flags and four columns for the figure.
+
+    axis, x : the column on the horizontal axis, and its value
+    series : the values of the other columns that vary, as a text
+    fixed : the settings that all runs share, as a text
+    """
     (runs,) = tables.values()
     alike = (runs["left"] == runs["right"]).all()
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
@@ -49,24 +66,26 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
-    """Columns of VARYING that do: numbers before texts, the one with most values first."""
-    # A level that follows another one is no axis of its own.
-    names = OF_TABLES if "profile" in runs else VARYING
+    """Return the columns that vary: numbers before texts, and those with most values first."""
+    # A column that always equals another one is left out.
+    names = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     different = runs[[*names]].T.drop_duplicates().index
     varying = [name for name in different if runs[name].nunique() > 1]
     return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
 
 
 def _name(column: str) -> str:
-    return WORDS.get(column) or f"${SYMBOLS[column]}$"
+    """Return the words or the symbol of a column."""
+    return COLUMN_WORDS.get(column) or f"${SYMBOLS[column]}$"
 
 
 def _text(value: float | str) -> str:
+    """Write a value of a column that may have numbers or texts."""
     return value if isinstance(value, str) else f"{value:g}"
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw one panel a quantity; markers are runs (open: flagged), lines exact theory."""
+    """Draw one panel for each quantity: runs as markers, open if flagged, and theory as lines."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
     figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
     quantities = list(table.groupby("quantity", sort=False))[: len(panels)]

@@ -120,7 +120,7 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
     form = "https://codecheck.org.uk/spec/config/1.0/"
-    summary = "make verify AGAINST=FOLDER compares all tables and verdicts with another run"
+    summary = "make compare AGAINST=FOLDER shows figures, verdicts and tables beside another run"
     content = {"version": form, "paper": paper, "manifest": entries, "summary": summary}
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 

@@ -1,1 +1,4 @@
-"""Report and pages, written from tables and texts; no number in them is typed."""
+"""The report and the pages of results, written from tables and texts.
+
+No number is typed into a text: each one comes from a table or from the configuration.
+"""

@@ -1,4 +1,7 @@
-"""results/claims.html: the ledger, failures first, each deviation next to its tolerance."""
+"""Write results/claims.html: every claim with its deviation, its tolerance and its tables.
+
+Claims are grouped by verdict, and those that failed come first.
+"""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,20 +14,23 @@ from ..claims.rules import VERDICTS, WORST_FIRST
 from ..text.numerals import rounded
 from .html import markup_of, page
 
-# Each verdict has a sign, so that colour is not needed.
+# Each verdict has a sign, so that the page can be read without colours.
 MARKS = "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{NOT EQUAL TO}\N{MULTIPLICATION SIGN}→?\N{EN DASH}"
 SIGNS = dict(zip(VERDICTS, MARKS, strict=True))
-# The bar of a deviation ends at this many tolerances.
-LONGEST = 2.0
-# Folders of tables whose kind has another name.
-KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
+# The full length of a bar, as a deviation divided by its tolerance.
+FULL_BAR = 2.0
+# What the page calls the tables of a folder, if not by the name of the folder.
+TABLE_NAMES = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
 Rows = Sequence[Mapping]
-# A claim on more simulations than these has the command that makes everything.
-FEW = 6
+# A claim that rests on more simulations than this is regenerated with everything else.
+MAX_NAMED_SIMULATIONS = 6
 
 
 def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[str]) -> str:
-    """The page of claims and findings (as in their JSON), with links to tables next to the page."""
+    """Return the page of claims and findings, given as in their JSON files.
+
+    ``tables`` are the paths of all tables relative to the page, which links to them.
+    """
     ledger, texts = Ledger(claims), [finding["text"] for finding in findings]
     groups: dict[str, list[Entry]] = {}
     for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
@@ -48,11 +54,11 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
 
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Files of the simulations and studies that a source names, by name and kind of table."""
+    """Return the files of the simulations and studies in a source, by name and by kind of table."""
     files: dict[str, dict[str, str]] = {}
     for path in map(Path, tables):
         folder = path.parts[0]
-        files.setdefault(path.stem, {})[KINDS.get(folder, folder)] = path.as_posix()
+        files.setdefault(path.stem, {})[TABLE_NAMES.get(folder, folder)] = path.as_posix()
     if source.startswith("every simulation"):
         return files
     names = dict.fromkeys(re.findall(r"\w+", source))
@@ -60,8 +66,8 @@ def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str
 
 
 def command(files: Mapping[str, Mapping[str, str]]) -> str:
-    """The command that makes tables anew."""
-    if len(files) > FEW:
+    """Return the command that regenerates tables."""
+    if len(files) > MAX_NAMED_SIMULATIONS:
         return "make replicate"
     paths = chain.from_iterable(kinds.values() for kinds in files.values())
     targets = " ".join(f"results/{path}" for path in paths)
@@ -69,14 +75,17 @@ def command(files: Mapping[str, Mapping[str, str]]) -> str:
 
 
 def bar(claim: Entry) -> tuple[str, float] | None:
-    """Deviation over tolerance in words and as a bar in percent; None where a kind has no bar."""
+    """Return deviation divided by tolerance in words, and the length of its bar in per cent.
+
+    None for a kind of claim that has no bar.
+    """
     if claim.kind not in ("exact", "approximate") or claim.deviation is None or not claim.tolerance:
         return None
     ratio = claim.deviation / claim.tolerance
-    return f"{rounded(ratio, 2)} × tolerance", round(100.0 * min(ratio, LONGEST) / LONGEST, 1)
+    return f"{rounded(ratio, 2)} × tolerance", round(100.0 * min(ratio, FULL_BAR) / FULL_BAR, 1)
 
 
 def figure_title(name: str) -> str:
-    """Text of a link to a figure: figure 5, scaling."""
+    """Return the text of a link to a figure, as in "figure 5, scaling"."""
     kind, _, words = name.replace("_", " ").partition(" ")
     return f"figure {int(kind[3:])}, {words}" if kind.startswith("fig") else f"study, {words}"

@@ -1,6 +1,8 @@
-"""Comparison of two trees of results: whether their numbers agree within their uncertainties.
+"""Compare two folders of results: do their numbers agree within their uncertainties?
 
-python -m slippulse_paper.report.compare results other/results
+python -m slippulse_paper.report.compare results other/results [results/compare.html]
+
+With a third argument it also writes the page of old beside new, and its numbers as CSV beside it.
 """
 
 import json
@@ -9,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -18,19 +20,28 @@ from slippulse.data.files import UnreadableFile
 from slippulse.data.tables import load_table
 
 from ..records.provenance import changes
+from .joined_runs import (
+    LATTICE_COLUMNS,
+    RUN_COLUMNS,
+    JoinedRuns,
+    describe_pair,
+    describe_run,
+    join_runs,
+    varying_parameters,
+)
 
-# These columns make a run the same run in another tree, whatever its lattice.
-RUN = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
-# A number without uncertainty depends on these, too.
-LATTICE = ["scheme", "dx", "order", "max_step"]
-TEXTS = ("boundary", "release", "quantity")
-# Numbers that agree to DIGITS need no uncertainty, since tables have nine digits. Numbers without
-# uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
-DIGITS, ROUNDING = 1e-8, 1e-6
-SHOWN = 10
+TEXT_COLUMNS = ("boundary", "release", "quantity")
+# Relative difference that is always allowed, since tables have nine digits.
+TABLE_PRECISION = 1e-8
+# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
+# number or to 1, whichever is larger.
+EQUAL_LATTICE_TOLERANCE = 1e-6
+MAX_SHOWN_LINES = 10
 Tables: TypeAlias = Sequence[pd.DataFrame]
+# Outcomes of comparing a number that is in both folders.
+AGREES, DIFFERS, UNKNOWN, ALTERED = "agrees", "differs", "no uncertainty", "altered run"
 # Lines about a difference between two files of one name.
-LINES = {
+DIFFERENCE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
 }
@@ -38,17 +49,47 @@ LINES = {
 
 @dataclass
 class Comparison:
-    """Numbers compared, agreeing and unknown; lines on numbers apart, and on the incomparable."""
+    """Joined numbers, and lines about differing numbers and about what cannot be compared.
 
-    compared: int = 0
-    agree: int = 0
-    unknown: int = 0
+    ``numbers`` has one row per number that is in both folders, and ``runs`` one row per table.
+    ``changes`` has the differences of the configuration and of the verdicts by the file's name.
+    """
+
     apart: list[str] = field(default_factory=list)
     other: list[str] = field(default_factory=list)
+    numbers: pd.DataFrame = field(default_factory=pd.DataFrame)
+    runs: list[dict[str, Any]] = field(default_factory=list)
+    changes: dict[str, list[dict]] = field(default_factory=dict)
+
+    def count(self, *outcomes: str) -> int:
+        """Return the number of numbers with one of these outcomes."""
+        return int(self.numbers["outcome"].isin(outcomes).sum()) if len(self.numbers) else 0
+
+    @property
+    def compared(self) -> int:
+        """Number of numbers of the same runs."""
+        return self.count(AGREES, DIFFERS, UNKNOWN)
+
+    @property
+    def agree(self) -> int:
+        """Number of numbers that agree."""
+        return self.count(AGREES)
+
+    @property
+    def unknown(self) -> int:
+        """Number of numbers that differ between lattices and have no uncertainty."""
+        return self.count(UNKNOWN)
+
+    def summary(self) -> str:
+        """Say in one sentence how many numbers agree."""
+        agree = (
+            f"{self.agree} of {self.compared} numbers agree within the sum of both uncertainties"
+        )
+        return f"{agree}; {self.unknown} differ and have no uncertainty"
 
 
 def compare(here: Path, other: Path) -> Comparison:
-    """Compare measured tables, configurations and verdicts; ValueError for a broken tree."""
+    """Compare measured tables, configurations and verdicts; ValueError for a broken folder."""
     result, trees = Comparison(), (here, other)
     names = []
     for tree in trees:
@@ -56,79 +97,144 @@ def compare(here: Path, other: Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    for name, line in LINES.items():
+    for name, line in DIFFERENCE_LINES.items():
         contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
         if len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
         else:
-            result.other += [line.format(**change) for change in changes(contents[1], contents[0])]
-    for name in sorted(names[0] & names[1]):
-        _compare_tables(result, trees, name)
+            result.changes[name] = changes(contents[1], contents[0])
+            result.other += [line.format(**change) for change in result.changes[name]]
+    numbers = [_compare_tables(result, trees, name) for name in sorted(names[0] & names[1])]
+    result.numbers = pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
     return result
 
 
-def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
-    """Compare one table of measured numbers, with the grid studies of both trees."""
-    ours, theirs = tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
-    if not ours[RUN].equals(theirs[RUN]):
-        result.other.append(f"{name}: other runs")
-        return
-    for column in sorted({*ours} ^ {*theirs}):
+def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.DataFrame:
+    """Compare one table of measured numbers, with the grid studies of both folders."""
+    tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
+    joined, varying = join_runs(*tables), varying_parameters(*tables)
+    _list_runs(result, name, tables, joined, varying)
+    for column in sorted({*tables[0]} ^ {*tables[1]}):
         result.other.append(f"{name}: columns in one tree only: {column}")
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
         result.other.append(f"{name}: uncertainties in one tree only")
-    common = ours.columns.intersection(theirs.columns, sort=False).difference(RUN, sort=False)
-    lattice = common.intersection(LATTICE)
-    same_lattice = (ours[lattice] == theirs[lattice]).all(axis=1).to_numpy()[:, None]
+    common = tables[0].columns.intersection(tables[1].columns, sort=False)
+    common = common.difference(RUN_COLUMNS, sort=False)
     plain = ["number", "bool"]
-    with_text = [*ours.select_dtypes(exclude=plain), *theirs.select_dtypes(exclude=plain)]
-    texts = common.intersection(with_text, sort=False)
-    numbers = common.difference([*with_text, *LATTICE], sort=False)
-    values = [table[numbers].astype(float) for table in tables]
-    _compare_numbers(result, name, values, [*map(_uncertainties, studies, values)], same_lattice)
-    ours, theirs = (table[texts].astype(object).fillna("") for table in tables)
-    for row, column in np.argwhere(((ours != theirs) & same_lattice).to_numpy()):
+    with_text = {column for table in tables for column in table.select_dtypes(exclude=plain)}
+    numbers = common.difference([*with_text, *LATTICE_COLUMNS], sort=False)
+    sides = []
+    for table, path in zip(tables, studies, strict=True):
+        values = table[numbers].astype(float)
+        sides.append(_Side(table, values, _uncertainties(path, values)))
+    same, altered = (
+        [side.take(pairs[:, column]) for column, side in enumerate(sides)]
+        for pairs in (joined.same, joined.altered)
+    )
+    _compare_texts(result, name, same, [column for column in common if column in with_text])
+    compared = [_compare_numbers(same, varying), _compare_numbers(altered, varying, altered=True)]
+    long = pd.concat([rows for rows in compared if len(rows)] or compared[:1], ignore_index=True)
+    long.insert(0, "table", Path(name).stem)
+    for row in long[long["outcome"] == DIFFERS].itertuples():
+        pair = f"{row.new:.6g} against {row.old:.6g}"
+        limit = f"allowed: a difference of {row.allowed:.2g}"
+        result.apart.append(f"{name}: point {row.point}, {row.quantity}: {pair}; {limit}")
+    return long
+
+
+def _list_runs(
+    result: Comparison, name: str, tables: Tables, joined: JoinedRuns, varying: list[str]
+) -> None:
+    """Record how many runs are joined, and list the runs of one folder alone."""
+    only: dict[str, list[str]] = {}
+    for side, table, rows in zip(("new", "old"), tables, joined[3:], strict=True):
+        only[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
+        which = "this" if side == "new" else "the other"
+        result.other += [f"{name}: only in {which} tree: {run}" for run in only[side]]
+    counts = {"same": len(joined.same), "altered": len(joined.altered)}
+    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **only})
+    if counts["altered"]:
+        many = counts["altered"] > 1
+        pairs = f"{counts['altered']} pairs of runs differ" if many else "1 pair of runs differs"
+        result.other.append(f"{name}: {pairs} in {', '.join(joined.keys)}")
+
+
+@dataclass
+class _Side:
+    """Runs of one folder: their parameters, numbers, and uncertainties of these."""
+
+    table: pd.DataFrame
+    values: pd.DataFrame
+    errors: pd.DataFrame
+
+    def take(self, rows: np.ndarray) -> "_Side":
+        """Return these rows, in this order."""
+        return _Side(self.table.loc[rows], self.values.loc[rows], self.errors.loc[rows])
+
+
+def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
+    """Return whether the two runs of each pair have the same lattice, as a column."""
+    lattice = new.table.columns.intersection(old.table.columns).intersection(LATTICE_COLUMNS)
+    return (new.table[lattice].to_numpy() == old.table[lattice].to_numpy()).all(axis=1)[:, None]
+
+
+def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts: list[str]) -> None:
+    """Add a line for each text that differs between runs with the same lattice."""
+    ours, theirs = (side.table[texts].astype(object).fillna("") for side in sides)
+    differs = (ours.to_numpy() != theirs.to_numpy()) & _same_lattice(*sides)
+    for row, column in np.argwhere(differs):
         pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
-        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}")
+        result.apart.append(f"{name}: point {ours.index[row]}, {texts[column]}: {pair}")
 
 
 def _compare_numbers(
-    result: Comparison, name: str, values: Tables, uncertainties: Tables, same_lattice: np.ndarray
-) -> None:
-    """Compare numbers; a difference is unknown where lattices differ and no study was made."""
-    ours, theirs = (table.to_numpy() for table in values)
-    uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0).to_numpy()
-    no_study, size = np.isnan(uncertainty), np.abs(ours)
-    allowed = np.nan_to_num(uncertainty) + DIGITS * size
-    allowed = np.where(no_study & same_lattice, ROUNDING * np.maximum(size, 1.0), allowed)
-    known = ~np.isnan([ours, theirs])
-    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice)
-    differs = compared & ~(np.abs(ours - theirs) <= allowed)
-    unknown = differs & no_study & ~same_lattice
-    result.compared += int(compared.sum())
-    result.agree += int((compared & ~differs).sum())
-    result.unknown += int(unknown.sum())
-    for row, column in np.argwhere(differs & ~unknown):
-        pair = f"{ours[row, column]:.6g} against {theirs[row, column]:.6g}"
-        limit = f"allowed: a difference of {allowed[row, column]:.2g}"
-        result.apart.append(f"{name}: point {row}, {values[0].columns[column]}: {pair}; {limit}")
+    sides: Sequence[_Side], varying: list[str], altered: bool = False
+) -> pd.DataFrame:
+    """Return one row per number; it is unknown where lattices differ and no study was made."""
+    new, old = (side.values.to_numpy() for side in sides)
+    new_error, old_error = (side.errors.to_numpy() for side in sides)
+    no_study, size = np.isnan(new_error) & np.isnan(old_error), np.abs(new)
+    same_lattice = _same_lattice(*sides)
+    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + TABLE_PRECISION * size
+    allowed = np.where(
+        no_study & same_lattice, EQUAL_LATTICE_TOLERANCE * np.maximum(size, 1.0), allowed
+    )
+    known = ~np.isnan([new, old])
+    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not altered))
+    differs = ~(np.abs(new - old) <= allowed)
+    outcome = np.where(differs, np.where(no_study & ~same_lattice, UNKNOWN, DIFFERS), AGREES)
+    records = [side.table.to_dict("records") for side in sides]
+    runs = [describe_pair(ours, theirs, varying) for ours, theirs in zip(*records, strict=True)]
+    row, column = np.nonzero(compared)
+    columns = {
+        "point": sides[0].table.index.to_numpy()[row],
+        "run": np.array(runs, object)[row],
+        "quantity": sides[0].values.columns.to_numpy()[column],
+        "old": old[row, column],
+        "old_uncertainty": old_error[row, column],
+        "new": new[row, column],
+        "new_uncertainty": new_error[row, column],
+        "allowed": allowed[row, column],
+        "outcome": ALTERED if altered else outcome[row, column],
+    }
+    return pd.DataFrame(columns)
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
-    """Read a table with these columns, and with no text in a column of numbers."""
+    """Read a table; ValueError if a needed column is missing or a column of numbers has text."""
     with _readable(path):
         table = load_table(path)
         for column in needed:
             if column not in table:
                 raise ValueError(f"no column {column}")
-            if table[column].dtype.kind not in "biuf" and column not in TEXTS:
+            if table[column].dtype.kind not in "biuf" and column not in TEXT_COLUMNS:
                 raise ValueError(f"text in column {column}")
     return table
 
 
 def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
-    """Uncertainty of every number; NaN where there is no study, or one of another value."""
+    """Return the uncertainty of every number; NaN without a study of exactly this number."""
     if not path.exists():
         return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
@@ -136,11 +242,14 @@ def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
     with _readable(path):
         study = table.pivot(index="point", columns="quantity", values=parts).astype(float)
         studied, uncertainty = (study[part].reindex_like(values) for part in parts)
-    return uncertainty.mask((values - studied).abs() > DIGITS * values.abs())
+    return uncertainty.mask((values - studied).abs() > TABLE_PRECISION * values.abs())
 
 
 def _content(path: Path) -> dict:
-    """The configuration without the preset, whose lattices the uncertainties cover; or verdicts."""
+    """Return what a file has to compare: the configuration, or the verdicts by claim.
+
+    The preset is left out, because the uncertainties cover its lattices.
+    """
     with _readable(path):
         content = json.loads(path.read_text(encoding="utf-8"))
         if path.stem == "provenance":
@@ -150,7 +259,7 @@ def _content(path: Path) -> dict:
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
-    """Name the file that cannot be read, or does not hold what a run writes."""
+    """Turn an error inside the block into one that names the unreadable file."""
     try:
         yield
     except UnreadableFile:
@@ -162,18 +271,29 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Compare two trees; returns the exit code."""
+    """Compare two folders, and write the page if its path is given; returns the exit code."""
+    here, other, *pages = map(Path, arguments)
     try:
-        result = compare(*map(Path, arguments))
+        result = compare(here, other)
+        if pages:
+            from .compare_page import write_comparison
+
+            write_comparison(result, here, other, pages[0])
     except ValueError as error:
         print(error)
         return 1
-    agree = f"{result.agree} of {result.compared} numbers agree within both uncertainties together"
-    print(f"{agree}; {result.unknown} differ and have no uncertainty")
-    for title, lines in (("Apart", result.apart), ("Not comparable", result.other)):
+    print(result.summary())
+    for title, lines in (("Apart", result.apart), ("Not in both, or altered", result.other)):
         if lines:
-            rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
-            print("\n  ".join([f"{title}:", *lines[:SHOWN], *rest]))
+            rest = (
+                [f"... and {len(lines) - MAX_SHOWN_LINES} more"]
+                if len(lines) > MAX_SHOWN_LINES
+                else []
+            )
+            print("\n  ".join([f"{title}:", *lines[:MAX_SHOWN_LINES], *rest]))
+    if pages:
+        print(f"Open {pages[0]}")
+        return 0
     return 0 if result.compared and not (result.apart or result.other) else 1
 
 

@@ -1,4 +1,7 @@
-"""The executed manuscript as one HTML file and a PDF, made by pandoc and Typst without network."""
+"""Convert the executed manuscript to one HTML file and to a PDF.
+
+Pandoc writes the HTML, and the Typst source of the PDF. Neither needs a network connection.
+"""
 
 import json
 import re
@@ -19,36 +22,36 @@ from ..text.markdown import pandoc
 from .html import TEMPLATES, page
 
 # The fonts of the figures, which Matplotlib brings along.
-FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
-# Any fixed instant will do: equal inputs then give equal bytes.
+FONT_FOLDER = Path(matplotlib.get_data_path()) / "fonts/ttf"
+# The creation date of every PDF. With a fixed date, equal inputs give equal bytes.
 TIMESTAMP = 0
-FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"([^>]*>)')
-# Names and alternative texts of the figures of a text, which pandoc does not pass on to Typst.
+HTML_FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"([^>]*>)')
+# Name and alternative text of a figure in Markdown. Pandoc does not pass the latter on to Typst.
 ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def write_html(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report, Markdown, as one HTML file; ``manuscript`` is the folder of its texts."""
+    """Write Markdown as one HTML file; ``manuscript`` is the folder with the bibliography."""
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
         options = ["--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
         html = _pandoc(text, manuscript, template, "html5", options)
     head, opening, body = html.partition('<main id="content">')
-    # Headings stand below the title.
+    # The title is the only heading of level 1.
     body = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", body)
-    # A phone scrolls formulas, code and tables sideways, so the keyboard must reach them.
+    # Formulas, code and tables scroll sideways on a phone, so the keyboard must reach them.
     body = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', body)
     numbers = count(1)
     region = '<div class="scroll" tabindex="0" role="region" aria-label="Table {}"><table'
     body = re.sub("<table", lambda _: region.format(next(numbers)), body)
     body = body.replace("</table>", "</table></div>")
     # A click on a figure opens its picture, at its own size.
-    write_text(head + opening + FIGURE.sub(_enlarging, body), output)
+    write_text(head + opening + HTML_FIGURE.sub(_enlarging, body), output)
 
 
 def _enlarging(figure: re.Match) -> str:
-    """A figure with its picture inside; the page need not wait for the picture to know its size."""
+    """Return the figure with its picture embedded, its size given, and a link to the file."""
     start, name, path, rest = figure.groups()
     content = b64encode(Path(path).read_bytes()).decode()
     with Image.open(path) as picture:
@@ -58,8 +61,8 @@ def _enlarging(figure: re.Match) -> str:
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report as PDF with vector figures; ValueError has the message of Typst."""
-    # A link to another HTML document leads to its PDF.
+    """Write Markdown as a PDF with vector figures; a ValueError has the message of Typst."""
+    # In a PDF, a link to another document leads to the PDF of that document.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     options = ["--default-image-extension=pdf"]
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
@@ -72,7 +75,7 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
 
     source = re.sub(r'image\("([^"]+)"', with_alternative, source)
     compiled = partial(
-        typst.compile, ignore_system_fonts=True, font_paths=[FONTS], timestamp=TIMESTAMP
+        typst.compile, ignore_system_fonts=True, font_paths=[FONT_FOLDER], timestamp=TIMESTAMP
     )
     try:
         pdf: bytes | None = compiled(source.encode(), root=Path("/"), format="pdf")
@@ -82,6 +85,7 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
 
 
 def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Sequence[str]) -> str:
+    """Convert the report with pandoc, with the template, the metadata and the bibliography."""
     common = ["--standalone", "--number-sections", "--citeproc"]
     common += [
         f"--template={template}",

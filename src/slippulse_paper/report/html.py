@@ -1,4 +1,4 @@
-"""Pages from templates; every value is escaped unless it is HTML already."""
+"""Fill the templates of the pages. Every value is escaped unless it is HTML already."""
 
 import hashlib
 from base64 import b64encode
@@ -15,13 +15,13 @@ TEMPLATES = Path(__file__).with_name("templates")
 PAGES = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined)
 PAGES.trim_blocks = PAGES.lstrip_blocks = True
 PAGES.filters |= FILTERS
-# A page runs its own script and no other, and loads nothing but the pictures beside it.
+# A page may run only its own script, and may load only the pictures next to it.
 POLICY = "default-src 'none'; img-src 'self' file: data:; style-src 'unsafe-inline'; "
 POLICY += "base-uri 'none'; form-action 'none'; script-src "
 
 
 def policy(script: str) -> str:
-    """Content-Security-Policy of a page with this script, which may be empty."""
+    """Return the Content-Security-Policy of a page with this script, which may be empty."""
     digest = b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return POLICY + (f"'sha256-{digest}'" if script else "'none'")
 
@@ -30,5 +30,5 @@ PAGES.globals["policy"] = policy
 
 
 def page(template: str, **data: object) -> str:
-    """A whole page: a file in `TEMPLATES`, filled with what it shows."""
+    """Return a whole page: a template of the folder `TEMPLATES`, filled with the data."""
     return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"

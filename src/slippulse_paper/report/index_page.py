@@ -1,4 +1,8 @@
-"""results/index.html, the page to open. Relative links only; nothing is loaded from outside."""
+"""Write results/index.html, the page to open first.
+
+It begins with a table of the paper's statements and their verdicts, followed by the figures, the
+scenes and the provenance. All links are relative, and the page loads nothing from outside.
+"""
 
 import json
 from collections.abc import Mapping
@@ -14,56 +18,64 @@ from ..claims.ledger import Ledger
 from ..text.prose import fill
 from .claims_page import SIGNS
 from .html import markup_of, page
-from .texts import answer, judged_lines, parameters, read_captions, read_errata
+from .texts import answer, judged_lines, parameters, read_captions, read_errata, statement_rows
 
-# Pixels of the page for a pixel of a figure: a figure of one column is narrower than the page.
-SCALE = 0.4
+# Width of a figure on the page divided by the width of its file, both in pixels.
+FIGURE_SCALE = 0.4
 
 
 def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]) -> str:
-    """The page, by paths of texts, figures by heading and titles of scenes; links only to files."""
-    facts = _json(results / "provenance.json")
-    ledger = Ledger(_json(results / "claims.json"), _json(results / "findings.json"))
+    """Return the page as HTML, with links only to files that exist.
+
+    texts : paths of the captions, the summary and the errata
+    galleries : names of figures by heading
+    scenes : title of each scene by name
+    """
+    facts = _read_json(results / "provenance.json")
+    ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
     config = facts["config"]
     names = {"claim": ledger, "found": ledger.found, "config": config}
     names["misprints"] = read_errata(texts["errata"])
     filled = partial(fill, names=names | {"runs": partial(parameters, config)})
     captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
-    lines = judged_lines(summary, ledger, filled)
-    in_short, accuracy = answer(lines[:1]), filled(summary["accuracy"])
-    exceptions = answer(lines).removeprefix(in_short).strip()
+    rows = statement_rows(summary, ledger, filled)
+    shown = {key: filled(summary[key]) for key in ("question", "accuracy")}
+    shown["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
+    words = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
     figures = {
-        # A user-defined sweep has no caption but its name.
+        # A user-defined sweep has the general caption, and its name as the title.
         name: captions.get(name)
         or captions["user_defined_sweep"]._replace(title=name.removeprefix("sweep_"))
         for name in chain.from_iterable(galleries.values())
     }
-    written = [summary["question"], in_short, exceptions, summary["symbols"], accuracy]
-    for line in lines:
-        written += [line.topic, line.text]
+    markdown = [*shown.values(), *chain.from_iterable(words)]
+    for row in rows:
+        markdown += [row.statement, row.number]
     for caption in figures.values():
-        written += [caption.finding, caption.caption]
-    # The page does not jump while it loads.
-    sizes = {}
-    for name in figures:
-        with Image.open(results / f"figures/{name}.png") as picture:
-            sizes[name] = round(SCALE * picture.width), round(SCALE * picture.height)
+        markdown += [caption.finding, caption.caption]
     return page(
         "index.html",
         altered=facts["overlay"],
-        texts=summary | {"answer": in_short, "exceptions": exceptions, "accuracy": accuracy},
-        lines=lines,
+        texts=shown,
+        rows=rows,
+        words=words,
         figures=figures,
-        sizes=sizes,
+        sizes={name: _shown_size(results / f"figures/{name}.png") for name in figures},
         galleries=galleries,
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
         facts=facts,
-        html=markup_of(written),
+        html=markup_of(markdown),
         summary=ledger.summary(),
         signs=SIGNS,
     )
 
 
-def _json(path: Path) -> Any:
+def _shown_size(path: Path) -> tuple[int, int]:
+    """Return width and height of a figure in pixels of the page, which then loads without jumps."""
+    with Image.open(path) as picture:
+        return round(FIGURE_SCALE * picture.width), round(FIGURE_SCALE * picture.height)
+
+
+def _read_json(path: Path) -> Any:
     return json.loads(path.read_text(encoding="utf-8"))

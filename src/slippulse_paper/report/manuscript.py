@@ -1,4 +1,8 @@
-"""The manuscript executed: its code run, its prose filled, its figures numbered by their order."""
+"""Execute the manuscript: run its code cells, fill in its prose, and number its figures.
+
+`names_for` defines what cells and prose may use, and `execute` returns the finished Markdown, which
+`document` converts to HTML and PDF.
+"""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -19,21 +23,21 @@ from ..text.prose import fill
 from .report_tables import alteration_note, errata, verdicts
 from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata
 
-# The report and what it refers to for more; each is NAME.md.
+# The report and its supplement, each from manuscript/NAME.md.
 DOCUMENTS = ("replication", "supplement")
-# Tag of a cell that only a notebook opened by hand needs: here its names are defined already.
+# Tag of a cell that defines the names in a notebook opened by hand. It is skipped here.
 BY_HAND = "by-hand"
-# The number that a figure has in the paper, in its name.
-OF_PAPER = re.compile(r"fig(\d+)_")
-# The text includes a figure by this call.
-NAMED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
-# Inches across the pages of the journal, and of the report.
-PAGE = 7.0
+# The name of a figure of the paper, with its number.
+PAPER_FIGURE = re.compile(r"fig(\d+)_")
+# The call that includes a figure in the text.
+FIGURE_CALL = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
+# Width of a page of the journal and of the report, in inches.
+PAGE_WIDTH = 7.0
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """Inputs of one report: contents of files, tables by name, and names of figures."""
+    """Everything that a report is written from: contents of files, tables by name, figures."""
 
     config: Mapping
     shipped: Mapping
@@ -47,15 +51,16 @@ class Inputs:
 
 
 class Gallery:
-    """Figures by number, in the order of the texts: the supplement's from S1 on, unnamed ones last.
+    """The figures with their numbers, which follow the order of the texts.
 
-    ``here`` is the document that is written.
+    Numbers of the supplement begin with S. Figures that no text includes come last. ``current`` is
+    the document that is being written.
     """
 
-    def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, here: str) -> None:
-        self.captions, self.here = captions, here
+    def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, current: str) -> None:
+        self.captions, self.current = captions, current
         self.folder = inputs.figures_folder
-        named = {document: NAMED.findall(text) for document, text in texts.items()}
+        named = {document: FIGURE_CALL.findall(text) for document, text in texts.items()}
         everywhere = {*chain.from_iterable(named.values())}
         self.unnamed = [name for name in inputs.figures if name not in everywhere]
         named[[*texts][-1]] += self.unnamed
@@ -67,45 +72,48 @@ class Gallery:
                 self.numbers[name] = document, f"{letter}{i}"
 
     def figure(self, name: str) -> str:
-        """The figure with its number and caption, as Markdown; nothing if it is not included."""
+        """Return a figure with number and caption as Markdown; empty if it was not drawn."""
         if name not in self.numbers:
             return ""
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
-        head, paper = f"Figure {self.numbers[name][1]}", OF_PAPER.match(name)
+        head, paper = f"Figure {self.numbers[name][1]}", PAPER_FIGURE.match(name)
         if paper and head != f"Figure {int(paper[1])}":
             head += f" (paper, figure {int(paper[1])})"
         text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         with Image.open(self.folder / f"{name}.png") as picture:
             inches = picture.width / picture.info["dpi"][0]
-        # A figure as wide as a column of the journal keeps that width.
-        width = min(100.0, 100.0 * inches / PAGE)
-        # Without an extension, print takes the vector file and the browser the picture.
+        # A figure that is one column wide in the journal is equally wide here.
+        width = min(100.0, 100.0 * inches / PAGE_WIDTH)
+        # Without an extension the PDF takes the vector file, and the page the picture.
         return f"![{text}]({self.folder / name}){{#{name} width={width:.0f}% alt='{alt}'}}"
 
     def further(self) -> str:
-        """The figures that the text does not name."""
+        """Return all figures that no text includes, as Markdown."""
         return "\n\n".join(self.figure(name) for name in self.unnamed)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """A link to a figure between two texts; nothing if it is not included."""
+        """Return a link to a figure between two texts; empty if the figure was not drawn."""
         if name not in self.numbers:
             return ""
         word = next((word for word in ("figure ", "figures ") if before.endswith(word)), "")
         start = before.removesuffix(word)
         document, number = self.numbers[name]
-        file = "" if document == self.here else f"{document}.html"
+        file = "" if document == self.current else f"{document}.html"
         return f"{start}[{word}{number}]({file}#{name}){after}"
 
 
 def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
-    """Names that cells and prose of a document use; ``show`` puts Markdown into the document."""
+    """Return the names that cells and prose of a document may use.
+
+    ``show`` puts Markdown into the document.
+    """
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
     altered, misprints = changes(inputs.shipped, config), read_errata(folder / "errata.yaml")
-    # A number is a link to its claim or finding, and the tables behind it.
+    # A number links to its claim or finding, where its tables are.
     cite = "[{1}](../claims.html#{0})".format
     names: dict[str, object] = {
         "config": config,
@@ -124,7 +132,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "misprints": misprints,
         "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
     }
-    # The errata see names that cells add later.
+    # This dictionary grows while cells run, so that errata can use names that cells define.
     filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
@@ -148,7 +156,10 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
 
 
 def execute(source: Path, inputs: Inputs) -> str:
-    """The filled prose of a file, and what its code shows; ValueError names a cell that fails."""
+    """Return the Markdown of a file with its code run and its prose filled.
+
+    A ValueError quotes the cell that fails.
+    """
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)
     for cell in jupytext.read(source).cells:

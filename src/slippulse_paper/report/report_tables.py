@@ -1,4 +1,4 @@
-"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, accuracy."""
+"""Write the tables of the report as Markdown: claims, sentences of the paper, errata, accuracy."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -11,11 +11,11 @@ from ..claims.rules import WORST_FIRST
 from ..text.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
 
-# Lines this wide have pandoc take the dashes as relative widths.
-FULL = 200
+# In lines of this length, pandoc reads the dashes of a pipe table as relative column widths.
+LINE_LENGTH = 200
 DASH = "\N{EM DASH}"
-# Quantities of the grid table: simulation, column, name.
-QUANTITIES = (
+# Rows of the table of grid studies: simulation, column, name in the table.
+STUDIED_QUANTITIES = (
     ("steady_displacement", "front_speed_right", "front speed"),
     ("steady_displacement", "pulse_slip", "final slip"),
     ("steady_displacement", "pulse_peak_velocity", "peak slip velocity"),
@@ -26,26 +26,26 @@ QUANTITIES = (
     ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
     ("scaling_stress", "last_release_time", "last release, stress boundary"),
 )
-# A long table stands between WIDE and CLOSE, on landscape pages, or between SMALL and CLOSE, in
-# small type over several pages. FLUSH puts all figures so far before it.
+# Markers around a long table: WIDE and CLOSE put it on landscape pages, SMALL and CLOSE set it in
+# small type over several pages. FLUSH places all earlier figures before the text that follows.
 OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n`````'.format
 WIDE, SMALL = map(OPEN, ("sideways", "small"))
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 FLUSH = "`````{=typst}\n#place.flush()\n`````"
-# Figures after BELOW stand at the bottom of a page, so that none cuts the table before it.
+# Figures after BELOW go to the bottom of a page, so that none interrupts the table before it.
 BELOW = "`````{=typst}\n#show figure.where(kind: image): set figure(placement: bottom)\n`````"
 
 
 def table(head: str, rows: Iterable[Sequence[object]]) -> str:
-    """A pipe table of Markdown.
+    """Return a pipe table in Markdown.
 
-    head : for each column title, side (l or r) and relative width, as in "claim l34 | runs r10"
+    head : title, alignment (l or r) and relative width of each column: "claim l34 | runs r10"
     """
     columns = [column.strip().rpartition(" ") for column in head.split("|")]
     total = sum(int(form[1:]) for _, _, form in columns)
     rules = []
     for _, _, form in columns:
-        dashes = "-" * max(3, round(FULL * int(form[1:]) / total))
+        dashes = "-" * max(3, round(LINE_LENGTH * int(form[1:]) / total))
         rules.append(f":{dashes}" if form[0] == "l" else f"{dashes}:")
     lines = []
     for row in ([title for title, _, _ in columns], rules, *rows):
@@ -56,27 +56,27 @@ def table(head: str, rows: Iterable[Sequence[object]]) -> str:
 
 
 def plain(text: str) -> str:
-    """Text in which every sign that Markdown would obey is escaped."""
+    """Return a text in which every special character of Markdown is escaped."""
     return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)
 
 
 def code(names: Iterable[str]) -> str:
-    """Names as code, one after the other."""
+    """Return names formatted as code and separated by commas."""
     return ", ".join(f"`{name}`" for name in names)
 
 
 def verdicts(lines: Iterable[Line]) -> str:
-    """The lines of the answer, each verdict with a link to the claim that it comes from."""
+    """Return the lines of the answer as a table, in which each verdict links to its claim."""
     link = "[{0.verdict}](../claims.html#{0.id})".format
     rows = []
     for line in lines:
-        told = [f"{link(claim)} {names}".strip() for claim, names in line.verdicts]
-        rows.append((line.topic, "; ".join(told), line.text))
+        links = [f"{link(claim)} {subjects}".strip() for claim, subjects in line.verdicts]
+        rows.append((line.topic, "; ".join(links), line.text))
     return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 
 
 def failures(ledger: Ledger) -> str:
-    """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
+    """Return a table of all claims that are not simply reproduced, worst first, with the reason."""
     order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
     failed = [claim for claim in order if claim.verdict != WORST_FIRST[-1]]
     rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
@@ -84,7 +84,7 @@ def failures(ledger: Ledger) -> str:
 
 
 def whole_ledger(ledger: Ledger) -> str:
-    """Every claim with its position in the paper, numbers, tolerance, verdict and note."""
+    """Return a table of all claims: place in the paper, numbers, tolerance, verdict and note."""
     rows = []
     for claim in ledger:
         name = f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`"
@@ -96,7 +96,10 @@ def whole_ledger(ledger: Ledger) -> str:
 
 
 def tolerances(ledger: Ledger) -> str:
-    """The reason for each tolerance; claims of the same kind, tolerance and reason share a row."""
+    """Return a table of tolerances with their reasons.
+
+    Claims of the same kind with the same tolerance and reason share a row.
+    """
     groups: dict[tuple[str, ...], list[str]] = {}
     for claim in ledger:
         exponent = getattr(claim, "tolerance_exponent", None)
@@ -109,7 +112,7 @@ def tolerances(ledger: Ledger) -> str:
 
 
 def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
-    """What tests check beside the claims, with its position in the paper and what checks it."""
+    """Return a table of statements that tests check, with their places in the paper and tests."""
     where = places_of(entries, sentences)
     rows = [
         (entry["statement"], where[id], entry.get("checked", f"`test_algebra[{id}]`"), code([id]))
@@ -119,7 +122,7 @@ def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
-    """Numbers read off the published figure next to ours, with the reading error."""
+    """Return a table of numbers read off the published figure, with reading errors, beside ours."""
     left = ledger("published_space_time_figure").further
     ours = left | ledger("published_space_time_figure_right").further
     rows = []
@@ -130,33 +133,33 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
 
 def found_list(ledger: Ledger) -> str:
-    """Every finding, as a list."""
+    """Return all findings as a Markdown list."""
     texts = [" ".join(finding["text"].split()) for finding in ledger.findings.values()]
     return "\n".join(f"- {text}" for text in texts)
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
-    """Number of sentences that are tested, and that are not for each reason."""
+    """Return a table of how many sentences are tested, and how many are not for which reason."""
     words = REASONS | {"all": "all"}
     rows = [(words[reason], count) for reason, count in coverage(sentences).items()]
     return table("sentences l60 | how many r15", rows)
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Every sentence that is tested, with its position in the paper, its claims and checks."""
+    """Return a table of the tested sentences, with place in the paper, claims and checks."""
     paragraph = re.compile(r", paragraph (\d+), sentence (\d+)")
     rows = []
     for sentence in sentences:
         claims = claims_of(entries, sentence)
         if claims:
-            # The column is narrow, so paragraph and sentence are numbers.
+            # The column is narrow, so that paragraph and sentence are shortened to numbers.
             position = paragraph.sub(r", ¶ \1, \2", sentence["place"])
             rows.append((position, sentence["paraphrase"], code(claims)))
     return table("section l22 | what it says l45 | claims l33", rows)
 
 
 def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
-    """The errata, their expressions evaluated by ``fill``."""
+    """Return a table of the errata, with expressions evaluated by ``fill``."""
     rows = []
     for entry in entries:
         rows.append([fill(entry[key]) for key in ERRATUM])
@@ -165,9 +168,9 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Observed order and relative uncertainty of the main quantities, from the grid studies."""
+    """Return a table of observed order and relative uncertainty from the grid studies."""
     rows = []
-    for simulation, quantity, name in QUANTITIES:
+    for simulation, quantity, name in STUDIED_QUANTITIES:
         study = tables[f"uncertainties/{simulation}"]
         study = study[study["quantity"] == quantity]
         relative = (study["uncertainty"] / study["value"].abs()).dropna()
@@ -182,7 +185,10 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
 
 
 def sticking(examples: pd.DataFrame) -> str:
-    """Release times, stick times and slip at positions x of an exact rupture; empty without one."""
+    """Return a table of release time, stick time and slip of an exact rupture at some positions.
+
+    Empty if the study has no exact rupture.
+    """
     columns = ["release_time", "stick_time", "final_slip"]
     examples = examples[examples["quantity"].isin(columns)]
     if examples["value"].isna().all():
@@ -195,7 +201,7 @@ def sticking(examples: pd.DataFrame) -> str:
 
 
 def edges(study: pd.DataFrame) -> str:
-    """Edges of the solver's domain: the quantity compared, its error and tolerance, the outcome."""
+    """Return a table of extreme cases: the compared quantity, its error, tolerance and outcome."""
     rows = []
     for row in study.to_dict("records"):
         outcome = str(row["verdict"])
@@ -231,7 +237,10 @@ def _limit(row: Mapping, name: str) -> str:
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
-    """Differences from the shipped configuration and verdicts, as a quotation; empty if none."""
+    """Return a quotation that lists differences from the shipped configuration and verdicts.
+
+    Empty if there are none.
+    """
     pair = "`{}`: {} (shipped: {})".format
     keys, judged = [], []
     for change in altered:
@@ -251,4 +260,5 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
 
 
 def _literal(value: object) -> str:
+    """Return a value of the configuration formatted as code, or "absent" for None."""
     return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"

@@ -1,4 +1,4 @@
-"""The page of one scene, with its figure inside."""
+"""Write the page of one scene: its figure, its numbers beside theory, and its parameters."""
 
 import base64
 import math
@@ -17,11 +17,12 @@ from slippulse.model.si_quantities import QUANTITIES
 from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
 from .html import page
 
+# Attributes of a run that the page shows, in this order.
 PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
 LATTICE = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
 WORK = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
 SHOWN = (*PHYSICS, "friction", *LATTICE, *WORK, "pulse_state", "run_flags")
-NONE = "\N{EN DASH}"
+NO_NUMBER = "\N{EN DASH}"
 
 
 def scene_page(
@@ -33,9 +34,11 @@ def scene_page(
     note: str,
     layer: Layer | None = None,
 ) -> str:
-    """A page with its figure inside; ``note`` says what an altered configuration changed.
+    """Return the page as HTML, with the figure embedded.
 
-    With a layer all numbers are in SI units; ``attributes`` are those of the run, without units.
+    attributes : parameters of the run, in units of the model
+    note : which values of the configuration were altered; empty if none
+    layer : the layer in SI units, in which the page then shows all numbers
     """
     shown = _parameters(attributes, layer)
     return page(
@@ -54,7 +57,7 @@ def scene_page(
 
 
 def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
-    """The parameters of the run that are shown, in SI units if there is a layer."""
+    """Return the shown parameters of the run, in SI units if there is a layer."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         shown["steps_and_bumps"] = _profile_text(attributes, layer)
@@ -74,7 +77,7 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
 
 
 def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
-    """The steps and bumps of the pre-stress in words."""
+    """Describe steps, bumps and points of the pre-stress in words."""
 
     def write(value: float, quantity: str) -> str:
         if layer is None:
@@ -100,7 +103,7 @@ def _with_unit(value: float, quantity: str) -> str:
 
 
 def _layer_rows(layer: Layer) -> dict[str, str]:
-    """The parameters of a layer, and what follows from them."""
+    """Return the parameters of a layer, and the numbers that follow from them."""
     rows = {
         "thickness H": _with_unit(layer.thickness, "length"),
         "shear modulus G": _with_unit(layer.shear_modulus, "stress"),
@@ -123,17 +126,17 @@ def _layer_rows(layer: Layer) -> dict[str, str]:
 
 
 def _scale_rows(layer: Layer) -> dict[str, str]:
-    """The units of the model, in SI."""
+    """Return the units of the model in SI units."""
     scales = layer.scales._asdict()
     return {name.replace("_", " "): _with_unit(value, name) for name, value in scales.items()}
 
 
 def _number(row) -> dict[str, str]:
-    """Cells of one measured number."""
+    """Return the cells of the table row of one measured number."""
     cells = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
     cells["unit"] = getattr(row, "unit", "")
-    cells["paper"] = number(getattr(row, "paper", math.nan), 5).replace(MISSING, NONE)
-    cells |= {"theory": NONE, "difference": NONE, "promise": "not covered"}
+    cells["paper"] = number(getattr(row, "paper", math.nan), 5).replace(MISSING, NO_NUMBER)
+    cells |= {"theory": NO_NUMBER, "difference": NO_NUMBER, "promise": "not covered"}
     if math.isfinite(row.theory):
         cells["theory"] = number(row.theory, 5)
         difference = row.value / row.theory - 1.0 if row.theory != 0.0 else math.nan

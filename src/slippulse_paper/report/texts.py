@@ -1,4 +1,8 @@
-"""Texts of the manuscript: captions, errata, the parameters of a simulation, and the answer."""
+"""The texts in manuscript/*.yaml: captions, errata, and the answer with its verdicts.
+
+The texts are templates. Each reader fills in the numbers of one run, and `judged_lines` and
+`statement_rows` look up the verdicts of the claims that a text names.
+"""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
@@ -9,12 +13,12 @@ from ..claims.ledger import Entry, Ledger
 from ..claims.rules import WORST_FIRST
 from ..text.numerals import setting
 
-# What an erratum has: `alters` says what changes by it.
+# The parts of an erratum. `alters` names what the error changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
-# A text names only the ends of more values than this.
-FEW = 3
-# Verdicts that one sentence of the answer names together, each with the words for one thing that
-# has it, and for several.
+# A list of more values than this is shortened to its smallest and largest value.
+MAX_LISTED_VALUES = 3
+# Each group of verdicts gets one sentence of the answer. A verdict has its words in the singular
+# and in the plural.
 SENTENCES = (
     {
         "depends on an open choice": (
@@ -33,7 +37,7 @@ SENTENCES = (
 
 
 class Caption(NamedTuple):
-    """Texts of a figure: title and alternative text, plain; finding and caption, Markdown."""
+    """The texts of a figure: title and alternative text are plain, the others Markdown."""
 
     title: str
     alt: str
@@ -42,7 +46,10 @@ class Caption(NamedTuple):
 
 
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
-    """Captions by name of the figure, their expressions evaluated by ``fill``; or ValueError."""
+    """Read the captions of all figures by name, and evaluate their expressions with ``fill``.
+
+    Raises ValueError if a caption lacks a text or has an unknown key.
+    """
     captions = {}
     for name, parts in read_text(path).items():
         _check_keys(f"{path}: {name}", parts, Caption._fields)
@@ -52,7 +59,7 @@ def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[st
 
 
 def read_errata(path: str | Path) -> list[dict[str, str]]:
-    """The errata, mappings with the keys `ERRATUM`; or ValueError."""
+    """Read the errata, each a mapping with the keys `ERRATUM`; ValueError if one is incomplete."""
     entries = read_text(path)
     for i, entry in enumerate(entries, start=1):
         _check_keys(f"{path}: entry {i}", entry, ERRATUM)
@@ -60,7 +67,7 @@ def read_errata(path: str | Path) -> list[dict[str, str]]:
 
 
 def _check_keys(label: str, entry: Mapping, keys: Collection[str]) -> None:
-    """Refuse an entry without a text for each key, or with another key."""
+    """Raise ValueError if an entry lacks a text for one of the keys, or has an unknown key."""
     for key in [*entry, *keys]:
         if key not in keys:
             raise ValueError(f"{label}: {key}: unknown key; allowed: {', '.join(keys)}")
@@ -69,13 +76,16 @@ def _check_keys(label: str, entry: Mapping, keys: Collection[str]) -> None:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words, the last two joined by "and"."""
+    """Join words with commas, and the last two with "and"."""
     *first, last = words
     return f"{', '.join(first)} and {last}" if first else last
 
 
 def parameters(config: Mapping, name: str) -> str:
-    """Boundary, elasticity ratio, pre-stress and damping of a simulation's runs, as Markdown."""
+    """Describe the runs of a simulation in Markdown: top of the layer, moduli, pre-stress, damping.
+
+    Raises ValueError for a simulation that the configuration does not have.
+    """
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
@@ -91,12 +101,12 @@ def parameters(config: Mapping, name: str) -> str:
     values[r"$\beta$"] = simulation.get("beta")
     if not values[r"$\beta$"]:
         values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
-    parts = [f"{symbol} = {_values(numbers)}" for symbol, numbers in values.items() if numbers]
+    parts = [f"{symbol} = {_values_text(given)}" for symbol, given in values.items() if given]
     return ", ".join([boundary, *parts])
 
 
 def _profile_values(simulation: Mapping, key: str) -> list:
-    """Different values of one key of the pre-stress, which profiles or lists have."""
+    """Return the distinct values of one key of the pre-stress over the profiles of a simulation."""
     values: list = []
     for part in simulation.get("profiles") or [simulation]:
         given = part.get(key, [])
@@ -104,67 +114,104 @@ def _profile_values(simulation: Mapping, key: str) -> list:
     return [*dict.fromkeys(values)]
 
 
-def _values(values: Sequence[float]) -> str:
-    if len(values) > FEW:
+def _values_text(values: Sequence[float]) -> str:
+    """Write a few values as a list, and more of them as "smallest to largest"."""
+    if len(values) > MAX_LISTED_VALUES:
         return f"{setting(min(values))} to {setting(max(values))}"
     return listed([setting(value) for value in sorted(values)])
 
 
+class StatementRow(NamedTuple):
+    """A row of the table on the index: a statement of the paper and what decides it."""
+
+    statement: str
+    # The claim with the worst verdict.
+    claim: Entry
+    number: str
+
+
+def statement_rows(
+    summary: Mapping, ledger: Ledger, fill: Callable[[str], str]
+) -> list[StatementRow]:
+    """Return the rows of the index in the order of the summary, with expressions evaluated."""
+    rows = []
+    for row in summary["statements"]:
+        claim = worst_claim(ledger, row["claims"])
+        rows.append(StatementRow(fill(row["statement"]), claim, fill(row["number"])))
+    return rows
+
+
+def worst_claim(ledger: Ledger, ids: Collection[str]) -> Entry:
+    """Return the claim with the worst verdict; the first one if several are equally bad."""
+    claims = [ledger(id) for id in ids]
+    return min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
+
+
 class Line(NamedTuple):
-    """A line of manuscript/summary.yaml, judged by claims."""
+    """A line under `verdict` in manuscript/summary.yaml, with the verdicts of its claims."""
 
     topic: str
+    # The topic as a sentence names it.
     named: str
     text: str
-    # The worst of the claims that decide it, and the clause of the answer for its verdict, if any.
+    # The claim with the worst verdict among those that count.
     claim: Entry
-    said: str
-    # A claim of each verdict, those told beside included, with what has it if there are several.
+    # The clause of the answer for that verdict; empty if `named` serves.
+    clause: str
+    # One claim for each verdict, with the subjects that have this verdict in brackets. The subjects
+    # are empty if all claims have the same verdict.
     verdicts: Sequence[tuple[Entry, str]]
 
 
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
-    """The lines of the summary in their order, their expressions evaluated by ``fill``."""
+    """Return the lines of the summary in their order, with expressions evaluated by ``fill``."""
     lines = []
     for entry in summary["verdict"]:
-        claims = [ledger(id) for id in entry["claims"]]
-        worst = min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
-        said = fill(entry.get("said", {}).get(worst.verdict, ""))
-        names = entry["claims"] | entry.get("beside", {})
-        groups: dict[str, list[str]] = {}
-        for id in names:
-            groups.setdefault(ledger(id).verdict, []).append(id)
-        told = []
-        for ids in groups.values():
-            words = listed([*dict.fromkeys(names[id] for id in ids)])
-            told.append((ledger(ids[0]), f"({words})" if len(groups) > 1 else ""))
-        lines.append(Line(entry["topic"], entry["named"], fill(entry["text"]), worst, said, told))
+        worst = worst_claim(ledger, entry["claims"])
+        clause = fill(entry.get("said", {}).get(worst.verdict, ""))
+        subjects = entry["claims"] | entry.get("beside", {})
+        verdicts = _claims_by_verdict(ledger, subjects)
+        text = fill(entry["text"])
+        lines.append(Line(entry["topic"], entry["named"], text, worst, clause, verdicts))
     return lines
 
 
+def _claims_by_verdict(ledger: Ledger, subjects: Mapping[str, str]) -> list[tuple[Entry, str]]:
+    """Return the first claim of each verdict, and the subjects of all claims that share it."""
+    ids_by_verdict: dict[str, list[str]] = {}
+    for id in subjects:
+        ids_by_verdict.setdefault(ledger(id).verdict, []).append(id)
+    several = len(ids_by_verdict) > 1
+    verdicts = []
+    for ids in ids_by_verdict.values():
+        words = listed([*dict.fromkeys(subjects[id] for id in ids)])
+        verdicts.append((ledger(ids[0]), f"({words})" if several else ""))
+    return verdicts
+
+
 def _opening(line: Line) -> str:
-    """The first sentence of the answer: yes, no or not decided."""
+    """Return the first sentence of the answer: yes, no or not decided."""
     verdict = line.claim.verdict
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
     start = "No" if verdict == "not reproduced" else "Not decided"
-    clause = next(said[verdict][0] for said in SENTENCES if verdict in said)
-    return f"**{start}**: that {line.named}, {clause}."
+    singular = next(words[verdict][0] for words in SENTENCES if verdict in words)
+    return f"**{start}**: that {line.named}, {singular}."
 
 
 def answer(lines: Sequence[Line]) -> str:
-    """Sentences of Markdown: whether the first line is reproduced, and which others are not."""
+    """Return Markdown that says whether the first line is reproduced, and which others are not."""
     first, *rest = lines
     sentences = [_opening(first)]
-    for verdicts in SENTENCES:
+    for words_by_verdict in SENTENCES:
         clauses = []
-        for verdict, (singular, plural) in verdicts.items():
-            these = [line for line in rest if line.claim.verdict == verdict]
-            clauses += [line.said for line in these if line.said]
-            named = [line.named for line in these if not line.said]
+        for verdict, (singular, plural) in words_by_verdict.items():
+            judged = [line for line in rest if line.claim.verdict == verdict]
+            clauses += [line.clause for line in judged if line.clause]
+            named = [line.named for line in judged if not line.clause]
             if named:
                 clauses.append(f"{listed(named)} {plural if len(named) > 1 else singular}")
         if clauses:
-            words = ", and ".join(clauses)
-            sentences.append(f"{words[0].upper()}{words[1:]}.")
+            sentence = ", and ".join(clauses)
+            sentences.append(f"{sentence[0].upper()}{sentence[1:]}.")
     return " ".join(sentences)

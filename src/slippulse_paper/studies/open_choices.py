@@ -52,7 +52,9 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
         reach = max(float(latest.max()), 2.0 * FAR * width)
         fronts = fast_fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
         both = zip(gammas, latest, strict=True)
-        times = np.array([float(Part(fronts, *one).search(np.zeros(1))[0]) for one in both])
+        times = np.array(
+            [float(Part(fronts, *one).find_stick_times(np.zeros(1))[0]) for one in both]
+        )
         # The pre-stress is uniform beyond the Gaussian.
         uniform_from = FAR * width
         time_beyond = times - fronts.arrival(uniform_from)

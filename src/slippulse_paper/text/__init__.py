@@ -1,1 +1,1 @@
-"""Numbers as text, and texts that are templates."""
+"""Write numbers as text, convert Markdown, and fill texts that are templates."""

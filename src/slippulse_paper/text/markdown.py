@@ -1,4 +1,7 @@
-"""Markdown by the pandoc of the lock: texts of pages as HTML, and texts of a user made harmless."""
+"""Convert Markdown with the pandoc of the locked environment.
+
+`markup_of` turns the texts of a page into HTML, and `harmless` escapes the texts of a user.
+"""
 
 import re
 import subprocess
@@ -9,28 +12,29 @@ from typing import Any
 
 from markupsafe import Markup
 
-# The program that pypandoc_binary brings along; another one may be on the user's path.
+# The program inside the package pypandoc_binary, not another one on the user's path.
 PANDOC = Path(str(getattr(find_spec("pypandoc"), "origin", ""))).with_name("files") / "pandoc"
-# Pandoc finds no defaults, templates, filters and styles of the user in this folder.
-DATA = Path(__file__).parent
-# A text of a page is Markdown whose HTML has neither attributes nor code that a text brings along.
-WITHOUT = """
+# A folder without pandoc defaults, templates, filters or styles, so that none of the user's apply.
+DATA_FOLDER = Path(__file__).parent
+# Extensions that are switched off for the texts of pages, so that a text cannot add HTML,
+# attributes or code of its own.
+DISABLED_EXTENSIONS = """
     raw_html raw_tex raw_attribute native_divs native_spans bracketed_spans fenced_divs
     link_attributes header_attributes fenced_code_attributes inline_code_attributes smart
     fancy_lists latex_macros inline_notes footnotes citations
 """
-PAGE_TEXT = "-".join(["markdown", *WITHOUT.split()])
+PAGE_TEXT = "-".join(["markdown", *DISABLED_EXTENSIONS.split()])
 LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
 IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
-# In a user's text, formulas and links to the web stay; in all else these signs are escaped.
+# Formulas and links to the web are kept in a user's text. Elsewhere special signs are escaped.
 FORMULA = re.compile(r"(?<!\\)\$(?=\S)((?:[^$\\]|\\.)*?)(?<=\S)\$(?!\d)")
 KEPT = re.compile(rf"({FORMULA.pattern}|(?<!!)\[[\w ,.:;()-]+\]\(https?://[\w./?=&%:~-]+\))")
 SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
 
 
 def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
-    """Convert a text; ValueError has the message of pandoc if it refuses or warns."""
-    command = [str(PANDOC), f"--data-dir={DATA}", f"--from={source}", f"--to={to}"]
+    """Convert a text; a ValueError has the message of pandoc if it fails or warns."""
+    command = [str(PANDOC), f"--data-dir={DATA_FOLDER}", f"--from={source}", f"--to={to}"]
     command += ["--fail-if-warnings", *options]
     pipes: dict[str, Any] = {"input": text.encode(), "capture_output": True}
     done = subprocess.run(command, check=False, env={"LC_ALL": "C.UTF-8"}, **pipes)
@@ -41,9 +45,10 @@ def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """HTML with MathML of each text, one paragraph of Markdown with formulas; raw HTML is shown.
+    """Return HTML with MathML for each text, which is one paragraph of Markdown.
 
-    Links lead to the web only, and a picture is its alternative text.
+    HTML in a text is shown as text, a link is kept only if it leads to the web, and a picture
+    becomes its alternative text.
     """
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
@@ -60,16 +65,16 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
 
 
 def _web_link(link: re.Match) -> str:
-    """Return a link without attributes, or its text alone unless it leads to the web."""
+    """Return a link to the web without its attributes, and of any other link only the text."""
     address, text = link.groups()
     web = address.lower().startswith(("http://", "https://"))
     return f'<a href="{address}">{text}</a>' if web else text
 
 
 def harmless(text: str) -> str:
-    """Return a user's text as Markdown in which formulas, emphasis and web links are all that acts.
+    """Return a user's text as Markdown in which only formulas, emphasis and web links have effect.
 
-    Such a text may stand in a page, in the report and in a cell of a table.
+    The result is safe in a page, in the report and in a cell of a table.
     """
     kept = (found.span() for found in KEPT.finditer(text))
     parts, end = [], 0
@@ -81,7 +86,7 @@ def harmless(text: str) -> str:
 
 
 def is_readable(text: str) -> bool:
-    """Return whether pandoc reads all formulas of a user's text."""
+    """Return True if pandoc can read all formulas of a user's text."""
     try:
         return "$" not in text or bool(markup_of([harmless(text)]))
     except ValueError:

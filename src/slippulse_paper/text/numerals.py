@@ -1,29 +1,29 @@
-"""Numbers as plain text with Unicode signs, for the report, the pages and the figures."""
+"""Write numbers as plain text with Unicode signs, for the report, the pages and the figures."""
 
 import math
 
-# A number that is smaller or larger is written with a power of ten.
-SMALL, LARGE = 1e-3, 1e5
-# The largest number of significant digits, without an uncertainty and with one.
-MOST, MOST_WITH_UNCERTAINTY = 5, 6
+# Numbers outside this range are written with a power of ten.
+SMALLEST_PLAIN, LARGEST_PLAIN = 1e-3, 1e5
+# Most significant digits of a number without and with an uncertainty.
+MAX_DIGITS, MAX_DIGITS_WITH_UNCERTAINTY = 5, 6
 MISSING = "not measured"
 SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write a number with at most `MOST` significant digits; a whole number keeps all digits."""
+    """Write a number with at most `MAX_DIGITS` significant digits, and a whole number with all."""
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value):
         return _minus("∞" if value > 0 else "-∞")
     if value == 0.0:
         return "0"
-    digits = min(digits, MOST)
-    if not SMALL <= abs(value) < LARGE:
+    digits = min(digits, MAX_DIGITS)
+    if not SMALLEST_PLAIN <= abs(value) < LARGEST_PLAIN:
         return _power_of_ten(f"{value:.{digits - 1}e}")
     if float(value).is_integer():
         return _minus(f"{value:.0f}")
-    # The rounded value has the magnitude that counts: 0.9996 with three digits is 1.00.
+    # Use the magnitude of the rounded value: 0.9996 with three digits is 1.00.
     magnitude = int(f"{value:.{digits - 1}e}".partition("e")[2])
     return _minus(f"{value:.{max(0, digits - 1 - magnitude)}f}")
 
@@ -39,8 +39,8 @@ def rounded(value: float | None, digits: int = 4) -> str:
 
 
 def percent(value: float | None, digits: int = 2) -> str:
-    """Write a fraction as a percentage, or as it is where that would need a power of ten."""
-    if value is None or math.isnan(value) or 0.0 < 100.0 * abs(value) < SMALL:
+    """Write a fraction as a percentage, or as it is if that would need a power of ten."""
+    if value is None or math.isnan(value) or 0.0 < 100.0 * abs(value) < SMALLEST_PLAIN:
         return number(value, digits)
     return f"{number(100.0 * value, digits)} %"
 
@@ -48,25 +48,26 @@ def percent(value: float | None, digits: int = 2) -> str:
 def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
     """Write a value with the uncertainty of its last digits, as in 1.476(13).
 
-    Both are rounded as the Particle Data Group does, and a smaller uncertainty up to digit number
-    `MOST_WITH_UNCERTAINTY`. ``unknown`` follows a value without an uncertainty.
+    Both are rounded by the rule of the Particle Data Group. An uncertainty below the last of
+    `MAX_DIGITS_WITH_UNCERTAINTY` digits is rounded up to that digit. ``unknown`` is appended to a
+    value without an uncertainty.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
-        return number(value, MOST)
+        return number(value, MAX_DIGITS)
     if uncertainty is None or not math.isfinite(uncertainty):
-        return number(value, MOST) + unknown
+        return number(value, MAX_DIGITS) + unknown
     from uncertainties import ufloat
 
     if value:
         magnitude = math.floor(math.log10(abs(value)))
-        last_digit = 10.0 ** (magnitude + 1 - MOST_WITH_UNCERTAINTY)
+        last_digit = 10.0 ** (magnitude + 1 - MAX_DIGITS_WITH_UNCERTAINTY)
         if abs(uncertainty) < last_digit:
             return _minus(f"{ufloat(value, last_digit):.1uSP}")
     return _minus(f"{ufloat(value, abs(uncertainty)):SP}")
 
 
 def short(value: object, longest: int = 80) -> str:
-    """Write any value of the configuration in limited length; an absent one is a dash."""
+    """Write any value of the configuration in limited length, and None as a dash."""
     text = "\N{EN DASH}" if value is None else str(value)
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
@@ -77,7 +78,7 @@ FILTERS = {
 
 
 def _power_of_ten(text: str) -> str:
-    """Give a number that Python may have written as 1.5e-05 a true power of ten."""
+    """Replace an exponent as in 1.5e-05 by a true power of ten."""
     mantissa, _, exponent = text.partition("e")
     if not exponent:
         return _minus(text)

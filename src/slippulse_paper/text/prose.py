@@ -1,4 +1,4 @@
-"""Markdown with expressions in double braces: jinja2 templates that write numbers."""
+"""Evaluate expressions in double braces in Markdown, with the rules of jinja2 templates."""
 
 from collections.abc import Mapping
 from numbers import Real
@@ -10,7 +10,7 @@ from .numerals import FILTERS, number
 
 
 class Prose(Environment):
-    """The rules of the expressions: an unknown name is an error, an attribute of None is None."""
+    """Rules of the expressions: an unknown name is an error, and an attribute of None is None."""
 
     def getattr(self, obj: object, attribute: str) -> object:
         return None if obj is None else super().getattr(obj, attribute)
@@ -20,7 +20,7 @@ class Prose(Environment):
 
 
 def _text(value: object) -> object:
-    """Write a number without a filter with three significant digits."""
+    """Write a number that has no filter with three significant digits, and leave texts alone."""
     if isinstance(value, Real):
         return number(float(value))
     return number(None) if value is None else value
@@ -31,7 +31,7 @@ PROSE.filters |= FILTERS
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:
-    """Evaluate each ``{{ expression }}`` of a text; a ValueError has the line of one that fails."""
+    """Evaluate each ``{{ expression }}`` of a text; a ValueError quotes the line that fails."""
     try:
         return PROSE.from_string(text).render(names)
     except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:

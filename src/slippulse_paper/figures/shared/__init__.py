@@ -1,1 +1,1 @@
-"""Parts that several figures share: rows of tables, made from data, and what draws these rows."""
+"""Parts that several figures share: functions that make rows of tables and that draw them."""

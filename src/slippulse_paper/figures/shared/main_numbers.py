@@ -1,4 +1,4 @@
-"""The main numbers of a run: their labels, the measured values and exact theory."""
+"""Select the main numbers of a run: their labels, measured values and exact theory."""
 
 import json
 import math
@@ -10,40 +10,45 @@ from slippulse.data.readable_units import readable_unit
 from slippulse.model.layer_units import Layer
 from slippulse.model.si_quantities import QUANTITIES
 
-# Labels of the measured columns that both boundary conditions have, and of all by boundary.
-COMMON = {
+# Labels of measured columns: those of both boundary conditions, those of pulses with the
+# displacement held, and all of them by boundary condition.
+COMMON_LABELS = {
     "front_speed_left": "front speed, left",
     "front_speed_right": "front speed, right",
     "transition_time": "T_trans",
     "transition_length": "L_trans",
 }
-PULSE = {
+PULSE_LABELS = {
     "first_stick_time": "first stick",
     "pulse_width": "pulse width, right",
     "pulse_peak_velocity": "peak velocity, right",
     "pulse_slip": "final slip, right",
 }
 LABELS = {
-    "displacement": COMMON | PULSE,
-    "stress": COMMON | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
+    "displacement": COMMON_LABELS | PULSE_LABELS,
+    "stress": COMMON_LABELS
+    | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
 }
 
 
-# Beginnings of the names of predictions for the front, and for the pulse, of each side.
-PREDICTED = {
+# How the names of predictions begin, for the front and for the pulse of each side.
+PREDICTION_PREFIXES = {
     "left": ("exact_front_speed_left", "exact_left_pulse"),
     "right": ("exact_front_speed_right", "exact_pulse"),
 }
 
 
 def with_symbols(label: str) -> str:
-    """Return a label of LABELS, as a formula where it is a symbol."""
+    """Return a label of LABELS, written as a formula if it is a symbol."""
     symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\text{trans}", "L_trans": r"L_\text{trans}"}
     return f"${symbols[label]}$" if label in symbols else label
 
 
 def main_numbers(run: pd.Series) -> pd.DataFrame:
-    """Main measured numbers of a run: quantity, label, value, theory (NaN where there is none)."""
+    """Return the main measured numbers of a run: quantity, label, value and theory.
+
+    Theory is NaN if the quantity has none.
+    """
     run = at_constant_levels(run)
     numbers = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
     numbers["value"] = [run.get(name, np.nan) for name in numbers["quantity"]]
@@ -52,12 +57,13 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
 
 
 def at_constant_levels(run: pd.Series) -> pd.Series:
-    """A measured and predicted row without the theory of steady fronts and pulses in a table.
+    """Return the numbers of a run, without steady theory for a front in varying pre-stress.
 
-    Theory is that of the levels at the ends of a table, which a front may not have reached.
+    The theory assumes the levels at the ends of a pre-stress table. It does not apply to a front
+    that has not reached a constant level.
     """
     run = run.copy()
-    for side, prefixes in PREDICTED.items():
+    for side, prefixes in PREDICTION_PREFIXES.items():
         if f"level_ahead_{side}" in run and not np.isfinite(run[f"level_ahead_{side}"]):
             names = [name for name in map(str, run.index) if name.startswith(prefixes)]
             run[names] = np.nan
@@ -65,15 +71,17 @@ def at_constant_levels(run: pd.Series) -> pd.Series:
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
-    """`main_numbers` of a scene, with what its grid study has: uncertainty, promised and kept."""
+    """Return `main_numbers` of a scene with the columns of its grid study: uncertainty, and
+    promised and kept if the scene has a promised accuracy.
+    """
     numbers = main_numbers(run)
     quantity = numbers["quantity"]
-    # The theory of steady pulses applies to a steady pulse alone.
+    # The theory of steady pulses applies only to a steady pulse.
     if run.get("pulse_state") != "steady":
         numbers.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
     if run.get("pulse_state") == "stopped":
         numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
-    # The balance of the pre-stress is computed for the Gaussian and its levels alone.
+    # The balance of the pre-stress, which defines this transition, leaves bumps out.
     if json.loads(run["steps_and_bumps"])["bumps"] and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
     if (quantity == "transition_time").any():
@@ -84,11 +92,11 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
 
 
 def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:
-    """Convert the numbers of a scene, each with a prefix of its own in a column unit.
+    """Convert the numbers of a scene to SI units, with a suitable prefix in the column unit.
 
-    The column paper has the number by the paper's formula as printed, from the row ``run`` of
-    measured and predicted numbers: its peak slip velocity in SI units is half of its own formula
-    without dimension (section IV A).
+    The column paper has the number by the paper's printed formula. For the peak slip velocity, the
+    printed formula with dimensions is half of the printed formula without (section IV A). ``run``
+    is the row of measured and predicted numbers.
     """
     paper = [run.get(f"paper_{quantity}", math.nan) for quantity in numbers["quantity"]]
     converted = numbers.assign(unit="", paper=np.array(paper, dtype=float))

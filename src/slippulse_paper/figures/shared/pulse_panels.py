@@ -1,4 +1,4 @@
-"""Pulses in the frame that moves with them, simulated and exact: their table, and the drawing."""
+"""Tabulate and draw simulated and exact pulses in the frame that moves with them."""
 
 import numpy as np
 import pandas as pd
@@ -22,7 +22,7 @@ from slippulse.plotting.style import (
     entry,
 )
 
-# Labels of the fields in the units of each boundary condition.
+# Axis labels of the fields, in the units of each boundary condition.
 FIELDS = {
     "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\text{max}$"},
     "slip_velocity": {
@@ -34,26 +34,27 @@ FIELDS = {
         "stress": r"acceleration $\ddot u\,W/\dot u_\text{max}$",
     },
 }
-DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
-# The level gives a run its colour, and another column its line style.
-STYLED = {"displacement": "damping_ratio", "stress": "width"}
-STYLES = ("-", "--", ":", "-.")
-# The number of levels drawn.
-LEVELS = {"displacement": 2, "stress": 3}
-# Points of a simulated curve, and decimals of its values that can be seen.
-POINTS, DECIMALS = 300, 4
-# A simulated pulse is drawn this far ahead of its front and behind its tail, in pulse widths.
-AHEAD, BEHIND = 0.08, 0.25
-PALE: Look = {"linewidth": 2.6, "alpha": 0.3}
+DISTANCE_LABELS = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
+# The column that sets the line style of a run; its level sets the colour.
+STYLED_COLUMN = {"displacement": "damping_ratio", "stress": "width"}
+LINE_STYLES = ("-", "--", ":", "-.")
+# How many levels of pre-stress are drawn.
+LEVEL_COUNT = {"displacement": 2, "stress": 3}
+# Points of a simulated curve, and visible decimals of its values.
+CURVE_POINTS, VISIBLE_DECIMALS = 300, 4
+# How far a simulated pulse is drawn beyond its front and beyond its tail, in pulse widths.
+MARGIN_AHEAD, MARGIN_BEHIND = 0.08, 0.25
+SIMULATION_LOOK: Look = {"linewidth": 2.6, "alpha": 0.3}
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulated pulses of each sweep at some levels, and exact ones, from the largest velocity on.
+    """Return simulated and exact pulses of each sweep at a few levels of pre-stress.
 
-    Units under a displacement boundary are those of the paper's pulse; under a stress boundary the
-    width of a Gaussian, slip and velocity of the exact pulse far from the nucleation, and that
-    velocity over that width, since the exact acceleration has no bound.
+    Positions are relative to the largest slip velocity. Under a displacement boundary, the units
+    are those of the paper's pulse. Under a stress boundary they are the width of the Gaussian, the
+    final slip and largest velocity of the exact pulse far from the nucleation, and that velocity
+    divided by the width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
     profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
@@ -61,8 +62,8 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for name, sweep in data.items():
         runs = tables[name]
         boundary = str(runs["boundary"].iloc[0])
-        runs = runs[runs["left"].isin(spread_values(runs["left"], LEVELS[boundary]))]
-        # Pulses that are not steady are flagged here; those under held stress have no state.
+        runs = runs[runs["left"].isin(spread_values(runs["left"], LEVEL_COUNT[boundary]))]
+        # A pulse that is not steady counts as flagged. Under a held stress there is no such state.
         steady = runs["pulse_state"].isin(["steady", "none"])
         flags = runs["run_flags"].where(steady, runs["pulse_state"])
         rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
@@ -70,22 +71,22 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             exact = profiles.get_group((name, index)).assign(role="exact")
             if boundary == "displacement":
                 length = numbers["exact_pulse_width"]
-                extent = -(1.0 + BEHIND) * length, AHEAD * length
+                extent = -(1.0 + MARGIN_BEHIND) * length, MARGIN_AHEAD * length
                 kinds = ("width", "slip", "peak_velocity", "acceleration")
                 units = [numbers[f"paper_pulse_{kind}"] for kind in kinds]
             else:
                 length = float(np.ptp(exact["x"]))
-                extent = -length, AHEAD * length
+                extent = -length, MARGIN_AHEAD * length
                 width, peak = numbers["width"], numbers["exact_largest_velocity"]
                 units = [width, exact["slip"].max(), peak, peak / width]
             run = point(sweep, int(index))
             pulse = leading_pulse(run, window)
             profile = pd.DataFrame(comoving(run, pulse))
             inside = profile[profile["xi"].between(*extent)]
-            simulated = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
+            simulated = inside.iloc[:: int(np.ceil(len(inside) / CURVE_POINTS))]
             x = simulated["xi"] - (pulse.peak_distance - pulse.front)
             both = pd.concat([simulated.assign(role="simulation", x=x), exact])
-            curves = (both[["x", *FIELDS]] / units).round(DECIMALS)
+            curves = (both[["x", *FIELDS]] / units).round(VISIBLE_DECIMALS)
             curves.insert(0, "role", both["role"])
             rows.append(curves.assign(run=index))
         parts.append(pd.concat(rows).assign(panel=boundary))
@@ -93,34 +94,34 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
-    """The runs of one boundary, with the colour and the line style of each."""
+    """Return the runs of one boundary condition, each with a colour and a line style."""
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
-    styled = runs[STYLED[boundary]]
-    styles = dict(zip(np.sort(styled.unique()), STYLES, strict=False))
+    styled = runs[STYLED_COLUMN[boundary]]
+    styles = dict(zip(np.sort(styled.unique()), LINE_STYLES, strict=False))
     colours = [*style.colour(LEVEL_COLUMNS[boundary], runs["left"])]
     return runs.assign(colour=colours, dashes=styled.map(styles))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
-    """Draw a field of the pulses of one boundary: simulated ones pale, exact ones thin."""
+    """Draw a field of the pulses of one boundary condition: simulations pale, exact pulses thin."""
     for run in styled_runs(table).itertuples():
         rows = table[table["run"] == run.run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
-        pale = PALE | {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
+        pale = SIMULATION_LOOK | {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
         axes.plot(simulated["x"], simulated[field], gid=f"simulation {run.run}", **pale)
         axes.plot(exact["x"], exact[field], run.dashes, color=run.colour, gid=f"exact {run.run}")
     boundary = table["panel"].iloc[0]
-    axes.set(xlabel=DISTANCE[boundary], ylabel=FIELDS[field][boundary])
+    axes.set(xlabel=DISTANCE_LABELS[boundary], ylabel=FIELDS[field][boundary])
 
 
 def plot_fields(table: pd.DataFrame) -> Figure:
-    """Draw figures 8 and 9: the three fields of the pulses of one boundary."""
+    """Draw figure 8 or 9: the three fields of the pulses of one boundary condition."""
     figure, panels = style.new_panels(PAGE_WIDTH, 2.8, "abc")
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
     panels[1].set_title(title(table), loc="center")
     if table["panel"].iloc[0] == "displacement":
-        # The undamped lattice rings beyond the theory at the front.
+        # The undamped lattice oscillates at the front with a larger amplitude than theory has.
         panels[2].set_ylim(-1.3, 1.3)
     else:
         # The inset stands where slip and velocity are small.
@@ -132,20 +133,20 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
-    """Legend entries of one boundary: the colours, the line styles and the simulation."""
+    """Return the legend entries of one boundary condition: colours, line styles, simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
-    level, styled = SYMBOLS[LEVEL_COLUMNS[boundary]], STYLED[boundary]
+    level, styled = SYMBOLS[LEVEL_COLUMNS[boundary]], STYLED_COLUMN[boundary]
     entries = []
     for run in runs.drop_duplicates("left").sort_values("left").itertuples():
         entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
     for _, run in runs.drop_duplicates(styled).sort_values(styled).iterrows():
         name = f"exact, ${SYMBOLS[styled]} = {run[styled]:g}$"
         entries.append(entry(name, color=BLACK, linestyle=run["dashes"]))
-    return [*entries, entry("simulation", color=BLACK, **PALE)]
+    return [*entries, entry("simulation", color=BLACK, **SIMULATION_LOOK)]
 
 
 def title(table: pd.DataFrame) -> str:
-    """Title that names the boundary of the runs, and gamma or b, which their looks do not tell."""
+    """Return a title with the boundary condition, and with gamma or b, which no style shows."""
     held = table["panel"].iloc[0] == "displacement"
     column = "gamma" if held else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
@@ -153,7 +154,10 @@ def title(table: pd.DataFrame) -> str:
 
 
 def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> None:
-    """Draw the pre-stress of coloured runs in an inset, to some widths of the widest Gaussian."""
+    """Draw the pre-stress of coloured runs in an inset.
+
+    ``widths`` is the half-length of its axis, in widths of the widest Gaussian.
+    """
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     # Tables of pre-stress without a Gaussian have no width.
     runs = runs[np.isfinite(runs["width"])]
@@ -162,6 +166,6 @@ def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> N
         tau = Prestress(run.left, run.right, run.width)(x)
         inset.plot(x, tau, color=run.colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
-    # Room between the peak and the title.
+    # Leave room between the peak and the title.
     inset.margins(y=0.12)
     inset.set_xlabel("$x$", fontsize=SMALL_TEXT, labelpad=0.0)

@@ -1,4 +1,4 @@
-"""Arrows and labels of a sketch."""
+"""Draw arrows and labels of a sketch."""
 
 from typing import Any
 
@@ -8,9 +8,9 @@ from matplotlib.patches import FancyArrowPatch
 from slippulse.plotting.style import BLACK, Look
 
 Point = tuple[float, float]
-# An arrow with two heads, as a dimension has them.
-BOTH: Look = {"arrowstyle": "<|-|>"}
-MUTED = "0.25"
+# An arrow with a head at each end, for a dimension.
+TWO_HEADS: Look = {"arrowstyle": "<|-|>"}
+MUTED_GREY = "0.25"
 
 
 def arrow(axes: Axes, start: Point, end: Point, colour: str, **look: Any) -> None:
@@ -20,6 +20,6 @@ def arrow(axes: Axes, start: Point, end: Point, colour: str, **look: Any) -> Non
 
 
 def label(axes: Axes, x: float, y: float, text: str, colour: str = BLACK, **look: Any) -> None:
-    """Write a text, centred unless ``look`` says otherwise."""
+    """Write a text, centred unless ``look`` has another alignment."""
     centred: Look = {"ha": "center", "va": "center", "fontsize": 9.0}
     axes.text(x, y, text, color=colour, **centred | look)

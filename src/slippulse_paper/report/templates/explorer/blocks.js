@@ -1,12 +1,12 @@
-// The layer at a time: blocks and springs at the positions of the map. Blocks that slide have the
-// colour of their slip velocity.
+// Draw the layer at one time, as blocks and springs at the positions of the map. Blocks that slide
+// have the colour of their slip velocity.
 
-// Pixels from block to block, of a block and of a spring.
+// Distance between blocks, and size of a block, in pixels.
 const SPACING = 18;
 const BLOCK = { height: 9, width: 18 };
 const WAITS = { slip: 0, velocity: 0, state: "waits" };
 
-// Slip, slip velocity and state at a time of one column of the map.
+// Return slip, slip velocity and state of one column of the map at a time.
 function columnAt({ start, stick, stop, times, values, slips }, time) {
   if (time <= start) return WAITS;
   if (time >= stick) return { slip: slips.at(-1), velocity: 0, state: "stuck" };
@@ -17,7 +17,7 @@ function columnAt({ start, stick, stop, times, values, slips }, time) {
   return { slip: mean(slips), velocity: mean(values), state: "slides" };
 }
 
-// The same between two columns, as the nearer one has it in its state.
+// Return the same for a block between two columns: interpolated numbers, and the nearer state.
 function blockAt(found, x, time) {
   const position = (x - found[0].y) / (found[1].y - found[0].y);
   if (position < 0 || position > found.length - 1) return WAITS;
@@ -43,7 +43,8 @@ function drawBlocks({ scene, map: found }, time) {
   const { left, right, top, bottom } = picture.box;
   const [low, high] = view.reach;
   const middle = 0.5 * (left + right) - (scene.gamma > 0 ? 8 : 0);
-  // Strains are up to about the largest slip velocity, so that no block meets another.
+  // The largest strain is about the largest slip velocity, so that with this scale no blocks
+  // overlap.
   const scale = 0.4 / view.largest;
   const count = Math.floor((bottom - top) / SPACING);
   const blocks = Array.from({ length: count }, (_, k) => {
@@ -70,7 +71,7 @@ function shadeOf(velocity) {
   return COLOURS[Math.min(k, COLOURS.length - 1)];
 }
 
-// A zigzag of four turns between two heights.
+// Return a zigzag line with four turns between two heights.
 function coil(x, from, to) {
   const height = (part) => (from + part * (to - from)).toFixed(1);
   const sides = [4, -4, 4, -4];

@@ -1,4 +1,4 @@
-// Pictures as SVG: axes, curves, and the map of slip velocity as an image between them.
+// Draw pictures as SVG: axes, curves, and the map of slip velocity as an image.
 
 function format(value, digits = 4) {
   if (value === null || !Number.isFinite(value)) return "–";
@@ -6,7 +6,7 @@ function format(value, digits = 4) {
   return (Math.abs(short) >= 1e5 ? short.toExponential() : String(short)).replace("-", "−");
 }
 
-// Round values inside a range, about this many.
+// Return about `count` round values inside a range.
 function ticks(low, high, count = 5) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -16,7 +16,8 @@ function ticks(low, high, count = 5) {
   return Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step);
 }
 
-// A picture with axes, as wide as the page leaves it so that its letters keep their size.
+// A picture with axes. It is drawn at the width that the page leaves it, so that text keeps its
+// size.
 class Picture {
   constructor(element, {
     x,
@@ -32,7 +33,7 @@ class Picture {
   }) {
     Object.assign(this, { element, height, ranges: [x, y] });
     element.picture = this;
-    // Asked once a width of the page, since the answer waits for all that was drawn before.
+    // Measured once for each page width, since measuring forces the browser to finish its layout.
     element.room ||= element.getBoundingClientRect().width;
     this.width = Math.max(element.room, 40);
     this.box = { left: before, right: this.width - 10, top: above, bottom: height - 42 };
@@ -59,7 +60,7 @@ class Picture {
       + `<text ${beside} text-anchor="middle">${labels[1]}</text>`;
   }
 
-  // What the (even) axes say where the pointer is.
+  // Return the position of the pointer in the units of the axes, which must be linear.
   valuesAt({ clientX, clientY }) {
     const place = this.element.getBoundingClientRect();
     const { left, right, top, bottom } = this.box;
@@ -71,7 +72,7 @@ class Picture {
     });
   }
 
-  // Points in pixels, as text: `within` parts the two numbers of a point, `between` the points.
+  // Return points in pixels as text, with one separator within a point and one between points.
   pixels(points, within, between) {
     const rounded = points.map(([x, y]) => [this.x(x).toFixed(1), this.y(y).toFixed(1)]);
     return rounded.map((pair) => pair.join(within)).join(between);
@@ -90,14 +91,14 @@ class Picture {
     this.inside.push(`<circle class="${kind}" cx="${this.x(x)}" cy="${this.y(y)}" r="${radius}"/>`);
   }
 
-  // A symbol with its subscript after "_" set as one.
+  // Write a text, with what follows "_" as a subscript.
   write(x, y, text, anchor = "start") {
     const subscript = '<tspan dy="4" font-size="9">$1</tspan><tspan dy="-4"></tspan>';
     const set = text.replace(/_(\w+)/g, subscript);
     this.outside += `<text class="over" x="${x}" y="${y}" text-anchor="${anchor}">${set}</text>`;
   }
 
-  // An image between two corners of the axes, cut along an outline.
+  // Place an image between two corners of the axes, clipped to an outline.
   image(address, [x0, x1], [y0, y1], outline) {
     const [left, right, top, bottom] = [this.x(x0), this.x(x1), this.y(y1), this.y(y0)];
     const corners = this.pixels(outline, ",", " ");
@@ -106,10 +107,10 @@ class Picture {
       + ` height="${bottom - top}" preserveAspectRatio="none" clip-path="url(#outline)"/>`);
   }
 
-  // A scale of colours above the axes.
+  // Draw a colour scale above the axes.
   scale(colours, text) {
     const { left, right } = this.box;
-    // On a phone there must be room for the text.
+    // The scale is narrower on a phone, where the text needs the room.
     const wide = Math.min(128, 0.25 * (right - left)) / 64;
     this.outside += Array.from({ length: 64 }, (_, k) => {
       const colour = colours[Math.floor(colours.length * k / 64)];
@@ -119,7 +120,7 @@ class Picture {
     this.write(left + 64 * wide + 8, 15, text);
   }
 
-  // Show it, below what changes with the moment; what it says is its alternative text.
+  // Show the picture with an alternative text. An empty group takes what changes with time.
   show(text) {
     const { left, right, top, bottom } = this.box;
     const clip = `clip-${this.element.id}`;
@@ -132,8 +133,8 @@ class Picture {
   }
 }
 
-// At even positions between the fronts of a time: arrival, times, slip velocities and slips from
-// there on, and the end of sliding.
+// Return columns at evenly spaced positions between the fronts at the end: arrival, the times, slip
+// velocities and slips after it, and the end of sliding.
 function columns(rupture, end, count = 121) {
   const [low, high] = rupture.fronts(end);
   const half = (count - 1) / 2;
@@ -151,7 +152,7 @@ function columns(rupture, end, count = 121) {
   return found;
 }
 
-// Slip at each time of a history of slip velocity.
+// Return the slip at each time of a history of slip velocity.
 function sums(times, values) {
   let slip = 0;
   return times.map((time, k) => {
@@ -160,8 +161,8 @@ function sums(times, values) {
   });
 }
 
-// The columns as an image, time to the right and position upward; a few pixels beyond where
-// anything slides.
+// Return the columns as an image, with time to the right and position upwards. It reaches a few
+// pixels beyond the points that slide.
 function velocityImage(found, end, largest, colours, pixels = 300) {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [pixels, found.length];
@@ -171,7 +172,8 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
   const margin = 6 * end / pixels;
   found.forEach(({ start, stop, times, values }, k) => {
     let m = 0;
-    // As far as the outline reaches towards the neighbours.
+    // The outline is a line to the neighbouring columns, so that it covers part of their times,
+    // too.
     const beside = [found[k - 1], found[k + 1]].filter(Boolean);
     const first = Math.min(start, ...beside.map((column) => column.start)) - margin;
     const last = Math.max(stop, ...beside.map((column) => column.stop)) + margin;
@@ -179,7 +181,7 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
       const time = (n + 0.5) * end / pixels;
       if (time < first || time > last) continue;
       while (m < times.length - 2 && times[m + 1] < time) m++;
-      // A block that sticks where it is released has one time twice.
+      // A block that sticks at once has the same time twice.
       const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m] || 1), 0), 1);
       const value = times.length > 1 ? values[m] + fraction * (values[m + 1] - values[m]) : 0;
       const shade = Math.floor(colours.length * Math.max(value, 0) / largest);
@@ -191,7 +193,7 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
   return canvas.toDataURL();
 }
 
-// Colours between those given, so that none ends where another begins.
+// Interpolate between the given colours, so that no steps are visible.
 function smoothed(colours, count = 256) {
   return Array.from({ length: count }, (_, n) => {
     const position = (colours.length - 1) * n / (count - 1);

@@ -1,8 +1,8 @@
-// The front law: the speed v of a front into pre-stress tau at b = beta/dx, from a table of
-// ln(tau/(1 - tau)).
+// The front law: the speed v of a front that runs into pre-stress tau at b = beta/dx, interpolated
+// from a table of ln(tau/(1 - tau)).
 
-// A table of numbers on an even grid, which begins at position 0, between its entries: six of them
-// around the position.
+// Interpolate a table on an evenly spaced grid that begins at position 0, from the six entries
+// around a position.
 function between(values, position) {
   const first = Math.min(Math.max(Math.floor(position) - 2, 0), values.length - 6);
   let sum = 0;
@@ -14,8 +14,8 @@ function between(values, position) {
   return sum;
 }
 
-// First index k with values[k] <= target < values[k + 1], for rising values (falling ones with
-// sign -1).
+// Return the index k with values[k] <= target < values[k + 1], for rising values, or for falling
+// values with sign -1.
 function cell(values, target, sign = 1) {
   let low = 0;
   let high = values.length - 1;
@@ -27,18 +27,19 @@ function cell(values, target, sign = 1) {
   return low;
 }
 
-// A cubic from the values and slopes at the ends of an interval of a length, at a fraction of it.
+// Return the cubic with given values and slopes at the ends of an interval, at a fraction of its
+// length.
 function hermite(fraction, length, value0, value1, slope0, slope1) {
   const rest = 1 - fraction;
   return rest * rest * ((1 + 2 * fraction) * value0 + fraction * length * slope0)
     + fraction * fraction * ((1 + 2 * rest) * value1 - rest * length * slope1);
 }
 
-// Laws that were asked for, since they take longer to make than to use.
+// Laws that were computed before. Computing one takes longer than using it.
 const LAWS = new Map();
 
-// 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release
-// rule.
+// Return 1/v as a function of 1 - tau at one b and release rule. The argument is 1 - tau because
+// tau itself would lose digits near the peak.
 function frontLaw(table, ratio, release) {
   const key = `${release} ${ratio}`;
   if (!LAWS.has(key)) LAWS.set(key, makeLaw(table, ratio, release));
@@ -55,7 +56,7 @@ function makeLaw(table, ratio, release) {
     const column = table[release].map((row) => row[k]);
     level.push(between(column, position));
   }
-  // d ln(v - 1) / d level at the inner nodes, from five of them.
+  // The derivative of ln(v - 1) by level at the inner nodes, from five neighbouring nodes.
   const slope = level.map((_, k) => 12 * step
     / (level[k - 2] - 8 * level[k - 1] + 8 * level[k + 1] - level[k + 2]));
   const inner = level.slice(2, -2);

@@ -1,13 +1,13 @@
-// The time and position that are read off and drawn: sliders and a click on the map set them, and
-// play moves the time.
+// The time and position at which the page reads off numbers and draws blocks. Sliders and a click
+// on the map set them, and the play button advances the time.
 
-// Seconds that play takes for the whole map, and that a picture stays for a reader who wants little
-// motion.
+// Seconds that playing the whole map takes, and seconds for which each picture stays if the reader
+// has asked for reduced motion.
 const [WHOLE, STILL] = [8, 0.5];
 const LITTLE_MOTION = matchMedia("(prefers-reduced-motion: reduce)");
-// Fractions of the map: play begins anew from its end.
+// Time and position as fractions of the map. Playing starts again from the beginning at its end.
 const moment = { time: 1, place: 0.5 };
-// Time and position under the pointer.
+// Return time and position under the pointer.
 let pointed = null;
 let playing = false;
 
@@ -16,12 +16,12 @@ function momentOf(scene) {
   return { time: moment.time * scene.end, x: low + (high - low) * moment.place };
 }
 
-// What is known of a point of the map, in words.
+// Describe a point of the map in words.
 function reading({ scene, rupture, known }, time, x) {
   const start = `t = ${format(time, 3)}, x = ${format(x, 3)}: `;
   const stress = `Pre-stress ${format(Number(prestressAt(scene, x).toFixed(3)))}.`;
   if (!(time > rupture.arrival(x))) return `${start}not yet released. ${stress}`;
-  if (!known(x, time)) return `${start}not known, see below the map.`;
+  if (!known(x, time)) return `${start}unknown; the text below the map has the reason.`;
   const { times, values, stick } = rupture.history(x, time);
   const slip = format(sums(times, values).at(-1), 3);
   const state = stick <= time ? `stuck again since t = ${format(stick, 3)}`
@@ -39,17 +39,17 @@ function drawMoment() {
   const probe = `<circle class="probe" cx="${picture.x(time)}" cy="${picture.y(x)}" r="6"/>`;
   picture.element.querySelector(".moment").innerHTML = line + probe;
   drawBlocks(shown, now.time);
-  const said = at("reading");
-  // A reader of screens hears what was set, not what passes by.
-  said.setAttribute("aria-live", playing || pointed ? "off" : "polite");
-  said.textContent = reading(shown, time, x);
+  const output = at("reading");
+  // A screen reader announces what was set, but not what changes while it plays.
+  output.setAttribute("aria-live", playing || pointed ? "off" : "polite");
+  output.textContent = reading(shown, time, x);
   for (const [name, value] of [["time", now.time], ["place", now.x]]) {
     at(name).value = Math.round(1000 * moment[name]);
     at(name).setAttribute("aria-valuetext", format(value, 3));
   }
 }
 
-// Seconds since the last picture move the time on.
+// Advance the time by the seconds since the last picture.
 function play(before, now) {
   if (!playing) return;
   const seconds = (now - before) / 1000;

@@ -1,17 +1,17 @@
-// The page: what the sliders and the address say, the rupture that follows, and how it is shown.
+// Read the settings from sliders and address, compute the rupture, and update the page.
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const COLOURS = smoothed(DATA.colours);
 const at = (id) => document.getElementById(id);
 const NAMES = ["beta", "dx", "left", "right", "width", "gamma", "alpha", "end"];
 const SLIDERS = Object.fromEntries(NAMES.map((name) => [name, at(name)]));
-// Exact values: a slider has steps between which a preset, a typed number or a run may lie.
+// The exact values. A preset, a typed number or a run may lie between two steps of a slider.
 const settings = { release: "total", held: true };
-// What the axes and colours reach, which only `fit` changes.
+// The ranges of axes and colours, which only `fit` changes.
 let view = null;
-// The fronts before the last move.
+// The fronts before the last change.
 let ghost = null;
-// What was shown last.
+// The rupture that is shown.
 let shown = null;
 let moving = false;
 let compared = null;
@@ -44,23 +44,25 @@ function note(name) {
   SLIDERS[name].setAttribute("aria-valuetext", format(settings[name]));
 }
 
-// How b and the front speed have changed since a reference with the same pre-stress on the right.
+// Describe how b and the front speed have changed from a reference with equal pre-stress on the
+// right.
 function changeSince(reference, { scene, exact }) {
   const [ratio, speed] = [format(scene.ratio), format(exact.speed)];
   if (Math.abs(exact.speed / reference.exact.speed - 1) <= 5e-5) {
-    return `b is still ${ratio}, and nothing has changed: v = ${speed}.`;
+    return `b is still ${ratio}, so the front speed is unchanged: v = ${speed}.`;
   }
   const [ratioThen, speedThen] = [format(reference.scene.ratio), format(reference.exact.speed)];
   return `b went from ${ratioThen} to ${ratio}, and v from ${speedThen} to ${speed}.`;
 }
 
-// The speed of the right front, and where the left one is if it is slower than the waves.
+// Describe the right front by its speed, and the left one by its position if it is slower than
+// waves.
 function aboutFronts({ scene, exact, rupture }) {
   const sentences = [];
   if (scene.right > 0) {
     const [speed, paper] = [format(exact.speed), format(paperSpeed(scene.right))];
     sentences.push(`At b = ${format(scene.ratio)} the right front runs at v = ${speed},`
-      + ` where the paper’s formula, b = 0, says ${paper}.`);
+      + ` where the paper’s formula, for b = 0, gives ${paper}.`);
   }
   const { slow } = rupture.left;
   if (slow) {
@@ -79,8 +81,8 @@ function report(found, reference) {
 
 let waiting = 0;
 
-// Draw what is set at the next frame, with new axes if they shall fit it, and compare it with a
-// reference.
+// Draw the rupture at the next frame, with axes fitted to it if wanted, and compare it with a
+// reference if there is one.
 function redraw({ fitted = false, reference = null } = {}) {
   cancelAnimationFrame(waiting);
   compared = reference;
@@ -106,20 +108,20 @@ function redraw({ fitted = false, reference = null } = {}) {
   });
 }
 
-// A browser refuses an address that changes with every picture of a drag.
+// Called at the end of a drag, because browsers limit how often the address may change.
 function keepAddress() {
   const words = [...NAMES, "release", "held"].map((name) => `${name}=${settings[name]}`);
   history.replaceState(null, "", `#${words.join("&")}`);
 }
 
-// Keep the fronts that are shown as the ghost of what follows.
-function haunt() {
+// Keep the fronts that are shown, to draw them behind the next rupture.
+function keepFronts() {
   ghost = shown && shown.fronts;
 }
 
-// Set some settings at once.
+// Change several settings at once.
 function choose(values, options = {}) {
-  haunt();
+  keepFronts();
   for (const name of NAMES) {
     if (Number.isFinite(values[name])) set(name, values[name]);
   }
@@ -142,7 +144,7 @@ for (const name of NAMES) {
   const [slider, typed] = [SLIDERS[name], at(`${name}-typed`)];
   set(name, Number(slider.dataset.start));
   slider.addEventListener("input", () => {
-    if (!moving) haunt();
+    if (!moving) keepFronts();
     moving = true;
     change(name, valueOf(slider));
     note(name);
@@ -154,7 +156,7 @@ for (const name of NAMES) {
   typed.addEventListener("change", () => {
     const [low, high] = ends(slider);
     const value = Math.min(Math.max(Number(typed.value), name === "beta" ? 0 : low), high);
-    haunt();
+    keepFronts();
     set(name, Number.isFinite(value) ? value : settings[name]);
     change(name, settings[name]);
   });
@@ -171,7 +173,7 @@ for (const input of document.querySelectorAll("[name=release], [name=held]")) {
 for (const preset of document.querySelectorAll("[data-scene]")) {
   preset.addEventListener("click", () => {
     const values = JSON.parse(preset.dataset.scene);
-    // The story compares with what was shown, other scenes have axes of their own.
+    // Steps of the tour are compared with the rupture before. Other scenes get fitted axes.
     choose(values, preset.dataset.story ? { reference: shown } : { fitted: true });
     if (!preset.dataset.story) ghost = null;
   });

@@ -1,5 +1,5 @@
-// The pictures: the map of slip velocity, the pulse behind the right front, and the front speed
-// against b.
+// Draw the map of slip velocity, the pulse behind the right front, and the front speed as a
+// function of b.
 
 const RATIO_TICKS = [0, 0.1, 1];
 
@@ -7,7 +7,7 @@ function frontsOf(found) {
   return found.map(({ y, start }) => [start, y]);
 }
 
-// The map, the pre-stress and the blocks are as high as leaves the settings in view.
+// Return the height of map, pre-stress and blocks, which leaves the settings in view.
 function mapHeight() {
   return Math.max(220, Math.min(innerWidth < 960 ? 0.34 * innerHeight : 0.62 * innerHeight, 560));
 }
@@ -59,7 +59,7 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
     map.write(map.x(time) + 9, map.y(x) + (sign > 0 ? 14 : -6), `stops at x = ${format(x)}`);
   }
   map.scale(COLOURS, `slip velocity, 0 to ${format(view.largest, 3)}`);
-  const ending = sticks ? `first sticks at time ${format(exact.transitionTime)}` : "sticks nowhere";
+  const ending = sticks ? `first sticks at time ${format(exact.transitionTime)}` : "does not stick";
   const state = [`The rupture ${ending}${sticks ? "" : ` until t = ${format(end)}`}.`];
   if (pulse && steady && deviates(pulse, steady)) {
     state.push("The pulse is not yet steady at the end of the map.");
@@ -67,7 +67,7 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
     state.push("α is beyond αc: no pulse is steady, and the part that slides becomes ever wider.");
   }
   if (limits.length) {
-    state.push("Blank wedges: not known,"
+    state.push("Blank wedges: unknown,"
       + " since the trailing edge there becomes slower than the waves.");
   }
   at("state").textContent = state.join(" ");
@@ -126,7 +126,7 @@ function drawSpeeds({ scene, exact }) {
   const paper = paperSpeed(tau);
   const runs = DATA.runs.map(runOf).filter((run) => run.release === scene.release
     && run.speed !== null && Math.abs(run.left - tau) < 0.02);
-  // Always as high as 5, on a logarithmic axis, so that it stands still.
+  // The logarithmic axis always ends at 5, so that it does not move.
   const picture = new Picture(at("speeds"), {
     x: [0, DATA.largest_ratio],
     y: [0, Math.log(5)],
@@ -145,6 +145,6 @@ function drawSpeeds({ scene, exact }) {
   picture.curve(logs(speeds(scene.release)), "exact");
   const speed = scene.right > 0 ? exact.speed : exact.speedLeft;
   picture.dot(scene.ratio, Math.log(speed), "here");
-  picture.show(`Front speed against b: ${format(speed)} at b = ${format(scene.ratio)},`
-    + ` where the paper's formula says ${format(paper)}.`);
+  picture.show(`Front speed as a function of b: ${format(speed)} at b = ${format(scene.ratio)},`
+    + ` where the paper's formula gives ${format(paper)}.`);
 }

@@ -1,6 +1,6 @@
-// The pre-stress beside the map, as in the figures of the paper; its levels are dragged.
+// Draw the pre-stress beside the map, as in the figures of the paper, and let the pointer drag it.
 
-// Levels that can be dragged, as those of the sliders.
+// The range of levels, which is that of the sliders.
 const LEVELS = { low: -0.95, high: 0.95 };
 
 function prestressAt({ left, right, width }, x) {
@@ -24,7 +24,7 @@ function drawPrestress({ scene }) {
   picture.show(`Pre-stress, ${levels}, 1 at x = 0. The sliders of the pre-stress move it too.`);
 }
 
-// Let the pointer drag the level of the side on which it went down.
+// Let the pointer drag the level on the side where it was pressed.
 function makeDraggable(element) {
   let name = null;
   const drag = (event) => {
@@ -44,7 +44,7 @@ function makeDraggable(element) {
     event.preventDefault();
     element.setPointerCapture(event.pointerId);
     name = element.picture.valuesAt(event)[1] < 0 ? "left" : "right";
-    haunt();
+    keepFronts();
     moving = true;
     drag(event);
   });

@@ -1,14 +1,15 @@
-// The simulated run that is nearest to the settings, beside the exact solution there.
+// Show the simulated run that is nearest to the settings, beside the exact solution of that run.
 
-// A run is near at less than this `distance`.
-const NEAR = 1;
+// A run is shown only if its `distance` is below this.
+const MAX_DISTANCE = 1;
 
-// A run of the data by names.
+// Return a run of the data with its values by name.
 function runOf([left, gamma, width, beta, ratio, release, speed, time, length, slip]) {
   return { left, right: left, gamma, width, beta, ratio, release, speed, time, length, slip };
 }
 
-// How far a run is from a scene: 1 is a tenth in the levels, or a factor e in another setting.
+// Return how far a run is from a scene. A distance of 1 is a difference of 0.1 in the levels, or a
+// factor e in another setting.
 function distance(run, scene) {
   return 10 * Math.abs(run.left - scene.left) + 10 * Math.abs(run.left - scene.right)
     + Math.abs(Math.log(run.gamma / scene.gamma)) + Math.abs(Math.log(run.width / scene.width))
@@ -28,7 +29,7 @@ const EXACT = new Map();
 
 function showNearest(scene) {
   const [run, far] = DATA.runs.map((row) => [row, distance(runOf(row), scene)])
-    .reduce((best, found) => (found[1] < best[1] ? found : best), [null, NEAR]);
+    .reduce((best, found) => (found[1] < best[1] ? found : best), [null, MAX_DISTANCE]);
   const absent = run === null || scene.gamma === 0;
   at("runs").classList.toggle("absent", absent);
   if (absent) return;
@@ -50,7 +51,7 @@ function showNearest(scene) {
     const other = Math.abs(there - here) > 1e-9 ? ` (here ${format(here)})` : "";
     return `${name} = ${format(there)}${other}`;
   });
-  const nearness = far < 1e-9 ? "these very settings." : "not these settings, but near.";
+  const nearness = far < 1e-9 ? "exactly these settings." : "close to these settings.";
   at("nearest").textContent = `${words.join(", ")}, rule “${named.release}”: ${nearness}`;
   at("visit").onclick = () => {
     const dx = named.ratio > 0 ? named.beta / named.ratio : settings.dx;

@@ -1,16 +1,16 @@
-// The rupture that the settings describe, the formulas of the paper for it, and all that is said
-// of it.
+// Compute the rupture that the settings describe, the paper's formulas for it, and the numbers
+// shown.
 
-// A pulse is steady within this of its limit.
+// A pulse counts as steady if it deviates from its limit by less than this.
 const STEADY = 0.01;
 
-// The scene that the settings describe.
+// Return the scene that the settings describe.
 function sceneOf({ left, right, gamma, width, release, beta, dx, alpha, end, held }) {
   const ratio = Math.min(beta / dx, DATA.largest_ratio);
   return { left, right, gamma: held ? gamma : 0, width, release, beta, ratio, alpha, end };
 }
 
-// The front speed of the paper's formula, which holds at b = 0.
+// Return the front speed by the paper's formula, which holds at b = 0.
 function paperSpeed(tau) {
   return 1 / Math.sqrt(1 - tau * tau);
 }
@@ -20,8 +20,8 @@ function paperPulse(tau, gamma) {
   return { width, slip: 2 * tau / gamma, peak: 1 / Math.sqrt(gamma) };
 }
 
-// Int tau dx from a position on to the right, as far as the Gaussian reaches, and where it
-// vanishes: x_minus.
+// Return x_minus, the position from which the integral of tau to the right vanishes, and the
+// largest slip velocity far away.
 function balance(scene) {
   const { left, width } = scene;
   const zero = -width * Math.sqrt(2 * Math.log((1 - left) / -left));
@@ -36,15 +36,16 @@ function balance(scene) {
   return { x, peak: 0.5 * ahead };
 }
 
-// The exact rupture and everything that is said of it; `steady` is null where no pulse is, and
-// `known` tells where the construction holds: nothing is said of the future of a trailing edge that
-// is slower than the waves.
+// Return the exact rupture and everything that the page shows of it. `steady` is null if there is
+// no steady pulse. `known` is true where the construction holds, which excludes the future of a
+// trailing edge that is slower than the waves.
 function solve(scene) {
   const rupture = new Rupture(scene, DATA.law);
   const map = columns(rupture, scene.end);
   const exact = rupture.transition(map);
   const pairs = map.flatMap((column, k) => [1, -1].map((sign) => [column, map[k + sign], sign]));
-  // The trailing edge runs on to the next column, away from the first sticking, slower than waves.
+  // True if the trailing edge reaches the next column, away from the first stick, slower than
+  // waves.
   const slower = ([{ y, stick }, next, sign]) => next && next.start < next.stop
     && Number.isFinite(stick) && sign * (y - exact.firstStick) >= 0
     && Math.min(next.stick, scene.end) - stick > 1.02 * Math.abs(next.y - y);
@@ -67,7 +68,7 @@ function deviates(pulse, steady) {
   return Math.max(deviation("width"), deviation("slip")) > STEADY;
 }
 
-// Rows of what is exact and what the paper's formulas say.
+// Return the rows of the table: a label, the exact number, and the number of the paper's formula.
 function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
   const { left, right, gamma, alpha, end } = scene;
   const rows = [];
@@ -107,7 +108,7 @@ function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
   return rows;
 }
 
-// Axes for a rupture: as far as it gets until the end of the map.
+// Return axis ranges that cover a rupture until the end of the map.
 function fit({ scene, rupture, paper, steady, map: found }) {
   const peak = Math.max(...found.flatMap(({ values }) => values), 1e-9);
   const slip = Math.max(...found.map(({ slips }) => slips.at(-1)));

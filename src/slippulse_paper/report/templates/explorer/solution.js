@@ -1,13 +1,13 @@
 // The exact rupture in the continuum limit dx -> 0 at fixed b = beta/dx, held (gamma > 0) or under
-// a stress (gamma = 0), with a term -alpha du/dt of friction that strengthens (alpha > 0) or
-// weakens with slip rate.
+// a stress (gamma = 0), with a friction term -alpha du/dt, which strengthens with slip rate if
+// alpha > 0 and weakens if alpha < 0.
 //
-// Where tau > 0 fronts are at t = T(x), the integral of 1/v(tau, b). Behind them
+// Where tau > 0, the fronts are at t = T(x), the integral of 1/v(tau, b). Behind them
 //   du/dt = 1/2 Int tau(x) exp(-alpha late/2) J0( k sqrt(late^2 - (x - y)^2) ) dx
 // over the past of (y, t), with late = t - T(x) and k^2 = gamma - alpha^2/4, and y sticks at the
-// first zero of du/dt. Where tau < 0 a front is slower than the waves and du/dt = 0 on it.
+// first zero of du/dt. Where tau < 0, a front is slower than the waves, and du/dt = 0 on it.
 
-// Nodes and weights of Gauss and Legendre on [-1, 1].
+// Return nodes and weights of Gauss-Legendre quadrature on [-1, 1].
 function gauss(count) {
   const nodes = [];
   for (let k = 0; k < count; k++) {
@@ -27,7 +27,7 @@ function gauss(count) {
 }
 
 const NODES = gauss(10);
-const FEW = gauss(4);
+const FOUR_NODES = gauss(4);
 const MANY = gauss(32);
 
 function integral(integrand, low, high, nodes = NODES) {
@@ -36,7 +36,7 @@ function integral(integrand, low, high, nodes = NODES) {
   return half * nodes.reduce((sum, node) => sum + part(node), 0);
 }
 
-// The root of a function between two points where its signs differ (secants that keep the bracket).
+// Return the root of a function between two points with different signs, by bracketed secants.
 function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
   const apart = () => Math.abs(high - low) > 1e-10 * (Math.abs(high) + Math.abs(low));
   for (let turn = 0; turn < 60 && apart(); turn++) {
@@ -50,8 +50,8 @@ function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
   return high;
 }
 
-// J0(sqrt z), for z < 0 I0(sqrt(-z)), tabulated with its slope by z: means over an angle, up to
-// |z| = 60^2.
+// J0(sqrt z), or I0(sqrt(-z)) for z < 0, and its derivative by z, tabulated up to |z| = 60^2. Both
+// are computed as means over an angle.
 const BESSEL = { step: 0.25, last: 3600, value: [], slope: [] };
 for (let z = -BESSEL.last; z <= BESSEL.last; z += BESSEL.step) {
   const root = Math.sqrt(Math.abs(z));
@@ -78,22 +78,23 @@ function bessel(z) {
     + f * f * ((1 + 2 * rest) * VALUES[k + 1] - 0.25 * rest * SLOPES[k + 1]);
 }
 
-// The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a
-// value. Its nodes reach as far as it outruns the waves; where tau < 0 `Rupture.march` adds more.
+// The front on one side: its arrival time T by distance from x = 0, and the distance at which T + x
+// or T - x has a given value. Its nodes cover the part where it outruns the waves. Where tau < 0,
+// `Rupture.march` adds more nodes.
 class Front {
   constructor(level, width, law) {
     Object.assign(this, { level, width, cells: 240 });
     this.rest = (x) => (1 - level) * (x < 8 * width ? -Math.expm1(-0.5 * (x / width) ** 2) : 1);
     this.slowness = level > 0 ? law(1 - level) : 1;
-    // The zero of tau, or where tau is its level.
+    // The zero of tau, or the distance at which tau has reached its level.
     this.extent = level < 0 ? width * Math.sqrt(2 * Math.log((1 - level) / -level)) : 7 * width;
     const slowness = (x) => law(this.rest(x));
-    // Nodes are denser near the peak, where the front is fastest.
+    // Nodes are denser near the peak of the pre-stress, where the front is fastest.
     this.x = Array.from({ length: this.cells + 1 }, (_, k) => this.extent * (k / this.cells) ** 2);
     this.slope = this.x.map(slowness);
     this.time = [0];
     for (let k = 0; k < this.cells; k++) {
-      this.time.push(this.time[k] + integral(slowness, this.x[k], this.x[k + 1], FEW));
+      this.time.push(this.time[k] + integral(slowness, this.x[k], this.x[k + 1], FOUR_NODES));
     }
     this.sums = {
       1: this.time.map((t, k) => t + this.x[k]),
@@ -120,7 +121,7 @@ class Front {
     return time[k] + (time[k + 1] - time[k]) * (x - at[k]) / (at[k + 1] - at[k]);
   }
 
-  // The distance x at which T + sign x has a value; with sign 0, at which T has it.
+  // Return the distance x at which T + sign x has a given value; with sign 0 at which T has it.
   where(sign, target) {
     const sums = this.sums[sign] || this.time;
     const direction = sign < 0 ? -1 : 1;
@@ -185,7 +186,7 @@ class Rupture {
     const sides = fronts.filter(([front]) => front.slow);
     const start = Math.min(...sides.map(([front]) => front.time[front.cells]));
     for (let n = 1; n <= count; n++) {
-      // Short steps first, where a front still runs at the speed of the waves.
+      // The first steps are short, since the front still runs at the speed of the waves.
       const time = start + (this.end - start) * (n / count) ** 1.5;
       for (const [front, sign] of sides) {
         const { slow } = front;
@@ -198,7 +199,7 @@ class Rupture {
           return this.velocity(sign * slow.x[last + 1], time);
         };
         slow.time.push(time);
-        // Secants from where it was, and from where it would be at its last speed.
+        // Secant iteration from the last position and from the position at the last speed.
         let [x0, rate0] = [from, rate(from)];
         if (rate0 <= 0) {
           slow.stopped = true;
@@ -229,7 +230,7 @@ class Rupture {
     return this.side(x).arrival(Math.abs(x));
   }
 
-  // Where the fronts are at a time: [left, right].
+  // Return the positions of both fronts at a time: [left, right].
   fronts(time) {
     return [-this.left.where(0, time), this.right.where(0, time)];
   }
@@ -239,7 +240,7 @@ class Rupture {
     const from = behind >= 0 ? -this.left.where(1, behind) : this.right.where(-1, behind);
     const to = ahead >= 0 ? this.right.where(1, ahead) : -this.left.where(-1, ahead);
     const { alpha, squared, breaks } = this;
-    // Without leaf springs and rate term the kernel is 1.
+    // Without leaf springs and rate term, the kernel is 1.
     const flat = alpha === 0 && squared === 0;
     // With a rate term the kernel changes like an exponential of alpha x, and with strong leaf
     // springs it oscillates too.
@@ -287,7 +288,7 @@ class Rupture {
     const longest = Math.min(0.06 * this.period, (until - start) / 24 + 1e-9);
     let step = longest * Math.max(Math.sqrt(1 - Math.min(slowness, 1) ** 2), 0.02);
     let time = start;
-    // What the positions of a slow front are off by.
+    // The error of the positions of a slow front.
     const error = front.slow && Math.abs(y) > front.extent ? 3e-4 * this.width : 0;
     let slid = false;
     while (time < until) {
@@ -299,13 +300,13 @@ class Rupture {
         const stick = before > 0 ? rootBetween(velocity, last, time, before, value) : last;
         return { times: [...times, stick], values: [...values, 0], stick };
       }
-      // Just behind a slow front velocities are as small as the error.
+      // Just behind a slow front, velocities are as small as the error.
       slid ||= value > 0;
       times.push(time);
       values.push(Math.max(value, 0));
       step = Math.min(1.15 * step, Math.max(longest, (time - start) / 24));
     }
-    // Where a front stops nothing slides.
+    // Nothing slides at the position where a front stops.
     if (!slid && front.slow?.stopped) {
       return { times: [start, start], values: [0, 0], stick: start };
     }
@@ -332,7 +333,7 @@ class Rupture {
     let step = sought[1].x - sought[0].x;
     const earlier = (least, next) => (next.time < least.time ? next : least);
     let best = sought.reduce(earlier, { x: 0, time: this.stick(0) });
-    // Parabolas through three neighbours.
+    // Fit a parabola to three neighbouring columns.
     for (let turn = 0; turn < 4 && Number.isFinite(best.time); turn++, step *= 0.35) {
       const [before, after] = [best.x - step, best.x + step].map((x) => this.stick(x));
       const bend = before - 2 * best.time + after;
@@ -396,7 +397,7 @@ function steadyPulse({ right: tau, gamma, beta, alpha = 0 }, speed) {
   };
 }
 
-// The rate term at which steady pulses end: q = 0 without damping.
+// Return the largest rate term with steady pulses, at which q = 0 without damping.
 function criticalRate(gamma, speed) {
   return 2 * Math.sqrt(gamma * (1 - 1 / (speed * speed)));
 }

@@ -1,0 +1,52 @@
+# ---
+# jupytext:
+#   text_representation:
+#     extension: .py
+#     format_name: percent
+# kernelspec:
+#   display_name: Python 3
+#   language: python
+#   name: python3
+# ---
+
+# %% [markdown]
+# # Stress held on top: a pulse needs a barrier
+#
+# The shear stress on top of the layer does not change, so that no spring pulls back what has
+# slipped. With equal pre-stress on both sides the rupture is a crack for ever. It turns into one
+# pulse if its left front is stopped, here by negative pre-stress.
+
+# %%
+import numpy as np
+
+import slippulse as sp
+
+scene = sp.Scene(
+    boundary="stress",
+    prestress=sp.Prestress(left=-1.0, right=0.0),
+    damping_ratio=0.1,
+    dx=0.05,
+    duration=20.0,
+)
+samples = sp.Samples(np.linspace(0, 20, 141), np.linspace(-6, 22, 281))
+run = sp.simulate(scene, samples)
+sp.plot(run)
+
+# %% [markdown]
+# The paper predicts where the left front stops: at the position $x_-$ up to which the integral of
+# the pre-stress from the right is zero. The front approaches this position ever more slowly, and
+# a lattice stops it at a finite time.
+
+# %%
+predicted = sp.theory.prestress_balance_position(scene.prestress)
+stopped = float(run["x"].where(np.isfinite(run["release_time"])).min())
+predicted, stopped
+
+# %% [markdown]
+# The same scene with 0.2 on both sides stays a crack:
+
+# %%
+from dataclasses import replace
+
+crack = sp.simulate(replace(scene, prestress=sp.Prestress(left=0.2, right=0.2)), samples)
+sp.measure(run)["regime"], sp.measure(crack)["regime"]
