@@ -18,7 +18,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from faults import processes_in, digests
+from faults import digests, processes_in
 from pipeline_copy import SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]

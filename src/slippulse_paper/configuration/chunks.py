@@ -1,8 +1,9 @@
 """Division of the runs of a sweep into chunks.
 
 The runs are dealt out in rounds, like cards: each chunk gets one run in each round. Neighbouring
-runs cost about the same, and so all chunks cost about the same. Each round begins with a random
-chunk, because otherwise one chunk could get all runs with one value of a list.
+runs cost about the same. Since they are in different chunks, all chunks cost about the same. Each
+round begins with a random chunk, because otherwise one chunk could get all runs with one value of a
+list.
 """
 
 import random
@@ -16,7 +17,7 @@ def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
     from 1, and runs from 0.
     """
     for number, first_run in enumerate(range(0, runs, chunks)):
-        # `random` is the only method that gives the same numbers in every version of Python.
+        # Only the method `random` is guaranteed to give the same numbers in every version of Python.
         first_chunk = int(chunks * random.Random(number).random())
         run = first_run + (chunk - 1 - first_chunk) % chunks
         if run < runs:
