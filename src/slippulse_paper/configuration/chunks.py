@@ -17,7 +17,7 @@ def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
     from 1, and runs from 0.
     """
     for number, first_run in enumerate(range(0, runs, chunks)):
-        # Only the method `random` is guaranteed to give the same numbers in every version of Python.
+        # Python only guarantees for `random` that every version gives the same numbers.
         first_chunk = int(chunks * random.Random(number).random())
         run = first_run + (chunk - 1 - first_chunk) % chunks
         if run < runs:
