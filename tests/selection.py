@@ -7,13 +7,18 @@ from slippulse_paper.configuration.resolve import resolve
 # A few points of each list are enough to draw.
 THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
 
+# Seeds of each ensemble of rough pre-stress.
+SEEDS = 12
+
 # Constants of studies in tests: the ends of lists, and runs that are long enough.
 SMALL_STUDIES = {
-    "barriers": {"LENGTHS": (0.95, 1.05)},
+    "barriers": {"RELATIVE_LENGTHS": (0.95, 1.05)},
     "friction_laws": {"LEVELS": (0.2, 0.5, 0.8), "DURATION": 28.0},
-    "front_law": {"SPACINGS": 5},
-    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
+    "front_law": {"SPACING_COUNT": 5},
+    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "OTHER_LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
     | {"FRACTURE_ENERGIES": (0.05, 0.42, 0.9)},
+    "rough_checks": {"GRID_SEEDS": 1, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
+    "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
         "DAMPING_RATIOS": {
             "total": (0.055, 0.075, 0.1, 0.135),
@@ -26,6 +31,9 @@ SMALL_STUDIES = {
 def small_sweep(config: dict, name: str) -> dict:
     """Resolve a simulation at preset draft, with the ends and a few between of each long list."""
     block = copy.deepcopy(config["simulations"][name])
+    for profile in block.get("profiles", []):
+        if isinstance(profile.get("rough", {}).get("seed"), list):
+            profile["rough"]["seed"] = profile["rough"]["seed"][:SEEDS]
     for key, count in THIN.items():
         values = block.get(key, [])
         if not name.startswith("regimes") and len(values) > count:

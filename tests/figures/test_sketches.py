@@ -46,7 +46,7 @@ def test_one_stress_goes_through_both_layers_of_the_damage_zone(draw):
     assert after[0][0] - before[0][0] == pytest.approx(damage_zone.SLIP)
     assert after[0][-1] == pytest.approx(before[0][-1])
     drop = (np.diff(before[0]) - np.diff(after[0]))[0]
-    closed = damage_zone.SLIP / (1.0 + damage_zone.STIFFNESS_RATIO * damage_zone.ROCK)
+    closed = damage_zone.SLIP / (1.0 + damage_zone.STIFFNESS_RATIO * damage_zone.ROCK_THICKNESS)
     assert drop == pytest.approx(closed)
     for symbol in (r"\delta", r"\hat u", "$H$", "$H_r$", "$G$", "G_r", "H + H_r"):
         assert symbol in texts(sketch)

@@ -8,7 +8,7 @@ from scipy.optimize import least_squares
 from slippulse.measurement.inference import chi_square_rise, infer_parameters, interpolate_fits
 from slippulse.model.prestress import Prestress
 from slippulse_paper.studies import published_figure as study_module
-from slippulse_paper.studies.published_figure import BETA, NEAR, LeftPanel
+from slippulse_paper.studies.published_figure import BETA, FIRST_GUESS, LeftPanel
 
 # How many readings are fitted: all, or all but the two arrows.
 READINGS = {"profile": 10, "arrows": 12}
@@ -54,7 +54,7 @@ def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release,
     def pulls(trial: np.ndarray) -> np.ndarray:
         return ((panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error)[fitted]
 
-    result = least_squares(pulls, NEAR, x_scale=NEAR, diff_step=0.01, xtol=1e-4)
+    result = least_squares(pulls, FIRST_GUESS, x_scale=FIRST_GUESS, diff_step=0.01, xtol=1e-4)
     assert 2.0 * result.cost == pytest.approx(best["chi2"], abs=0.05)
     assert result.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
     assert fits["best"]["chi2"] == min(fits["total"]["chi2"], fits["elastic"]["chi2"])

@@ -12,9 +12,9 @@ from scipy.special import chdtri
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse_paper.claims import rules
-from slippulse_paper.claims.choices import LAST, Combination, over_choices
+from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
-from slippulse_paper.claims.evidence import Evidence, agreeing, exponent
+from slippulse_paper.claims.evidence import Evidence, agreed_answers, exponent
 from slippulse_paper.claims.findings import findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
@@ -100,7 +100,7 @@ def estimated(
     """An estimate at one release rule and damping ratio, by the exact solution."""
     choice = {"release": release, "damping_ratio": ratio, "solution": "exact"} | others
     numbers = {"deviations": np.array([0.0]), "median": (deviation, uncertainty)}
-    claim = Approximate(tolerance=0.2, told={"reason": ""}, **numbers)
+    claim = Approximate(tolerance=0.2, template_values={"reason": ""}, **numbers)
     return Combination(choice, claim)
 
 
@@ -126,8 +126,8 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     claim = over_all(LENGTHS)
     assert (claim["verdict"], claim["choice"]) == (DEPENDS, "damping_ratio")
     assert (claim["holds_at"], claim["combinations"]) == (2, 4)
-    start = "1 runs. It holds at 2 of 4 combinations, with deviations up to 16 %, and"
-    assert claim["why"].startswith(f"{start} fails with 20 % or more.")
+    start = "1 runs. The claim holds at 2 of 4 combinations of open choices, with deviations up to"
+    assert claim["why"].startswith(f"{start} 16 %; at the others the deviation is 20 % or more.")
     sides = ("holds at 0 (13.6 %)", "fails at 0.058 (20.4 %)", "holds at elastic (15.6 %)")
     assert all(side in claim["why"] for side in (*sides, "total (23.5 %)"))
     flips = [("not reproduced", DEPENDS), (DEPENDS, "reproduced")]
@@ -136,12 +136,12 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     assert tolerances == pytest.approx([0.136, 0.235], rel=1e-3)
 
 
-def test_the_last_release_of_a_lattice_decides_nothing_and_is_told_beside(over_all):
-    last = [estimated(*known, fraction=LAST) for known in KNOWN_LENGTHS]
+def test_the_last_release_of_a_lattice_decides_nothing_and_is_reported(over_all):
+    last = [estimated(*known, fraction=LAST_RELEASE_FRACTION) for known in KNOWN_LENGTHS]
     claim = over_all(last)
     assert claim["verdict"] == DEPENDS and claim["choice"] == "" and "depends" not in claim["why"]
-    told = "With the last release, 4 of the combinations, it is off by 14 % to 24 %"
-    assert told in claim["why"] and "last release" not in over_all(LENGTHS)["why"]
+    reported = "There the deviation is 14 % to 24 %"
+    assert reported in claim["why"] and "last release" not in over_all(LENGTHS)["why"]
 
 
 def test_one_verdict_at_every_choice_is_the_verdict(over_all):
@@ -150,9 +150,12 @@ def test_one_verdict_at_every_choice_is_the_verdict(over_all):
     assert held["verdict"] == "reproduced" and held["why"] == "1 runs."
     assert over_choices(LENGTHS[0::2]).verdict() == "not reproduced"
     unsure = estimated("total", 0.0, 0.19, 0.05)
-    reasons = {"": "it is within the tolerance, but not with its uncertainty", "so": "so"}
+    reasons = {
+        "": "it is within the tolerance, but the deviation plus its uncertainty is not",
+        "so": "so",
+    }
     for reason, words in reasons.items():
-        doubted = replace(unsure, claim=replace(unsure.claim, told={"reason": reason}))
+        doubted = replace(unsure, claim=replace(unsure.claim, template_values={"reason": reason}))
         claim = over_all([doubted, *LENGTHS[3:]])
         assert claim["verdict"] == "reproduced with caveat" and "doubt" not in claim
         choices = r"the release rule total and the damping ratio $\beta/\Delta x$ 0"
@@ -185,7 +188,7 @@ def test_no_claim_compares_a_function_with_itself(project):
     """Each is judged by measured numbers of lattices, or by the solved model."""
     claims = read_text(project / "manuscript/claims.yaml")["claims"]
     # Studies that simulate by themselves.
-    simulating = ("studies.rate_dependence", "studies.layer")
+    simulating = ("studies.rate_dependence", "studies.layer", "studies.rough_prestress")
     for id, entry in claims.items():
         parts = [part.strip() for part in entry["source"].split(";")]
         lattices = [part for part in parts if not part.startswith(("studies.", "predictions:"))]
@@ -269,17 +272,17 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     # Where a lattice has not run long enough it is not asked.
     assert sweep.agreed(*runs, "left < 0.7") == [False, None, None]
     assert sweep.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
-    assert agreeing([True, None, False], [True, None, True]) == [True, None, None]
+    assert agreed_answers([True, None, False], [True, None, True]) == [True, None, None]
 
 
-def test_what_must_hold_besides_decides_at_every_tolerance():
+def test_the_extra_verdict_decides_at_every_tolerance():
     """So a claim that fails by its second condition has no tolerance at which it is reproduced."""
     numbers = {"deviations": np.array([0.1]), "median": (0.1, 0.001)}
-    claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
+    claim = Approximate(tolerance=0.2, extra_verdict=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
     assert replace(claim, failing=BEYOND).verdict() == BEYOND
     lenient = lambda allowed: YES if allowed > 0.3 else OPEN
-    claim = Approximate(tolerance=0.2, besides=lenient, **numbers)
+    claim = Approximate(tolerance=0.2, extra_verdict=lenient, **numbers)
     assert claim.verdict() == OPEN
     assert [flip["above"] for flip in claim.flips()] == [OPEN, YES]
 
@@ -290,7 +293,7 @@ def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     entry = written("equation", claim, ENTRIES["equation"], "III A")
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
     assert entry == entry | expected | {"figure_or_section": "III A", "why": ""}
-    failing = replace(claim, besides=lambda _: NO, counts={"held": 1, "failed": 1})
+    failing = replace(claim, extra_verdict=lambda _: NO, counts={"held": 1, "failed": 1})
     entry = written("equation", failing, ENTRIES["equation"], "III A")
     assert (entry["verdict"], entry["held"], entry["failed"]) == (NO, 1, 1)
     beside = sweep.deviation_from_exact("sweep", "number")
@@ -335,13 +338,16 @@ claim = lambda fields: with_texts(CLAIM | fields)
 # Fields of a claim, and the sentence that says why.
 WHY = {
     "reproduced": ({"verdict": YES}, ""),
-    "equation": ({}, "It is off by 25 %, tolerance 20 %; its uncertainty is 1 %."),
-    "zero predicted": (ZERO, "It is off by 0.50, tolerance 0.1; its uncertainty is 0.0100."),
-    "estimate": (ESTIMATE, "It is off by median 25 %, tolerance 20 %; its uncertainty is 1 %."),
-    "scaling": ({"kind": "scaling"}, "It is off by 0.25, tolerance 0.2; its uncertainty is 1 %."),
-    "always": (AGAINST, "It holds in 5 of 8 cases, with 1 against, 2 undecided."),
-    "reading": (UNLIKELY, "At the best fit p = 2.0×10⁻⁴, at least 0.05 is asked."),
-    "not testable": ({"verdict": NONE}, "This run leaves no number to judge by."),
+    "equation": ({}, "The deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
+    "zero predicted": (ZERO, "The deviation is 0.50, tolerance 0.1; the uncertainty is 0.0100."),
+    "estimate": (ESTIMATE, "The median deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
+    "scaling": (
+        {"kind": "scaling"},
+        "The deviation is 0.25, tolerance 0.2; the uncertainty is 1 %.",
+    ),
+    "always": (AGAINST, "It holds in 5 of 8 cases (1 against, 2 undecided)."),
+    "reading": (UNLIKELY, "The best fit has p = 2.0×10⁻⁴, required at least 0.05."),
+    "not testable": ({"verdict": NONE}, "This run has no number that could be judged."),
     "its own reason": ({"why": "It needs a reason."}, "It needs a reason."),
 }
 # Fields of a claim, and texts: predicted, measured and compared.
@@ -349,7 +355,7 @@ NUMBERS = {
     "always": (AGAINST, (*HELD, "no run may contradict")),
     "some": (AGAINST | ASKED, (*HELD, "some run")),
     "also": (ESTIMATE | ASKED, ("1", "1.250(10)", "median 25 %, tolerance 20 %; some run")),
-    "reading": (LIKELY, ("7 degrees of freedom", "χ² = 1.62", "p = 0.98, at least 0.05")),
+    "reading": (LIKELY, ("7 degrees of freedom", "χ² = 1.62", "p = 0.98, required at least 0.05")),
 }
 
 

@@ -130,6 +130,11 @@ def rough_prestress(table, path):
     assert measured["pulse_slip"].nunique() == 6 and (measured["pulse_slip"] > 0.5).all()
 
 
+def rough_ensemble(table, path):
+    """A tenth of the seeds, of which each is in one chunk."""
+    assert len(table) == table["seed"].nunique() == 100
+
+
 def chunked_sweep(table, path):
     levels, widths = table["left"].unique(), table["width"].unique()
     assert [*zip(table["left"], table["width"], strict=True)] == [*product(levels, widths)]
@@ -216,6 +221,7 @@ TARGETS = {
     prestress_ramp: "scenes/prestress_ramp.html",
     stress_file: "scenes/stress_file.html",
     rough_prestress: "uncertainties/rough_prestress.csv",
+    rough_ensemble: "measurements/rough_displacement/3-of-10.csv",
     target_error: "uncertainties/target_error.csv",
 }
 

@@ -1,1 +1,1 @@
-"""Claims of the paper, with what was measured and the computed verdict."""
+"""Claims of the paper, the numbers measured for each, and the verdicts computed from them."""

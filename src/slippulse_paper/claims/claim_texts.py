@@ -1,4 +1,7 @@
-"""The texts of claims, as manuscript/ has them in YAML, and the sentences that claims test."""
+"""Read the texts of claims from the YAML files in manuscript/.
+
+Also list which sentences of the paper each claim tests, and count sentences that none tests.
+"""
 
 import re
 from collections import Counter
@@ -9,25 +12,28 @@ import yaml
 
 from ..configuration.problems import nearest
 
-# Whether a sentence is tested, or why it has no claim, with words for the table that counts.
+# Each sentence is tested or has a reason why it has no claim; the words appear in a table.
 REASONS = {
     "tested": "tested by a claim",
     "repeats": "repeats another sentence",
     "background": "background, or says no more than that something is shown",
     "definition": "definition or assumption",
     "other work": "is about other work",
-    "no model": "no model here can tell",
-    "not asked": "a model could tell; not asked here",
+    "no model": "no model of this project can decide it",
+    "not asked": "a model could decide it; not examined here",
 }
 
 
 def read_text(path: str | Path):
-    """A YAML file, by the parser in C: ten times as fast."""
+    """Return the content of a YAML file, read by the C parser, which is ten times as fast."""
     return yaml.load(Path(path).read_text(encoding="utf-8"), yaml.CSafeLoader)
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Claims, checks and findings, with tolerances of the configuration; or ValueError."""
+    """Return claims, checks and findings, with the tolerances that the configuration sets.
+
+    A tolerance for an unknown claim raises a ValueError.
+    """
     texts = read_text(path)
     claims = texts["claims"]
     for id, other in tolerances.items():
@@ -40,12 +46,12 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
 
 
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
-    """The claims and checks that test a sentence."""
+    """Return the ids of the claims and checks that test a sentence."""
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
 def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
-    """Sections, appendices and figures of the sentences that each claim tests, in their order."""
+    """Return, for each claim, the sections and figures of the sentences that it tests, in order."""
     where = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
     out = {}
     for name, entry in entries.items():
@@ -55,7 +61,7 @@ def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """Numbers of sentences for each reason, and of all."""
+    """Return the number of sentences for each reason, and the total as "all"."""
     reasons = [str(sentence.get("why_none", "tested")) for sentence in sentences]
     # A repetition is "repeats ID".
     counts = Counter(re.sub("^repeats .*", "repeats", reason) for reason in reasons)

@@ -1,4 +1,8 @@
-"""Results about a claim of the paper: a dataclass for each kind of claim."""
+"""Results about claims of the paper: one dataclass for each kind of claim.
+
+A result holds the numbers and computes the verdict from them at any tolerance, so that the ledger
+can also report the tolerances at which the verdict would change.
+"""
 
 import math
 from abc import ABC, abstractmethod
@@ -13,53 +17,65 @@ from . import rules
 from .rules import Uncertain
 
 NAN = math.nan
-# The number of tolerances at which a verdict is computed, and of halvings where it changes.
-SCANNED, BISECTED = 41, 12
-# A qualitative claim stays open if a larger fraction of its runs is undecided.
-MOST_UNDECIDED = 0.1
+# A verdict is computed at this many tolerances; where it changes, bisection refines the tolerance.
+SCANNED_TOLERANCES, BISECTIONS = 41, 12
+# A qualitative claim is inconclusive if a larger fraction of its runs is undecided.
+MAX_UNDECIDED_FRACTION = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Claim(ABC):
-    """The result about one claim; every kind may have further numbers by name.
+    """The result about one claim.
 
-    ``tolerance`` is 0 where no number is compared with one. ``besides`` has the verdict, at a
-    tolerance, on what must hold besides; ``failing`` is the verdict on a claim that fails.
-    ``told`` has what the sentences of manuscript/claims.yaml on the claim tell besides, by name.
+    Attributes
+    ----------
+    tolerance
+        Limit of the deviation; 0 if no number is compared with a limit.
+    extra_verdict
+        Function that returns the verdict on an additional requirement at a given tolerance.
+    failing
+        Verdict on the claim if it fails.
+    further
+        Additional numbers by name, for the table of claims.
+    template_values
+        Values by name for the sentences in manuscript/claims.yaml, in addition to `fields`.
     """
 
     tolerance: float = 0.0
-    besides: Callable[[float], str] | None = None
+    extra_verdict: Callable[[float], str] | None = None
     failing: str = rules.FAILED
     further: Mapping[str, float] = field(default_factory=dict)
-    told: dict[str, Any] = field(default_factory=dict)
+    template_values: dict[str, Any] = field(default_factory=dict)
 
     @abstractmethod
-    def alone(self, tolerance: float) -> str:
-        """The verdict on the numbers of the kind alone if the tolerance were this one."""
+    def own_verdict(self, tolerance: float) -> str:
+        """Return the verdict at a tolerance, without the additional requirement."""
 
     @abstractmethod
     def fields(self) -> dict[str, Any]:
-        """The verdict and the numbers of the kind, as claims.json names them."""
+        """Return the verdict and the numbers of this kind, with their names in claims.json."""
 
     def verdict(self, tolerance: float | None = None) -> str:
-        """The verdict at the tolerance of the claim, or if it were another one."""
+        """Return the verdict at the tolerance of the claim, or at another tolerance."""
         tolerance = self.tolerance if tolerance is None else tolerance
-        verdict = self.alone(tolerance)
-        if self.besides is not None:
-            verdict = rules.worst([verdict, self.besides(tolerance)])
+        verdict = self.own_verdict(tolerance)
+        if self.extra_verdict is not None:
+            verdict = rules.worst([verdict, self.extra_verdict(tolerance)])
         return self.failing if verdict == rules.FAILED else verdict
 
     def flips(self) -> list[dict]:
-        """Tolerances, a tenth to ten times, at which the verdict changes, and both verdicts."""
+        """Return the tolerances at which the verdict changes, with the verdicts on both sides.
+
+        The search covers one tenth to ten times the tolerance of the claim.
+        """
         if not self.tolerance:
             return []
-        factors = np.geomspace(0.1, 10.0, SCANNED)
+        factors = np.geomspace(0.1, 10.0, SCANNED_TOLERANCES)
         verdicts = [self.verdict(self.tolerance * factor) for factor in factors]
         out = []
         for i in np.flatnonzero(np.array(verdicts[1:]) != verdicts[:-1]):
             low, high = factors[i : i + 2]
-            for _ in range(BISECTED):
+            for _ in range(BISECTIONS):
                 middle = np.sqrt(low * high)
                 if self.verdict(self.tolerance * middle) == verdicts[i]:
                     low = middle
@@ -69,37 +85,38 @@ class Claim(ABC):
             out.append({"tolerance": float(self.tolerance * high)} | sides)
         return out
 
-    def written(self) -> dict[str, Any]:
-        """All fields in claims.json that the result sets."""
+    def json_fields(self) -> dict[str, Any]:
+        """Return all fields of claims.json that the result sets."""
         return {"further": dict(self.further)} | self.fields() | {"flips_at": self.flips()}
 
-    def names(self) -> dict[str, Any]:
-        """What sentences tell besides these fields."""
-        return self.told
+    def sentence_values(self) -> dict[str, Any]:
+        """Return the values that sentences may use in addition to these fields."""
+        return self.template_values
 
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
-    """An always, never or every, by whether it holds in each run, None where that is undecided."""
+    """A statement about always, never or every, judged in each run."""
 
+    # True if it holds in a run, False if not, None if the run does not decide.
     decided: Collection[bool | None]
-    # Whether it needs a condition that the paper does not state.
+    # True if the claim needs a condition that the paper does not state.
     condition: bool = False
 
     def counts(self) -> dict[str, int]:
-        """Numbers of runs in which it holds, fails or is open."""
+        """Return the numbers of runs in which the statement holds, fails or stays undecided."""
         held = sum(bool(answer) for answer in self.decided)
         undecided = sum(answer is None for answer in self.decided)
         failed = len(self.decided) - held - undecided
         return {"held": held, "failed": failed, "undecided": undecided}
 
-    def alone(self, tolerance: float) -> str:
+    def own_verdict(self, tolerance: float) -> str:
         counts, runs = self.counts(), len(self.decided)
         if not runs:
             return rules.NOT_TESTABLE
         if counts["failed"]:
             return rules.FAILED
-        if counts["undecided"] > MOST_UNDECIDED * runs:
+        if counts["undecided"] > MAX_UNDECIDED_FRACTION * runs:
             return rules.INCONCLUSIVE
         return rules.CAVEAT if counts["undecided"] or self.condition else rules.REPRODUCED
 
@@ -112,35 +129,41 @@ class Qualitative(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Claim):
-    """An equation, by values of its runs at spacing 0, or an exponent."""
+    """An equation, judged by the values of its runs at spacing 0, or by an exponent."""
 
-    # Arrays [run], NaN without a value.
+    # Arrays [run], NaN where a value is missing.
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
-    # Numbers of other runs: of those behind an exponent, or of what must hold besides.
+    # Additional numbers of runs: behind an exponent, or for an additional requirement.
     counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
-        """Deviation and uncertainty over what is predicted, absolute where that is 0, [run]."""
+        """Return relative deviation and relative uncertainty of each run.
+
+        Both are absolute where the prediction is 0.
+        """
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
         return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
 
     def verdicts(self, tolerance: float) -> list[str]:
-        """The verdict on each run."""
+        """Return the verdict on each run."""
         return [rules.within(*pair, tolerance) for pair in zip(*self.relative(), strict=True)]
 
-    def alone(self, tolerance: float) -> str:
+    def own_verdict(self, tolerance: float) -> str:
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
-        """The numbers of the run that decides, the farthest off, and how many runs have numbers."""
+        """Return the numbers of the run that decides, and how many runs have numbers.
+
+        Of all runs with the worst verdict, the one with the largest deviation decides.
+        """
         deviation, uncertainty = self.relative()
         usable = int(np.isfinite(deviation + uncertainty).sum())
         out: dict[str, Any] = {"verdict": self.verdict(), "runs": usable}
         out["left_out"] = len(deviation) - usable
         if usable:
-            worst, verdicts = self.alone(self.tolerance), self.verdicts(self.tolerance)
+            worst, verdicts = self.own_verdict(self.tolerance), self.verdicts(self.tolerance)
             deciding = [run for run, verdict in enumerate(verdicts) if verdict == worst]
             run = max(deciding, key=deviation.__getitem__)
             out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
@@ -150,21 +173,21 @@ class Equation(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Approximate(Claim):
-    """An estimate, by the median deviation of its runs."""
+    """An estimate, judged by the median deviation of its runs."""
 
-    # |measured/predicted - 1| of each run on the finest lattice, NaN without a value.
+    # |measured/predicted - 1| of each run on the finest lattice, NaN where a value is missing.
     deviations: np.ndarray
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
     median: Uncertain
     ratio: Uncertain = (NAN, NAN)
-    # The median and largest deviation of runs at spacing 0 from the exact theory.
+    # Median and largest deviation from exact theory of values extrapolated to spacing 0.
     from_exact: Uncertain = (NAN, NAN)
 
-    def alone(self, tolerance: float) -> str:
+    def own_verdict(self, tolerance: float) -> str:
         return rules.within(*self.median, tolerance)
 
     def fields(self) -> dict[str, Any]:
-        """The medians and the spread of the runs; only counts without runs."""
+        """Return the medians and the spread of the runs; without usable runs only counts."""
         usable = self.deviations[np.isfinite(self.deviations)]
         out: dict[str, Any] = {"runs": usable.size, "left_out": self.deviations.size - usable.size}
         out["verdict"] = self.verdict()
@@ -179,18 +202,18 @@ class Approximate(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Reading(Claim):
-    """A figure that was read off, by chi-square of its readings at the best fit."""
+    """Readings from a figure, judged by their chi-square at the best fit."""
 
     chi_square: float
-    # The readings less the fitted parameters.
+    # Number of readings minus number of fitted parameters.
     degrees_of_freedom: int
 
     def p_value(self) -> float:
-        """Probability of a larger chi-square; NaN without degrees of freedom."""
+        """Return the probability of a larger chi-square; NaN without degrees of freedom."""
         degrees = self.degrees_of_freedom
         return float(chdtrc(degrees, self.chi_square)) if degrees else NAN
 
-    def alone(self, tolerance: float) -> str:
+    def own_verdict(self, tolerance: float) -> str:
         p = self.p_value()
         if math.isnan(p):
             return rules.NOT_TESTABLE

@@ -1,4 +1,8 @@
-"""The ledger: every claim of manuscript/claims.yaml, in its order, with its result."""
+"""Compute the ledger: every claim of manuscript/claims.yaml, in that order, with its result.
+
+A claim is judged by a rule in the YAML file or by a function listed in `JUDGES_BY_CLAIM`. Each
+result is written with its texts, whose expressions are evaluated here.
+"""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -16,6 +20,9 @@ from . import (
     pulse_claims as pulses,
 )
 from . import (
+    rough_claims as rough,
+)
+from . import (
     space_time_claims as space_time_figure,
 )
 from . import (
@@ -26,7 +33,7 @@ from .evidence import Evidence, Texts
 from .kinds import Claim
 from .ledger import with_texts
 
-# The simulations behind the claims, with topics of the predictions that each is compared with.
+# Simulations behind the claims, each with the topics of the predictions that it is compared with.
 SIMULATIONS = {
     "any_prestress": ["pulse"],
     "arrest_profiles": [],
@@ -54,22 +61,27 @@ SIMULATIONS = {
     "stress_pulses": ["transition"],
     "undamped_pulses": ["pulse"],
 }
-# What judges a claim by a rule of its entry, by kind.
-RULES: dict[str, Callable[..., Claim]] = {"exact": pulses.equation, "qualitative": pulses.always}
-# The function that judges each other claim, by id.
-CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
+# Functions that judge a claim by the rule in its entry, by kind of claim.
+JUDGES_BY_KIND: dict[str, Callable[..., Claim]] = {
+    "exact": pulses.equation,
+    "qualitative": pulses.always,
+}
+# Functions that judge the claims without a rule, by claim id.
+JUDGES_BY_CLAIM: dict[str, Callable[[Evidence, str], Claim]] = {
     "zero_net_stress_change": pulses.zero_net_stress_change,
     "front_speed_moderate_gamma": pulses.front_speed_moderate_gamma,
     "front_arrest_position": transition.front_arrest_position,
-    "T_trans_displacement": partial(transition.held_displacement, quantity="time"),
-    "L_trans_displacement": partial(transition.held_displacement, quantity="length"),
-    "T_trans_stress": partial(transition.held_stress, quantity="time"),
-    "L_trans_stress": partial(transition.held_stress, quantity="length"),
+    "T_trans_displacement": partial(transition.displacement_transition, quantity="time"),
+    "L_trans_displacement": partial(transition.displacement_transition, quantity="length"),
+    "T_trans_stress": partial(transition.stress_transition, quantity="time"),
+    "L_trans_stress": partial(transition.stress_transition, quantity="length"),
     "transition_scaling_displacement": partial(transition.scaling, boundary="displacement"),
     "transition_scaling_stress": partial(transition.scaling, boundary="stress"),
     "stress_front_speeds_near_one": transition.stress_front_speeds_near_one,
     "displacement_pulse_unique": pulses.displacement_pulse_unique,
     "perturbed_pulses_settle": pulses.perturbed_pulses_settle,
+    "rough_pulses_go_on": rough.rough_pulses_go_on,
+    "rough_stress_pulses_change": rough.rough_stress_pulses_change,
     "stress_pulse_not_unique": pulses.stress_pulse_not_unique,
     "stress_pulse_set_by_prestress": pulses.stress_pulse_set_by_prestress,
     "transition_diverges": transition.transition_diverges,
@@ -88,12 +100,25 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "stress_pulse_other_laws": friction_laws.stress_pulse_other_laws,
     "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
 }
-# Texts of an entry that are not in claims.json as they are.
-UNWRITTEN = ("sentences", "doubt", "rule")
-# Fields of every claim in claims.json, where neither its text nor its result sets them.
-EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
-EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
-EMPTY |= {
+# Keys of an entry that are not copied to claims.json.
+TEXTS_NOT_WRITTEN = ("sentences", "doubt", "rule")
+# Fields of every claim in claims.json, with the values used if neither entry nor result sets them.
+DEFAULT_FIELDS: dict[str, Any] = {
+    "figure": "",
+    "follows_from": [],
+    "note": "",
+    "source": "",
+    "further": {},
+}
+DEFAULT_FIELDS |= {
+    "why": "",
+    "caveat": "",
+    "choices": [],
+    "choice": "",
+    "combinations": 0,
+    "holds_at": 0,
+}
+DEFAULT_FIELDS |= {
     "beyond": False,
     "remark": False,
     "flips_at": [],
@@ -103,15 +128,16 @@ EMPTY |= {
 
 
 def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
-    """The ledger as in claims.json; a ValueError names claims in the texts or in the code alone.
+    """Return the ledger as in claims.json.
 
-    ``common`` has, by verdict, why claims have it that are judged over open choices.
+    A ValueError names claims that exist only in the texts or only in the code. ``common`` has the
+    sentence, by verdict, that explains a verdict on a claim judged at all open choices.
     """
     without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
-    odd = ", ".join(sorted(without_rule ^ {*CLAIMS}))
+    odd = ", ".join(sorted(without_rule ^ {*JUDGES_BY_CLAIM}))
     if odd:
         raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
-    evidence.assign("regimes_beyond", pulses.meet)
+    evidence.assign("regimes_beyond", pulses.change_signs)
     where = places_of(evidence.entries, sentences)
     return [
         written(id, claim_of(evidence, id), entry, where[id], common)
@@ -120,30 +146,35 @@ def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) 
 
 
 def claim_of(evidence: Evidence, id: str) -> Claim:
-    """One claim, by the rule of its entry or by its function; a rule that fails is named."""
+    """Judge one claim by the rule of its entry or by its function.
+
+    If a rule cannot be evaluated, the ValueError names it.
+    """
     entry = evidence.entries[id]
     if "rule" not in entry:
-        return CLAIMS[id](evidence, id)
+        return JUDGES_BY_CLAIM[id](evidence, id)
     try:
-        return RULES[entry["kind"]](evidence, id, **entry["rule"])
+        return JUDGES_BY_KIND[entry["kind"]](evidence, id, **entry["rule"])
     except (AttributeError, LookupError, NameError, SyntaxError, TypeError) as error:
         allowed = "the keys of its kind, with expressions over columns"
         raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 
 def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping = {}) -> dict:
-    """One claim with its text, as JSON has it."""
-    out = EMPTY | {name: value for name, value in entry.items() if name not in UNWRITTEN}
+    """Return one claim with its texts, as in claims.json."""
+    out = DEFAULT_FIELDS | {
+        name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN
+    }
     if entry["kind"] == "approximate":
-        # The spread of its runs, and the exact theory.
+        # Only estimates have a spread of runs and a comparison with exact theory.
         out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
-    out |= {"id": id} | claim.written()
+    out |= {"id": id} | claim.json_fields()
     counted = not (out["follows_from"] or out["beyond"] or out["remark"])
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
     if "earlier_tolerance" in entry:
         out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
     out = finite(out)
-    names = out | claim.names()
+    names = out | claim.sentence_values()
     out |= {key: sentence(out[key], names) for key in ("note", "why")}
     if out["choices"] and out["verdict"] in common:
         names |= {"why": out["why"], "doubt": sentence(entry.get("doubt", ""), names)}
@@ -152,11 +183,11 @@ def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping =
 
 
 def sentence(text: str, names: Mapping) -> str:
-    """A text with its expressions evaluated, in one line."""
+    """Return a text in one line with its expressions evaluated."""
     return " ".join(fill(text, names).split())
 
 
 def finite(value):
-    """Builtins with None for every number that JSON does not have."""
+    """Convert a value to plain Python objects, with None for NaN and infinity."""
     text = json.dumps(value, default=lambda number: number.item())
     return json.loads(text, parse_constant=lambda _: None)

@@ -1,4 +1,4 @@
-"""Verdicts, and the rules that turn deviation and uncertainty into one."""
+"""Define the verdicts, and the rules that turn a deviation and its uncertainty into a verdict."""
 
 from collections.abc import Iterable, Sequence
 
@@ -13,15 +13,15 @@ FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
 VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NOT_TESTABLE)
-# The first of these decides among several verdicts; readers look for it first, too.
+# Among several verdicts the one that comes first in this list decides; pages use the same order.
 WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
-HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
+HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 # A number with its uncertainty.
 Uncertain = tuple[float, float]
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Verdict on one number by its deviation from the prediction and by its uncertainty."""
+    """Return the verdict on one number, from its deviation and its uncertainty."""
     if not np.isfinite([deviation, uncertainty]).all():
         return NOT_TESTABLE
     if deviation - uncertainty > tolerance:
@@ -32,16 +32,16 @@ def within(deviation: float, uncertainty: float, tolerance: float) -> str:
 
 
 def worst(verdicts: Iterable[str]) -> str:
-    """The worst of several verdicts; "not testable" of none."""
+    """Return the worst of several verdicts; "not testable" if there is none."""
     return min(verdicts, key=WORST_FIRST.index, default=NOT_TESTABLE)
 
 
 def worst_tested(verdicts: Iterable[str]) -> str:
-    """The worst of those that have numbers."""
+    """Return the worst verdict, not counting "not testable"."""
     return worst(verdict for verdict in verdicts if verdict != NOT_TESTABLE)
 
 
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
-    """Verdict on a claim from those at every admissible combination of open choices."""
-    held = {HOLDS.get(verdict) for verdict in verdicts}
+    """Return the verdict on a claim from its verdicts at all combinations of open choices."""
+    held = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
     return DEPENDS if {True, False} <= held else worst_tested(verdicts)

@@ -1,4 +1,7 @@
-"""Claims about the two panels of the published space-time figure."""
+"""Judge claims about the two panels of the published space-time figure.
+
+Positions were read off the figure. The study `published_figure` fits the exact solution to them.
+"""
 
 from typing import Any
 
@@ -7,20 +10,20 @@ from slippulse.measurement.inference import infer_parameters
 from .evidence import Evidence
 from .kinds import Reading
 
-# The arrows and the fitted parameters of the left panel.
-ARROWS = ("arrow_time", "arrow_length")
+# Names of the readings of the two arrows in the left panel.
+ARROW_READINGS = ("arrow_time", "arrow_length")
 
 
 def left(evidence: Evidence, id: str) -> Reading:
-    """The left panel at the best fit of all its readings but the arrows."""
+    """Judge the left panel by the best fit to all its readings except the arrows."""
     best = infer_parameters(evidence.tables["published_figure"])["best"]
     further = read_off(evidence, "space_time_displacement")
     fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
-    return Reading(tolerance=evidence.tolerance(id), **fit, further=further, told=best)
+    return Reading(tolerance=evidence.tolerance(id), **fit, further=further, template_values=best)
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:
-    """The two arrows of the left panel: how much they raise chi-square at the best fit of all."""
+    """Judge the two arrows of the left panel by how much they raise the chi-square."""
     study = evidence.tables["published_figure"]
     fits = {
         "with": infer_parameters(study, part="arrows")["best"],
@@ -29,30 +32,33 @@ def arrows(evidence: Evidence, id: str) -> Reading:
     further = {}
     for words, fit in fits.items():
         longer = []
-        for name in ARROWS:
+        for name in ARROW_READINGS:
             entry = evidence.readings[name]
             longer.append(-fit["pulls"][name] * entry["reading_error"])
             further[f"{entry['statement']}, longer than at the fit {words} arrows by"] = longer[-1]
-    told = drawn(evidence)
-    # The last fit is the one without arrows.
-    told["longer"] = longer
-    told["apart"] = 2.0 * (told["intercept"] + told["front_speed"] * told["arrow_time"])
+    template_values = readings_by_name(evidence)
+    # The loop ends with the fit without arrows.
+    template_values["longer"] = longer
+    template_values["apart"] = 2.0 * (
+        template_values["intercept"]
+        + template_values["front_speed"] * template_values["arrow_time"]
+    )
     return Reading(
         tolerance=evidence.tolerance(id),
         chi_square=fits["with"]["chi2"] - fits["without"]["chi2"],
         degrees_of_freedom=fits["with"]["dof"] - fits["without"]["dof"],
         further=further,
-        told=told,
+        template_values=template_values,
     )
 
 
-def drawn(evidence: Evidence) -> dict[str, Any]:
-    """What was read off the published figure, by name."""
+def readings_by_name(evidence: Evidence) -> dict[str, Any]:
+    """Return the values that were read off the published figure, by name."""
     return {name: entry["value"] for name, entry in evidence.readings.items()}
 
 
 def right(evidence: Evidence, id: str) -> Reading:
-    """The largest velocity of the right panel, by the run that fits it worst."""
+    """Judge the largest velocity of the right panel by the run that fits it worst."""
     pulls = evidence.tables["published_figure"].query("part == 'stress'")["pull"]
     further = read_off(evidence, "space_time_stress")
     fit: dict[str, Any] = {"chi_square": float((pulls**2).max()), "degrees_of_freedom": 1}
@@ -60,7 +66,7 @@ def right(evidence: Evidence, id: str) -> Reading:
 
 
 def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
-    """The readings of one panel as our own figure has them, by what they are."""
+    """Return the values that our own figure has for the readings of one panel."""
     entries = [one for one in evidence.readings.values() if one["simulation"] == simulation]
     runs = evidence.finest(simulation)
     return {one["statement"]: float(runs[one["quantity"]].mean()) for one in entries}

@@ -1,4 +1,10 @@
-"""Claims about the transition and about where a front ends, at every choice that is left open."""
+"""Judge claims about the transition from crack to pulse, and about where a front arrests.
+
+Each claim is judged at every combination of choices that the paper leaves open. `Runs` holds the
+tables of one combination: three lattices, or one table of exact solutions. `transitions` collects
+them for a held displacement, `arrests` for a held stress; their columns have common names (time,
+length, covered, estimated_time, estimated_length).
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -11,68 +17,79 @@ import pandas as pd
 from slippulse.measurement.front_paths import fit_line
 
 from . import rules
-from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
-from .evidence import Evidence, agreeing, exponent, ratios, studied
+from .choices import LAST_RELEASE_FRACTION, Chosen, Combination, OverChoices, named, over_choices
+from .evidence import Evidence, agreed_answers, exponent, ratios, with_grid_uncertainty
 from .kinds import NAN, Approximate, Claim, Equation, Qualitative
 from .rules import Uncertain
-from .space_time_claims import drawn
+from .space_time_claims import readings_by_name
 
-# At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
-INSIDE = "left > -1"
-# The smallest length of the model, in H: a front that ends so near to x_minus ends there.
-GAP = 1.0
-# Fraction of the way whose numbers stand with a claim.
-SHOWN = 0.95
+# The printed threshold also applies backwards: at or below -1 the pre-stress itself would make
+# blocks slide back.
+NO_BACKWARD_SLIP = "left > -1"
+# A front arrests at x_minus if its distance from there is at most this, in units of H, which is the
+# smallest length of the model.
+MAX_ARREST_GAP = 1.0
+# The fraction of the distance to x_minus whose numbers are shown with a claim.
+SHOWN_FRACTION = 0.95
 # Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
-# The two readings of T_trans under a displacement boundary, and the columns that have them, with
-# the paper's estimates. At the nucleation point the printed slip 2 tau/gamma is taken with the
-# level tau_0.
-STICK, SLIP = "first stick", r"slip $2\tau_0/\gamma$"
-PAPER = {"paper_transition_time": "estimated_time", "paper_transition_length": "estimated_length"}
-CRITERIA = {
-    STICK: {"transition_time": "time", "transition_length": "length"} | PAPER,
-    SLIP: {"slip_time_background": "time", "slip_length_background": "length"} | PAPER,
+# The two readings of T_trans under a displacement boundary, and the columns of each, with those of
+# the paper's estimates. The printed slip 2 tau/gamma is used with the level tau_0.
+FIRST_STICK, PRINTED_SLIP = "first stick", r"slip $2\tau_0/\gamma$"
+PAPER_ESTIMATES = {
+    "paper_transition_time": "estimated_time",
+    "paper_transition_length": "estimated_length",
 }
-# Columns under held stress: a solution is at a fraction of the way, a lattice at the last release.
-LAST_RELEASE = {"last_release_distance": "covered", "last_release_time": "time"}
-LAST_RELEASE |= {"last_release_length": "length"}
+STICK_COLUMNS = {"transition_time": "time", "transition_length": "length"}
+SLIP_COLUMNS = {"slip_time_background": "time", "slip_length_background": "length"}
+COLUMNS_BY_CRITERION = {
+    FIRST_STICK: STICK_COLUMNS | PAPER_ESTIMATES,
+    PRINTED_SLIP: SLIP_COLUMNS | PAPER_ESTIMATES,
+}
+# Columns of lattices under held stress, which are measured at the last release.
+ARREST_COLUMNS = {"last_release_distance": "covered", "last_release_time": "time"}
+ARREST_COLUMNS |= {"last_release_length": "length"}
 
 
 class Runs(NamedTuple):
-    """Runs at one combination of choices: a table for each lattice, or one of exact solutions."""
+    """Runs at one combination of choices: one table for each lattice, or one exact table."""
 
     choice: Chosen
     tables: list[pd.DataFrame]
 
 
-def shared(table: pd.DataFrame) -> Chosen:
-    """The release rule and the damping ratio that runs have in common."""
+def shared_choices(table: pd.DataFrame) -> Chosen:
+    """Return the release rule and the damping ratio, which all runs of a table share."""
     return {name: table[name].iloc[0] for name in ("release", "damping_ratio")}
 
 
-def on_lattices(tables: list[pd.DataFrame]) -> Runs:
-    """Simulated runs with their choices."""
-    return Runs(shared(tables[0]) | {"solution": "lattice"}, tables)
+def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
+    """Return simulated runs with their choices."""
+    return Runs(shared_choices(tables[0]) | {"solution": "lattice"}, tables)
 
 
-def simulated(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Runs of figure 5, and the undamped ones of the figures with more damping."""
+def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
+    """Return the runs of figure 5, and the undamped runs of figures 10 and 11."""
     sweeps = {
-        f"scaling_{boundary}": INSIDE,
-        f"damping_{boundary}": f"{INSIDE} and damping_ratio == 0",
+        f"scaling_{boundary}": NO_BACKWARD_SLIP,
+        f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
     }
     lattices = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
-    return [on_lattices(tables) for tables in lattices if len(tables[0])]
+    return [lattice_runs(tables) for tables in lattices if len(tables[0])]
 
 
-def solved(evidence: Evidence, boundary: str) -> list[Runs]:
-    """The exact solution at each combination of choices; first ours, as in figure 5."""
-    names, ours = ["release", "damping_ratio"], shared(evidence.tables[f"scaling_{boundary}"])
+def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
+    """Return exact solutions at each combination of choices; those of figure 5 come first."""
+    names, ours = (
+        ["release", "damping_ratio"],
+        shared_choices(evidence.tables[f"scaling_{boundary}"]),
+    )
     if boundary == "stress":
         names += ["nucleation", "fraction"]
-        ours["fraction"] = SHOWN
-    table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
+        ours["fraction"] = SHOWN_FRACTION
+    table = evidence.tables["open_choices"].query(
+        f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
+    )
     combinations = []
     for values, rows in table.groupby(names):
         choice: Chosen = dict(zip(names, values, strict=True))
@@ -82,40 +99,49 @@ def solved(evidence: Evidence, boundary: str) -> list[Runs]:
 
 @cache
 def transitions(evidence: Evidence) -> list[Runs]:
-    """Runs under a displacement boundary, by the first stick, and on lattices by the slip too."""
-    lattices = simulated(evidence, "displacement")
-    runs = {STICK: lattices + solved(evidence, "displacement"), SLIP: lattices}
+    """Return runs under a displacement boundary, for both readings of T_trans.
+
+    Exact solutions are measured at the first stick only, lattices also at the printed slip.
+    """
+    lattices = simulated_runs(evidence, "displacement")
+    runs = {FIRST_STICK: lattices + exact_runs(evidence, "displacement"), PRINTED_SLIP: lattices}
     out = []
     for criterion, of_criterion in runs.items():
         for choice, tables in of_criterion:
-            renamed = [table.rename(columns=CRITERIA[criterion]) for table in tables]
+            renamed = [table.rename(columns=COLUMNS_BY_CRITERION[criterion]) for table in tables]
             out.append(Runs(choice | {"criterion": criterion}, renamed))
     return out
 
 
 @cache
 def arrests(evidence: Evidence) -> list[Runs]:
-    """Runs of the left front under held stress, for the part of |x_minus| that is covered."""
-    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    exact = solved(evidence, "stress")
-    out = [Runs(choice, [widest(rows, CRITERIA[STICK])]) for choice, (rows,) in exact]
-    for choice, tables in simulated(evidence, "stress"):
-        out.append(Runs(choice | last, [widest(table, LAST_RELEASE) for table in tables]))
+    """Return runs under held stress, measured when the left front has covered part of |x_minus|."""
+    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
+    exact = exact_runs(evidence, "stress")
+    columns = COLUMNS_BY_CRITERION[FIRST_STICK]
+    out = [Runs(choice, [widest_at_each_level(rows, columns)]) for choice, (rows,) in exact]
+    for choice, tables in simulated_runs(evidence, "stress"):
+        out.append(
+            Runs(choice | last, [widest_at_each_level(table, ARREST_COLUMNS) for table in tables])
+        )
     return out
 
 
-def widest(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
-    """The run of each level with the widest nucleation, with estimates by what is covered."""
-    # The width is the only length, so that runs of one level do not depend on it.
+def widest_at_each_level(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
+    """Return one run for each level, with the estimates for the distance that it has covered."""
+    # The width is the only length, so runs of one level differ in scale only.
     table = table.sort_values("width").drop_duplicates("left", keep="last").rename(columns=names)
     if "covered" not in table:
-        # The paper's estimate of the time is the whole way, at speed 1.
+        # The paper estimates the time to cover the whole distance at speed 1, so both are equal.
         table = table.assign(covered=table["fraction"] * table["estimated_time"])
     return table.assign(estimated_time=table["covered"], estimated_length=2.0 * table["covered"])
 
 
 def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
-    """The median ratio by fraction of the way, the other choices being those of the first."""
+    """Return the median ratio for each covered fraction.
+
+    All other choices are fixed to those of the first combination.
+    """
     first = combinations[0].choice
     choice = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
     return {
@@ -126,23 +152,33 @@ def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
 
 
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
-    """The median ratio at each fraction of the way, as further numbers of a claim."""
+    """Return the median ratio for each covered fraction, as further numbers of a claim."""
     numbers = medians(combinations).items()
     return dict(sorted((f"median ratio: at {named(part)}", median) for part, median in numbers))
 
 
-def judged(runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]) -> list[Combination]:
-    """A claim judged at each combination."""
+def judge_each(
+    runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]
+) -> list[Combination]:
+    """Judge a claim at each combination."""
     return [Combination(choice, judge(tables)) for choice, tables in runs]
 
 
-def estimated(
-    evidence: Evidence, id: str, boundary: str, quantity: str
-) -> tuple[list[Combination], Uncertain, dict[str, float]]:
-    """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
+class JudgedEstimate(NamedTuple):
+    """An estimate at all combinations, with two comparisons."""
+
+    combinations: list[Combination]
+    # Median and largest deviation of lattices from exact theory.
+    from_exact: Uncertain
+    # Length of the arrow in figure 4 divided by the estimate; empty if figure 4 draws none.
+    arrow: dict[str, float]
+
+
+def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
+    """Judge an estimate at each combination of choices."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
     columns = quantity, f"estimated_{quantity}"
-    combinations = judged(runs, lambda tables: evidence.approximate(id, tables, *columns))
+    combinations = judge_each(runs, lambda tables: evidence.approximate(id, tables, *columns))
     exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
     arrow = {}
     suffix = "_stress" if boundary == "stress" else ""
@@ -150,45 +186,52 @@ def estimated(
     if read:
         scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
         predicted = float(scene[f"paper_transition_{quantity}"])
-        arrow["arrow of figure 4 over the estimate"] = read["value"] / predicted
+        arrow["arrow of figure 4 divided by the estimate"] = read["value"] / predicted
         arrow["its reading error"] = read["reading_error"] / predicted
-    return combinations, exact, arrow
+    return JudgedEstimate(combinations, exact, arrow)
 
 
-def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """An estimate under a displacement boundary, by the first stick and by the slip."""
-    combinations, exact, arrow = estimated(evidence, id, "displacement", quantity)
-    slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP])
+def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
+    """Judge an estimate under a displacement boundary, at the first stick and at the slip."""
+    combinations, exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
+    slips = evidence.finest("scaling_displacement").rename(
+        columns=COLUMNS_BY_CRITERION[PRINTED_SLIP]
+    )
     ratio = ratios(slips, quantity, f"estimated_{quantity}")
     near = (ratio - 1.0).abs() <= evidence.tolerance(id)
-    further = {f"runs that reach the {SLIP}": float(ratio.count()), "in all": float(len(ratio))}
+    further = {
+        f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
+        "in all": float(len(ratio)),
+    }
     further |= {"of these within the tolerance": float(near.sum())} | arrow
-    told = drawn(evidence) | undamped_and_damped(combinations)
-    told |= {"of_runs": len(ratio), "reach": ratio.count()}
-    told["reach_literally"] = slips["slip_time_nucleation"].count()
-    return over_choices(combinations, from_exact=exact, further=further, told=told)
+    template_values = readings_by_name(evidence) | undamped_and_damped(combinations)
+    template_values |= {"of_runs": len(ratio), "reach": ratio.count()}
+    template_values["reach_literally"] = slips["slip_time_nucleation"].count()
+    return over_choices(
+        combinations, from_exact=exact, further=further, template_values=template_values
+    )
 
 
 def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[float]]:
-    """The deviations by the first stick without damping and, by release rule, with it."""
+    """Return deviations at the first stick: without damping, and by release rule with damping."""
     sizes: dict[str, list[float]] = {"undamped": [], "elastic": [], "total": []}
     for one in combinations:
         choice, deviation = one.choice, one.result["deviation"]
-        if choice["criterion"] == STICK and deviation is not None:
+        if choice["criterion"] == FIRST_STICK and deviation is not None:
             part = "undamped" if choice["damping_ratio"] == 0.0 else str(choice["release"])
             sizes[part].append(deviation)
     return sizes
 
 
-def held_stress(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """An estimate under a stress boundary, at each fraction of the way and at the last release."""
-    combinations, exact, arrow = estimated(evidence, id, "stress", quantity)
+def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
+    """Judge an estimate under a stress boundary, at each fraction and at the last release."""
+    combinations, exact, arrow = judge_estimate(evidence, id, "stress", quantity)
     further = arrow | fraction_medians(combinations)
     return over_choices(combinations, from_exact=exact, further=further)
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
-    """The exponents of T and L over their estimates; that which is farther from 1 counts."""
+    """Judge the exponents of T and L as powers of their estimates; the worse of the two counts."""
     displacement = boundary == "displacement"
     columns = ("left", "gamma") if displacement else ("left",)
 
@@ -205,49 +248,54 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
             measured=measured,
             uncertainty=uncertainty,
             counts={"runs": len(tables[0])},
-            told={"symbol": symbol},
+            template_values={"symbol": symbol},
         )
 
     runs = transitions(evidence) if displacement else arrests(evidence)
-    return over_choices(judged(runs, judge))
+    return over_choices(judge_each(runs, judge))
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
-    """Mean speeds of both fronts; the front with the larger deviation counts."""
+    """Judge the mean speeds of both fronts; the front with the larger deviation counts."""
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         left = evidence.approximate(id, tables, "covered / time", "1")
         right = evidence.approximate(id, tables, "(length - covered) / time", "1")
         side, front = ("right", right) if right.median[0] > left.median[0] else ("left", left)
-        return replace(front, told={"side": side})
+        return replace(front, template_values={"side": side})
 
-    combinations = judged(arrests(evidence), judge)
+    combinations = judge_each(arrests(evidence), judge)
     return over_choices(combinations, further=fraction_medians(combinations))
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
-    """The left front takes longer than at speed 1 for the part that it has covered, in each run."""
+    """Judge whether the left front takes longer than at speed 1 in each run."""
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        over = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
+        excesses = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
 
-        def longer(most: float) -> Qualitative:
-            holds = [(excess > 0.0) & (excess <= most) for excess in over]
+        def longer(limit: float) -> Qualitative:
+            holds = [(excess > 0.0) & (excess <= limit) for excess in excesses]
             # An exact solution is one table, which agrees with itself.
-            return Qualitative(decided=agreeing(holds[0], holds[-1]))
+            return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
-        # The tolerance is 0; the earlier one was for how much longer it may take.
-        return replace(longer(np.inf), besides=lambda most: longer(most or np.inf).verdict())
+        # The tolerance 0 sets no limit. The earlier tolerance limited how much longer it takes.
+        return replace(
+            longer(np.inf), extra_verdict=lambda limit: longer(limit or np.inf).verdict()
+        )
 
     runs = arrests(evidence)
     exact = [tables[0] for choice, tables in runs if choice["solution"] == "exact"]
     least = min(float((table["time"] / table["covered"]).min()) for table in exact)
     further = {"smallest ratio of the exact solution": least}
-    return over_choices(judged(runs, judge), further=further)
+    return over_choices(judge_each(runs, judge), further=further)
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
-    """The last release on the left over |x_minus|, with an exponent near 1 and a small distance."""
+    """Judge the position of the last release on the left, compared with x_minus.
+
+    In addition, the exponent must be near 1 and the median gap to x_minus small.
+    """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     covered, predicted = "last_release_distance", "balance_distance"
     allowed = float(evidence.entries[id]["tolerance_exponent"])
@@ -255,26 +303,31 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         claim = evidence.approximate(id, tables, covered, predicted)
         gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
-        gap, power = studied(tables, gaps), exponent(tables, covered, predicted, ("left", "width"))
+        gap, power = (
+            with_grid_uncertainty(tables, gaps),
+            exponent(tables, covered, predicted, ("left", "width")),
+        )
         further = {"median gap in H, over all sweeps": gap[0], "exponent": power[0]}
-        small = rules.within(*gap, GAP)
-        told = {"near": small, "gap": gap[0], "gap_uncertainty": gap[1]}
-        besides = rules.worst([small, rules.within(abs(power[0] - 1.0), power[1], allowed)])
-        return replace(claim, besides=lambda _: besides, further=further, told=told)
+        small = rules.within(*gap, MAX_ARREST_GAP)
+        template_values = {"near": small, "gap": gap[0], "gap_uncertainty": gap[1]}
+        extra = rules.worst([small, rules.within(abs(power[0] - 1.0), power[1], allowed)])
+        return replace(
+            claim, extra_verdict=lambda _: extra, further=further, template_values=template_values
+        )
 
-    tables = evidence.lattices(*sweeps, where=INSIDE)
+    tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     shown, ratio = judge(tables), ratios(tables[0], covered, predicted)
     extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
     dampings = {*evidence.tables["open_choices"]["damping_ratio"]} & {*tables[0]["damping_ratio"]}
     runs = []
     for damping in sorted(dampings):
         chosen = tables[0]["damping_ratio"] == damping
-        runs.append(on_lattices([table[chosen.to_numpy()] for table in tables]))
-    return over_choices(judged(runs, judge), shown, further={**shown.further, **extremes})
+        runs.append(lattice_runs([table[chosen.to_numpy()] for table in tables]))
+    return over_choices(judge_each(runs, judge), shown, further={**shown.further, **extremes})
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
-    """T_trans and L_trans grow at every step down in gamma."""
+    """Judge whether T_trans and L_trans grow at every step down in gamma."""
     answers, exponents = [], []
     for table in evidence.lattices("scaling_displacement")[:2]:
         sequences = table.sort_values("gamma").groupby("left")
@@ -284,23 +337,29 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
     words = r"mean exponent of $\gamma$ in ${}_\mathrm{{trans}}$".format
     means = np.mean(exponents[0], axis=0)
     further = {words(symbol): float(mean) for symbol, mean in zip("TL", means, strict=True)}
-    return Qualitative(decided=agreeing(*answers), further=further)
+    return Qualitative(decided=agreed_answers(*answers), further=further)
 
 
 def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
-    """Whether T and L fall with gamma, at its three smallest values as powers; the exponents."""
+    """Return whether T and L diverge as gamma falls, and the exponents of gamma.
+
+    Both must fall with gamma, and be negative powers of its three smallest values.
+    """
     quantities = ["transition_time", "transition_length"]
     smallest = np.log(rows[["gamma", *quantities]].head(3))
     lines = [fit_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
-    # Powers are below zero by three standard errors.
+    # The exponents must be below zero by three standard errors.
     falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
     diverges = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
-    # Fewer than three runs leave it open.
+    # Fewer than three runs do not decide.
     return diverges if len(rows) >= 3 else None, [slope for slope, *_ in lines]
 
 
 def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
-    """At each gamma a step up in the pre-stress, if above its uncertainty, raises a quantity."""
+    """Judge whether a quantity rises at each step up in the pre-stress, at each gamma.
+
+    A step smaller than its uncertainty is undecided.
+    """
     unsure = f"uncertainty_{quantity}"
     table = table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left")
     decided: list[bool | None] = []
@@ -313,10 +372,12 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
 
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
-    """The transition gets longer with the pre-stress."""
-    return over_choices(judged(transitions(evidence), lambda tables: rises(tables[0], "length")))
+    """Judge whether the transition gets longer with the pre-stress."""
+    return over_choices(
+        judge_each(transitions(evidence), lambda tables: rises(tables[0], "length"))
+    )
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:
-    """The pulse gets wider with the pre-stress."""
+    """Judge whether the pulse gets wider with the pre-stress."""
     return rises(evidence.finest("any_prestress"), "pulse_width")

@@ -18,7 +18,7 @@ from slippulse.plotting.style import (
     entry,
 )
 
-from ..claims.ledger import BAND
+from ..claims.ledger import TOLERANCE_BAND
 
 NEEDS = {"lists": ["results/claims.json"]}
 
@@ -62,7 +62,7 @@ def draw(table: pd.DataFrame) -> Figure:
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(farthest)), layout="constrained")
     axes = figure.subplots()
-    axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
+    axes.axvspan(1.0 / TOLERANCE_BAND, TOLERANCE_BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
     for position, (id, _) in enumerate(farthest.index):
         for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):

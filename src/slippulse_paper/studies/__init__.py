@@ -1,4 +1,5 @@
-"""Studies of the solver and of the theory: their designs as constants, and their tables.
+"""Studies of the solver and of the theory, one module for each.
 
-The sweeps in NEEDS are simulations whose parameters a study has.
+A module has the design of its study as constants, and a function `table` that returns the result.
+`NEEDS` lists the settings, data and sweeps of the configuration that the study uses.
 """

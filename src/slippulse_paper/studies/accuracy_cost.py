@@ -1,4 +1,4 @@
-"""Error against cost: what each scheme, order, step and spacing buys, the presets among them.
+"""Compare error and cost for each scheme, order, step and spacing, including the presets.
 
 Cost is counted, not timed: the number of stencil passes over a block does not depend on the
 machine. The log has the seconds of the presets. The exact solution is sampled at the spacing of the
@@ -30,25 +30,26 @@ from slippulse.theory.pulse import steady_pulse
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
 # Two pulses, one without damping and one with that of the paper's figures, become steady.
-EVEN, GAMMA = Prestress(0.55, 0.55), 0.65
+UNIFORM_PRESTRESS, GAMMA = Prestress(0.55, 0.55), 0.65
 DAMPING_RATIOS, DURATION = (0.0, 0.1), 20.0
-# A crack turns into a pulse at Gamma = 0. The time at which its left front has covered a fraction
-# of its way is compared, in a run of three such times.
-UNEVEN = Prestress(-1.0, 0.0)
-FRACTION, CRACK_DURATION = 0.95, 3.0
-# The crack is larger than the pulses, and so is its spacing.
+# A crack turns into a pulse at Gamma = 0. The study compares the time at which its left front has
+# covered a fraction of its path; the run lasts three times as long.
+ARRESTING_PRESTRESS = Prestress(-1.0, 0.0)
+COVERED_FRACTION, CRACK_DURATION = 0.95, 3.0
+# The crack is larger than the pulses, so its spacing is larger by this factor.
 CRACK_SPACING = 2.0
 SPACINGS = (0.08, 0.04, 0.02, 0.01, 0.005)
 ORDERS, STEPS = (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
-# The error of the textbook scheme is that of its step: one spacing is enough.
+# The error of the textbook scheme comes from its step, so one spacing is enough.
 TEXTBOOK_SPACING, TEXTBOOK_STEPS = 0.02, (0.5, 0.25, 0.125, 0.0625, 0.03125)
-# Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up
-# to its stability bound, the localised one, which does not depend on it, at every fourth step.
-LOCKING = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
+# Front speed as a function of the step, at a level with an irrational speed. The textbook scheme
+# uses all steps, nearly up to its stability bound; the localised one only every fourth, because its
+# speed does not depend on the step.
+locking_scene = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
 LOCKING_STEPS = np.linspace(0.1, 0.98, 67).tolist()
 
 PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time")
-# Errors of the scenes, relative to exact theory, the largest over the damping ratios.
+# Relative errors compared with exact theory, the largest of all damping ratios.
 QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 
 # These are the same for every setting.
@@ -66,8 +67,8 @@ class Setting(NamedTuple):
     dx: float
 
     def run(self, profile: Prestress, duration: float, gamma: float, ratio: float) -> xr.Dataset:
-        """Simulate a scene, at a step that is cut where it would not be stable."""
-        # The textbook scheme and the exact solution have no order to choose.
+        """Simulate a scene, with a shorter step where this one would not be stable."""
+        # The textbook scheme and the exact solution have no adjustable order.
         order = max(self.order, 3)
         step = min(
             self.step,
@@ -79,7 +80,7 @@ class Setting(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts trade (work and errors of each setting) and locking (front speed by the step)."""
+    """Return the parts trade (work and errors of each setting) and locking (speed by step)."""
     presets, window = settings["presets"], settings["measure"]["front_window"]
     names = {
         Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
@@ -95,7 +96,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         start = time.process_time()
         rows.append(errors(one, window))
         if one in names:
-            # Seconds depend on the machine and the run, so that they are no part of the table.
+            # Seconds depend on the machine, so they are logged and not written to the table.
             seconds, work = time.process_time() - start, rows[-1]["work"]
             sys.stderr.write(f"  {names[one]}: {seconds:.2g} s of processor, {work:.3g} passes\n")
     trade = pd.DataFrame(ladder).join(pd.DataFrame(rows))
@@ -104,37 +105,39 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def locking(window: float) -> pd.DataFrame:
-    """The front speed over the step, by both schemes."""
+    """Return the front speed as a function of the step, for both schemes."""
     steps = [("fixed_step", step) for step in LOCKING_STEPS]
     steps += [("localised", step) for step in LOCKING_STEPS[::4]]
     rows = pd.DataFrame(steps, columns=["scheme", "step"])
-    scenes = [LOCKING(scheme=scheme, max_step=step) for scheme, step in steps]
+    scenes = [locking_scene(scheme=scheme, max_step=step) for scheme, step in steps]
     rows["front_speed"] = [fit_front(simulate(scene), window)[0] for scene in scenes]
     exact = front_speed_undamped(scenes[0].prestress.left)
     return rows.assign(exact=exact, dx=scenes[0].dx, part="locking")
 
 
 def errors(setting: Setting, window: float) -> dict[str, float]:
-    """Work, and the largest relative error of each quantity over the pulses and the crack."""
+    """Return the work, and the largest relative error of each quantity in pulses and crack."""
     runs = []
     for ratio in DAMPING_RATIOS:
-        run = setting.run(EVEN, DURATION, GAMMA, ratio)
+        run = setting.run(UNIFORM_PRESTRESS, DURATION, GAMMA, ratio)
         pulse = leading_pulse(run, window)
-        # At fixed beta/dx damping acts at the front alone in the continuum.
+        # At fixed beta/dx damping acts only at the front in the continuum.
         beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
-        steady = cached_pulse(EVEN.left, GAMMA, beta, damping_ratio=ratio)
+        steady = cached_pulse(UNIFORM_PRESTRESS.left, GAMMA, beta, damping_ratio=ratio)
         names = ("speed", "peak_velocity", "width", "slip")
         ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
-        ratios.append(run.attrs["first_stick_time"] / cached_transition(EVEN, GAMMA, ratio).time)
+        ratios.append(
+            run.attrs["first_stick_time"] / cached_transition(UNIFORM_PRESTRESS, GAMMA, ratio).time
+        )
         deviations = np.abs(np.array(ratios) - 1.0)
         runs.append(costs(run) | dict(zip(PULSE_QUANTITIES, deviations, strict=True)))
-    # The crack is damped: otherwise the ringing decides where its left front stands.
+    # The crack is damped, because otherwise the ringing of the lattice moves its left front.
     ratio = max(DAMPING_RATIOS)
-    crack = cached_crack(UNEVEN, ratio)
-    covered_at, distance = crack.transition(FRACTION).time, abs(crack.balance_position)
+    crack = cached_crack(ARRESTING_PRESTRESS, ratio)
+    covered_at, distance = crack.transition(COVERED_FRACTION).time, abs(crack.balance_position)
     coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
-    run = coarser.run(UNEVEN, CRACK_DURATION * covered_at, 0.0, ratio)
-    late = abs(arrival(run, FRACTION * distance, "left")[0] / covered_at - 1.0)
+    run = coarser.run(ARRESTING_PRESTRESS, CRACK_DURATION * covered_at, 0.0, ratio)
+    late = abs(arrival(run, COVERED_FRACTION * distance, "left")[0] / covered_at - 1.0)
     reached = abs(front_path(run, "left")[1][-1] / distance - 1.0)
     runs.append(costs(run) | {"share_time": late, "arrest_position": reached})
     numbers: dict[str, float] = {}

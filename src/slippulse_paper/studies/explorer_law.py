@@ -1,4 +1,4 @@
-"""The front law on a grid: cubics between its points, as in the explorer, are exact to 1e-4."""
+"""Tabulate the front law on a grid for the explorer, whose cubic interpolation is exact to 1e-4."""
 
 import numpy as np
 import pandas as pd
@@ -9,17 +9,19 @@ from slippulse.theory.front_speeds import prestress_for_speed
 NEEDS = {"sweeps": ()}
 
 # Even steps of ln(v - 1).
-EXCESS = np.linspace(-8.0, 12.0, 61)
-# Even steps of asinh(b/SCALE), which is linear in b where b is small and logarithmic beyond.
-SCALE = 0.005
-LARGEST_RATIO, RATIOS = 5.0, 33
+LOG_EXCESS_SPEEDS = np.linspace(-8.0, 12.0, 61)
+# Even steps of asinh(b/RATIO_SCALE), which is linear in b where b is small and logarithmic beyond.
+RATIO_SCALE = 0.005
+LARGEST_RATIO, RATIO_COUNT = 5.0, 33
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a point of the grid, with the logit of the pre-stress, ln(tau/(1 - tau))."""
-    arsinhs = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
-    arsinh, excess = (grid.ravel() for grid in np.meshgrid(arsinhs, EXCESS, indexing="ij"))
-    ratio = SCALE * np.sinh(arsinh)
+    """Return one row per grid point, with the logit of the pre-stress, ln(tau/(1 - tau))."""
+    arsinhs = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / RATIO_SCALE), RATIO_COUNT)
+    arsinh, excess = (
+        grid.ravel() for grid in np.meshgrid(arsinhs, LOG_EXCESS_SPEEDS, indexing="ij")
+    )
+    ratio = RATIO_SCALE * np.sinh(arsinh)
     columns = {"damping_ratio": ratio, "ratio_arsinh": arsinh, "excess_log": excess}
     parts = []
     for release in RELEASES:

@@ -1,4 +1,4 @@
-"""Limits of the solver's domain: one case a row, with what should happen and what did."""
+"""Run the solver at the limits of its domain, and compare each case with its expected outcome."""
 
 import math
 from functools import lru_cache
@@ -14,23 +14,31 @@ from slippulse.simulation.sweep import simulate_on_lattice
 from slippulse.solver.lattice import UnstableRun
 from slippulse.solver.solution import solve_on_lattice
 
-from .extreme_cases import APART, CASES, CENTRE, FRACTION, NOT_OFFERED, Case
+from .extreme_cases import (
+    BARRIER_CENTRE,
+    CASES,
+    COVERED_FRACTION,
+    NOT_OFFERED,
+    NUCLEATION_DISTANCE,
+    Case,
+)
 
 NEEDS = {"settings": ["measure.front_window"]}
 
-# Relative errors, absolute where 0 is expected, by family or else by quantity: what the spacings
-# below leave, and for drifts and symmetry what rounding does. Elsewhere equality is asked.
+# Largest relative errors (absolute where 0 is expected), by family or else by quantity. They follow
+# from the spacings of the cases, and for drifts and symmetry from rounding. Without an entry the
+# values must be equal.
 TOLERANCES = {
     "front speed": 0.01, "T_trans": 0.01, "meeting time": 0.01, "velocity error": 0.01, "step": 0.0,
     "final slip": 0.05, "negative level": 0.05, "speed drift": 1e-6, "slip drift": 1e-6,
     "energy residual": 1e-5, "asymmetry": 1e-9,
 }  # fmt: skip
-# The steady pulse is expected where these are measured, so its state belongs to the flags.
-OF_PULSES = ("front speed", "final slip", "speed drift", "slip drift", "energy residual")
-# These states say that all is well.
-FINE = ("", "steady", "none", "resolved")
-# Columns of the measured table; the other quantities are measured here.
-MEASURED = {
+# These quantities assume a steady pulse, so any other state of the pulse counts as a flag.
+PULSE_QUANTITIES = ("front speed", "final slip", "speed drift", "slip drift", "energy residual")
+# These states are not reported as flags.
+STATES_WITHOUT_FLAG = ("", "steady", "none", "resolved")
+# Quantities that are columns of the measured table; all others are measured here.
+MEASURED_COLUMNS = {
     "front speed": "front_speed_right",
     "final slip": "pulse_slip",
     "T_trans": "transition_time",
@@ -39,7 +47,7 @@ MEASURED = {
 
 
 class Outcome(NamedTuple):
-    """The value measured in a case, flags or a refusal, and block updates."""
+    """The value measured in a case, its flags or refusal, and the number of block updates."""
 
     value: float = math.nan
     message: str = ""
@@ -47,19 +55,19 @@ class Outcome(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a case, with the verdict, and flags or the refusal as the message."""
+    """Return one row per case, with the verdict; the message has the flags or the refusal."""
     window = settings["measure"]["front_window"]
     return pd.DataFrame([judged(case, window) for case in CASES])
 
 
 def judged(case: Case, window: float) -> dict[str, Any]:
-    """Run a case and judge it: a flag wins, then a number that is missing, then the number."""
+    """Run a case and judge it by its flags first, then by a missing value, then by the value."""
     tolerance = TOLERANCES.get(case.family, TOLERANCES.get(case.quantity, 0.0))
     expected, error = case.expected(), math.nan
     try:
         outcome = measured(case, window)
         error = abs(outcome.value - expected) / (abs(expected) or 1.0)
-        # A number where theory has none is not within its tolerance.
+        # If theory has no value, a measured number is not within the tolerance.
         verdict = "right" if error <= tolerance else "WRONG WITHOUT A FLAG"
         if outcome.message:
             verdict = NOT_OFFERED if outcome.message == NOT_OFFERED else "flagged"
@@ -80,7 +88,7 @@ simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
 def measured(case: Case, window: float) -> Outcome:
-    """Run a case and measure it; raises what a refused scene or a stopped run raises."""
+    """Run a case and measure it; errors of refused scenes and stopped runs are passed on."""
     if case.quantity == "velocity error":
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
@@ -88,35 +96,35 @@ def measured(case: Case, window: float) -> Outcome:
         return Outcome(float(solve_on_lattice(scene, damping_sign=case.damping_sign).slip.max()))
     run = simulated(scene)
     if case.quantity == "releases":
-        # A run without a release is flagged, and right here.
+        # A run without a release is flagged, which is the expected outcome here.
         return Outcome(float(run.attrs["releases"]), block_updates=run.attrs["block_updates"])
-    settings = {"front_window": window, "fraction": FRACTION, "trailing_times": ()}
+    settings = {"front_window": window, "fraction": COVERED_FRACTION, "trailing_times": ()}
     numbers = measured_row(run, settings)
     flags = [numbers["run_flags"], numbers.get("transition_state", "")]
-    if case.quantity in OF_PULSES:
+    if case.quantity in PULSE_QUANTITIES:
         flags.append(numbers["pulse_state"])
-    known = MEASURED.get(case.quantity)
+    known = MEASURED_COLUMNS.get(case.quantity)
     value = numbers[known] if known else measured_here(run, case.quantity)
-    message = ",".join(flag for flag in flags if flag not in FINE)
+    message = ",".join(flag for flag in flags if flag not in STATES_WITHOUT_FLAG)
     return Outcome(value, message, run.attrs["block_updates"])
 
 
 def measured_here(run: xr.Dataset, quantity: str) -> float:
-    """A quantity of a run that the measured table does not have."""
+    """Return a quantity of a run that is not in the measured table."""
     x, slip = run["x"].values, run["slip"].values
     if quantity == "meeting time":
-        middle = np.abs(x - 0.5 * APART) < 1.5 * run.attrs["dx"]
+        middle = np.abs(x - 0.5 * NUCLEATION_DISTANCE) < 1.5 * run.attrs["dx"]
         return float(np.nanmax(run["release_time"].values[middle]))
     if quantity == "asymmetry":
-        mirrored = np.interp(APART - x, x, slip, left=0.0, right=0.0)
+        mirrored = np.interp(NUCLEATION_DISTANCE - x, x, slip, left=0.0, right=0.0)
         return float(np.max(np.abs(slip - mirrored)) / slip.max())
     if quantity == "passes by":
-        return max(0.0, float(front_path(run)[1][-1]) - CENTRE)
+        return max(0.0, float(front_path(run)[1][-1]) - BARRIER_CENTRE)
     return drift(run, quantity)
 
 
 def drift(run: xr.Dataset, quantity: str) -> float:
-    """Relative change of the front speed or of the slip behind it, over most of a path."""
+    """Return the relative change of the front speed, or of the slip, over most of the path."""
     times, distances = front_path(run)
     x, last = run["x"].values, distances[-1]
 
@@ -131,7 +139,7 @@ def drift(run: xr.Dataset, quantity: str) -> float:
 
 
 def single_precision_error(case: Case) -> float:
-    """Relative error of a crack's slip velocity whose state is in float32, against float64.
+    """Return the relative error of a crack's slip velocity in float32, compared with float64.
 
     Symplectic Euler on slip, with the force from second differences of slip; no damping.
     """

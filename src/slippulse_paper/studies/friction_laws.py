@@ -24,59 +24,65 @@ NEEDS = {"settings": ["measure"]}
 
 GAMMA = 2.0 / 3.0
 # Damping beta/dx of laws of slip rate, and beta of slip weakening.
-RATIO, BETA = 0.1, 0.05
+DAMPING_RATIO, BETA = 0.1, 0.05
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
-# The limit F of laws of slip rate over the pre-stress; v_0 of strengthening, a of weakening.
-LIMITS = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3)
+# Limit F of laws of slip rate, divided by the pre-stress; v_0 of strengthening and a of weakening.
+RELATIVE_LIMITS = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3)
 V_0, SLOPE = 0.1, 1.5
-# d_c of slip weakening over tau_0^2/gamma, beyond which its fracture energy stops any rupture.
-DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
-# Friction is 0 within this distance of x = 0: it nucleates the rupture.
-NUCLEATION = 2.0
+# d_c of slip weakening, divided by tau_0^2/gamma; at larger d_c the fracture energy stops ruptures.
+RELATIVE_DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
+# There is no friction within this distance of x = 0, which nucleates the rupture.
+NUCLEATION_HALF_LENGTH = 2.0
 DX, DURATION = 0.08, 40.0
-# Steps over dx. Fronts of laws of slip rate, which are sharp, lock to a fraction of dx over a step.
-STEP, FINE_STEP = 0.1, 0.0127
-# A pulse sticks where slip overshoots tau_0/gamma by this factor. Else the wake of the nucleation,
-# which outlives a decaying tail, makes blocks stick at odd times.
-OVERSHOOT = 1.01
-# Front and trailing edge advance by more than this factor over the second half of a run.
-GROWTH, NO_RUPTURE = 1.1, "no rupture"
-# Front speed against d_c/dx at fixed beta: levels, spacings, and distances.
-SELECTED, SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
-RESOLUTIONS = (1.0, 2.0, 4.0, 8.0)
-# Cases with exact numbers, on lattices of these spacings: level, law, and step over dx.
+# Time steps divided by dx. Sharp fronts, as under laws of slip rate, lock onto a fraction of dx
+# divided by the step, so these laws need the fine step.
+STEP_OVER_DX, FINE_STEP_OVER_DX = 0.1, 0.0127
+# A pulse counts as sticking if its slip exceeds tau_0/gamma by this factor. With less overshoot
+# the remaining motion of the nucleation makes blocks stick at irregular times.
+MIN_OVERSHOOT = 1.01
+# In a running rupture, front and trailing edge advance by more than this factor during the second
+# half of the run.
+MIN_GROWTH, NO_RUPTURE = 1.1, "no rupture"
+# Front speed as a function of d_c/dx at fixed beta: levels, spacings, and values of d_c/dx.
+SELECTION_LEVELS, SELECTION_SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
+SPACINGS_PER_DISTANCE = (1.0, 2.0, 4.0, 8.0)
+# Cases with exact numbers, on lattices of these spacings: level, law, and step divided by dx.
 CASES: tuple[tuple[float, Friction, float], ...] = (
-    (0.5, BoundedRate(0.3, 1.0), FINE_STEP),
-    (0.5, RateWeakening(1.5, 0.3), FINE_STEP),
-    (0.8, SlipWeakening(0.1, NUCLEATION), STEP),
-    (0.5, SlipWeakening(0.2, NUCLEATION), STEP),
-    (0.5, SlipWeakening(0.3, NUCLEATION), STEP),
+    (0.5, BoundedRate(0.3, 1.0), FINE_STEP_OVER_DX),
+    (0.5, RateWeakening(1.5, 0.3), FINE_STEP_OVER_DX),
+    (0.8, SlipWeakening(0.1, NUCLEATION_HALF_LENGTH), STEP_OVER_DX),
+    (0.5, SlipWeakening(0.2, NUCLEATION_HALF_LENGTH), STEP_OVER_DX),
+    (0.5, SlipWeakening(0.3, NUCLEATION_HALF_LENGTH), STEP_OVER_DX),
 )
-# Lattices of several spacings have the same exact pulse.
+# The exact pulse is cached, because lattices of several spacings share it.
 cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Roles plane, selection (with d_c and exact_speed), case and theory."""
+    """Return the roles plane, selection (with d_c and exact_speed), case and theory."""
     still = settings["measure"]["still"]
     plane, selection = [], []
     for level in LEVELS:
         laws: list[Friction] = []
-        for limit in LIMITS:
+        for limit in RELATIVE_LIMITS:
             laws += [BoundedRate(limit * level, V_0), RateWeakening(SLOPE, limit * level)]
-        for distance, weakening in product(DISTANCES, (SlipWeakening, ExponentialWeakening)):
-            laws.append(weakening(distance * level**2 / GAMMA, NUCLEATION))
-        plane += [_run(level, law, STEP, DX, still) for law in laws]
-    for level, dx, resolution in product(SELECTED, SPACINGS, RESOLUTIONS):
-        law = SlipWeakening(resolution * dx, NUCLEATION)
+        for distance, weakening in product(
+            RELATIVE_DISTANCES, (SlipWeakening, ExponentialWeakening)
+        ):
+            laws.append(weakening(distance * level**2 / GAMMA, NUCLEATION_HALF_LENGTH))
+        plane += [_run(level, law, STEP_OVER_DX, DX, still) for law in laws]
+    for level, dx, resolution in product(
+        SELECTION_LEVELS, SELECTION_SPACINGS, SPACINGS_PER_DISTANCE
+    ):
+        law = SlipWeakening(resolution * dx, NUCLEATION_HALF_LENGTH)
         ruptures = _strength(level, law) < 1.0
         speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed if ruptures else np.nan
         known = {"d_c": law.d_c, "exact_speed": speed}
-        selection.append(_run(level, law, STEP, dx, still) | known)
+        selection.append(_run(level, law, STEP_OVER_DX, dx, still) | known)
     parts = {
         "plane": plane,
         "selection": selection,
-        "case": [_run(*case, dx, still) for case, dx in product(CASES, SPACINGS)],
+        "case": [_run(*case, dx, still) for case, dx in product(CASES, SELECTION_SPACINGS)],
         "theory": [_theory(level, law) for level, law, _ in CASES],
     }
     rows = [pd.DataFrame(rows).assign(role=role) for role, rows in parts.items()]
@@ -92,19 +98,19 @@ def _strength(level: float, law: Friction) -> float:
 
 
 def _run(level: float, law: Friction, step: float, dx: float, still: float) -> dict[str, Any]:
-    """One run, its regime and its pulse; width and slip are NaN where nothing sticks.
+    """Simulate one run and return its regime and pulse; width and slip are NaN if nothing sticks.
 
     Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
     """
     step = min(step, 0.9 * law.traits.longest_step / dx)
-    # Under slip weakening beta is fixed, else beta/dx, for either has a limit dx -> 0.
-    beta = BETA if isinstance(law, SlipWeakening) else RATIO * dx
+    # Slip weakening has a limit dx -> 0 at fixed beta, all other laws at fixed beta/dx.
+    beta = BETA if isinstance(law, SlipWeakening) else DAMPING_RATIO * dx
     profile = Prestress(level, level)
     values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
     scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
     run = recorded(scene, None, solve_by_scheme(scene)).dataset()
     right = right_of_centre(run)
-    # The speed of the front is that of the last third of the run.
+    # The front speed is measured over the last third of the run.
     time, x = right["release_time"].values, right["x"].values
     late = time > 2.0 / 3.0 * DURATION
     speed = float(np.polyfit(time[late], x[late], 1)[0]) if late.sum() > 2 else np.nan
@@ -117,22 +123,22 @@ def _run(level: float, law: Friction, step: float, dx: float, still: float) -> d
 
 
 def _regime(right: xr.Dataset, rest: float, still: float) -> str:
-    """Classify a rupture, whose slip comes to rest at ``rest`` where it overshoots nothing."""
+    """Classify a rupture; ``rest`` is the slip at which it would rest without overshoot."""
     before, after = (sliding_part(right, time) for time in (0.5 * DURATION, DURATION))
-    if after[1] <= NUCLEATION + GROWTH * (before[1] - NUCLEATION):
+    if after[1] <= NUCLEATION_HALF_LENGTH + MIN_GROWTH * (before[1] - NUCLEATION_HALF_LENGTH):
         return NO_RUPTURE
-    if after[0] > GROWTH * before[0] and pulse_at(right, DURATION)[1] > OVERSHOOT * rest:
+    if after[0] > MIN_GROWTH * before[0] and pulse_at(right, DURATION)[1] > MIN_OVERSHOOT * rest:
         return STICKING
     velocity = right["slip_velocity"].values
     return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
 
 
 def _theory(level: float, law: Friction) -> dict:
-    """Exact numbers of a case."""
+    """Return the exact numbers of a case."""
     if isinstance(law, SlipWeakening):
         pulse = cached_pulse(level, GAMMA, BETA, law.d_c)
     else:
-        pulse = rate_pulse(level, GAMMA, RATIO, law)
+        pulse = rate_pulse(level, GAMMA, DAMPING_RATIO, law)
     row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
     sizes = {"pulse_width": pulse.width, "pulse_slip": pulse.slip} if pulse.sticks else {}
     return row | sizes

@@ -1,4 +1,4 @@
-"""Exact undamped transitions over the pre-stress, nucleated at a point and with a Gaussian."""
+"""Tabulate exact undamped transition times, for nucleation at a point and by a Gaussian."""
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans sqrt(gamma)/pi at Gamma = 1; without gamma where nucleation is at a point."""
+    """Return T_trans sqrt(gamma)/pi at Gamma = 1; gamma is NaN for nucleation at a point."""
     rows = []
     for left in LEVELS:
         rows += [(left, over_paper(left, gamma), gamma) for gamma in (None, *GAMMAS)]
@@ -21,7 +21,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def over_paper(level: float, gamma: float | None = None) -> float:
-    """T_trans sqrt(gamma)/pi with a Gaussian of W = 1; nucleated at a point without gamma."""
+    """Return T_trans sqrt(gamma)/pi for a Gaussian of W = 1, or for a point if gamma is None."""
     if gamma is None:
         return uniform_transition_time(level, 1.0) / np.pi
     exact = exact_transition_displacement(Prestress(level, level), gamma)

@@ -1,4 +1,4 @@
-"""The layer in the plane, beside the paper's equation in one dimension, under slip weakening.
+"""Simulate the layer in two dimensions with slip weakening, and compare it with the paper.
 
 Fracture energies d_c/2 are given as fractions of G_0 = tau_0^2/(2 gamma), the energy that a length
 of the layer releases between the pre-stress and the kinetic friction.
@@ -20,46 +20,47 @@ from slippulse.theory.law_pulses import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
 
-# gamma of lambda = G, for which the paper means its formulas; smaller ones give pulses of many H.
+# gamma for lambda = G, which the paper has in mind; at smaller gamma pulses are many H wide.
 GAMMA = 2.0 / 3.0
 GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
-# Fracture energies over G_0 at the level LEVEL, and other levels at one fracture energy.
+# Fracture energies divided by G_0 at LEVEL, and other levels at one fracture energy.
 FRACTURE_ENERGIES = (0.05, 0.09, 0.21, 0.42, 0.7, 0.9)
-LEVEL, LEVELS, LEVELS_AT = 0.8, (0.5, 0.65, 0.95), 0.42
-# Half of the length without friction and the duration at GAMMA. All lengths and times of a scene
-# are multiplied by sqrt(GAMMA/gamma), as those of the paper's pulses are.
-NUCLEATION, DURATION = 2.0, 48.0
-# Places at which a pulse is measured at GAMMA, each over half of NUCLEATION on both sides, and its
-# speed over all of it: the last two show whether it has settled.
-PLACES = (6.0, 13.0, 16.0)
+LEVEL, OTHER_LEVELS, OTHER_LEVELS_ENERGY = 0.8, (0.5, 0.65, 0.95), 0.42
+# Half-length of the region without friction, and the duration, at GAMMA. At other gamma all lengths
+# and times are multiplied by sqrt(GAMMA/gamma), like those of the paper's pulses.
+NUCLEATION_HALF_LENGTH, DURATION = 2.0, 48.0
+# Positions at which a pulse is measured at GAMMA. Each measurement averages over a window around
+# the position; comparing the last two positions shows whether the pulse is steady.
+STATION_POSITIONS = (6.0, 13.0, 16.0)
 # The same for other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
-# Cells over the height: the first grid tells how long a run on the next ones must last.
-CELLS, FINE = (10, 20, 40), (20, 40, 80)
-# Fracture energies up to this one need the finer grids, which at small gamma would take too long.
-BRITTLE, SHORT = 0.3, 0.2
-# Room for a trailing edge that comes later on a finer grid, relative and in H.
-LATER = 0.03, 1.0
+# Cells over the height. The run on the first grid determines how long the other runs must be.
+CELLS, FINE_CELLS = (10, 20, 40), (20, 40, 80)
+# The finer grids are used below this fracture energy and above this gamma: small fracture energies
+# need them, but at small gamma they would take too long.
+FINE_GRID_MAX_ENERGY, FINE_GRID_MIN_GAMMA = 0.3, 0.2
+# Margins, relative and in H, for a trailing edge that arrives later on a finer grid.
+TRAIL_MARGINS = 0.03, 1.0
 # The paper's damping.
 BETA = 1e-3
-# Pre-stress and weakening of the pulse whose top is free to rise, and of a crack under held stress.
-FREE, CRACK, OTHER_DURATION = (0.5, 0.225), (0.8, 0.8), 30.0
-# A level that stops the left front under held stress, the width of the Gaussian at nucleation, and
-# weakenings.
-BARRIER, WIDTH = -0.75, 5.0
+# Pre-stress and weakening of a pulse whose top may rise, and of a crack under held stress.
+FREE_TOP_CASE, CRACK_CASE, OTHER_DURATION = (0.5, 0.225), (0.8, 0.8), 30.0
+# Level that stops the left front under held stress, width of the Gaussian at nucleation, and
+# weakening distances.
+BARRIER_LEVEL, GAUSSIAN_WIDTH = -0.75, 5.0
 WEAKENINGS = (0.05, 0.2, 0.8)
-# Coefficients of friction of a strength that follows the normal stress.
+# Friction coefficients of a strength that depends on the normal stress.
 COUPLINGS = (0.3, 0.6)
-# A pulse of one pre-stress enters another one at STEP: weakening and levels at GAMMA. Places at
-# which it is measured, before and beyond the step.
-STEP, STEP_WEAKENING, STEP_LEVELS = 10.0, 0.3, (0.65, 0.8)
-STEP_PLACES = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
-# The drawn pulse, and the time at which it is drawn, on every second cell.
-DRAWN_ENERGY, SNAPSHOT, EVERY = 0.21, 12.0, 2
+# A pulse enters another pre-stress at STEP_POSITION, with this weakening and these levels at GAMMA.
+# It is measured at positions before and beyond the step.
+STEP_POSITION, STEP_WEAKENING, STEP_LEVELS = 10.0, 0.3, (0.65, 0.8)
+STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
+# Fracture energy of the pulse that is drawn, time of the picture, and every how many cells.
+DRAWN_ENERGY, SNAPSHOT_TIME, DRAWN_EVERY_CELLS = 0.21, 12.0, 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of a run at its places by part, beside one dimension (pulse), and the part field.
+    """Return the measurements of all runs by part, and the part field for the picture.
 
     Parts: pulse (held displacement), patch (the same until the length without friction has stuck),
     step (a pulse enters another pre-stress), free (its top free to rise), coupled (strength by
@@ -68,33 +69,42 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     rows = []
     for gamma in GAMMAS:
         cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
-        for tau0, energy in cases + [(tau0, LEVELS_AT) for tau0 in LEVELS]:
+        for tau0, energy in cases + [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]:
             scene = uniform("displacement", gamma, tau0, energy * tau0**2 / gamma)
             theory = one_dimension(scene)
-            grids = FINE if energy < BRITTLE and gamma > SHORT else CELLS
-            rows += [row | theory for row in at_places("pulse", scene, grids, PLACES)]
-        # A strip that slides as one sticks when a shear wave has gone to the top and back.
+            grids = (
+                FINE_CELLS
+                if energy < FINE_GRID_MAX_ENERGY and gamma > FINE_GRID_MIN_GAMMA
+                else CELLS
+            )
+            rows += [row | theory for row in at_places("pulse", scene, grids, STATION_POSITIONS)]
+        # A strip that slides uniformly sticks when a shear wave has run to the top and back.
         strip = {"strip_first_stick": 2.0 / math.sqrt(0.5 * gamma)}
-        patch = uniform("displacement", gamma, LEVEL, LEVELS_AT * LEVEL**2 / gamma)
+        patch = uniform("displacement", gamma, LEVEL, OTHER_LEVELS_ENERGY * LEVEL**2 / gamma)
         patch = replace(patch, duration=1.2 * strip["strip_first_stick"])
         rows += [
             row | strip for row in along_path("patch", patch, CELLS)[:: len(FRACTIONS_OF_PATH)]
         ]
     for before, level in product(STEP_LEVELS, repeat=2):
         rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:])
-    rows += along_path("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
-    crack, barrier = uniform("stress", GAMMA, *CRACK), Prestress(BARRIER, 0.0, WIDTH)
+    rows += along_path(
+        "free", replace(uniform("displacement", GAMMA, *FREE_TOP_CASE), top="free"), CELLS
+    )
+    crack, barrier = (
+        uniform("stress", GAMMA, *CRACK_CASE),
+        Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH),
+    )
     rows += along_path("crack", crack, CELLS)
-    main = uniform("displacement", GAMMA, LEVEL, LEVELS_AT * LEVEL**2 / GAMMA)
+    main = uniform("displacement", GAMMA, LEVEL, OTHER_LEVELS_ENERGY * LEVEL**2 / GAMMA)
     for coupling in COUPLINGS:
-        rows += along_path("coupled", replace(main, coupling=coupling), FINE[:2], (1, -1))
+        rows += along_path("coupled", replace(main, coupling=coupling), FINE_CELLS[:2], (1, -1))
     crack = replace(crack, prestress=barrier, duration=1.8 * OTHER_DURATION)
     balance = {"balance_distance": paper_transition_stress(barrier)[0]}
     for weakening in WEAKENINGS:
         stopped = along_path("barrier", replace(crack, weakening=weakening), CELLS, (1, -1))
         rows += [row | balance for row in stopped]
     drawn = uniform("displacement", GAMMA, LEVEL, DRAWN_ENERGY * LEVEL**2 / GAMMA)
-    return pd.concat([pd.DataFrame(rows), field(replace(drawn, duration=SNAPSHOT))])
+    return pd.concat([pd.DataFrame(rows), field(replace(drawn, duration=SNAPSHOT_TIME))])
 
 
 def stretch(gamma: float) -> float:
@@ -103,8 +113,8 @@ def stretch(gamma: float) -> float:
 
 
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
-    """Scene in uniform pre-stress, in which a length without friction nucleates the rupture."""
-    duration, nucleation = OTHER_DURATION * stretch(gamma), NUCLEATION * stretch(gamma)
+    """Return a scene in uniform pre-stress; a region without friction nucleates the rupture."""
+    duration, nucleation = OTHER_DURATION * stretch(gamma), NUCLEATION_HALF_LENGTH * stretch(gamma)
     prestress = Prestress(tau0, tau0, peak=tau0)
     return LayerScene(boundary, gamma, prestress, weakening, duration, nucleation=nucleation)
 
@@ -115,10 +125,13 @@ def across_a_step(
     weakening: float,
     before: float,
     grids: Sequence[int],
-    places: Sequence[float] = STEP_PLACES,
+    places: Sequence[float] = STEP_STATIONS,
 ) -> list[dict[str, Any]]:
-    """Rows of a pulse that forms in one pre-stress and enters another one, or the same, at STEP."""
-    scene, position = uniform("displacement", gamma, before, weakening), STEP * stretch(gamma)
+    """Measure a pulse that forms in one pre-stress and enters another one at STEP_POSITION."""
+    scene, position = (
+        uniform("displacement", gamma, before, weakening),
+        STEP_POSITION * stretch(gamma),
+    )
     if before != level:
         steps = (position, level), (-position, level)
         scene = replace(scene, prestress=replace(scene.prestress, steps=steps))
@@ -130,7 +143,7 @@ def across_a_step(
 def at_places(
     part: str, scene: LayerScene, grids: Sequence[int], places: Sequence[float]
 ) -> list[dict[str, Any]]:
-    """Rows of one scene at fixed places, for each grid; a run ends soon after the last place."""
+    """Measure one scene at fixed positions on each grid; a run ends soon after the last one."""
     scene = replace(scene, duration=DURATION * stretch(scene.gamma))
     positions = [place * stretch(scene.gamma) for place in places]
     rows = []
@@ -143,7 +156,7 @@ def at_places(
 
 
 def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> LayerScene:
-    """The scene with a duration and a trail that suffice for the positions, as a run shows.
+    """Return the scene with a duration and a trail that suffice to measure at all positions.
 
     The scene is returned as it is if the pulse does not pass all of them.
     """
@@ -152,7 +165,7 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
     sticks = run.stick_time[near]
     if not np.isfinite(sticks).all():
         return scene
-    relative, absolute = LATER
+    relative, absolute = TRAIL_MARGINS
     later = absolute + relative * float(sticks.max())
     return replace(
         scene,
@@ -164,7 +177,7 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
 def along_path(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
 ) -> list[dict[str, Any]]:
-    """Rows of one scene at fractions of the path of its front, for each grid and side."""
+    """Measure one scene at fractions of the path of its front, for each grid and side."""
     rows = []
     for cells in grids:
         run = simulate_layer(replace(scene, cells=cells))
@@ -178,17 +191,17 @@ def along_path(
 def measured(
     part: str, scene: LayerScene, run: LayerRun, side: int, positions: Sequence[float]
 ) -> list[dict[str, Any]]:
-    """Rows of one run at positions, of what passes there and is left."""
+    """Measure the pulse that passes each position of a run, and the slip that it leaves."""
     tau0, gamma = scene.prestress.right, scene.gamma
     known: dict[str, Any] = {"part": part, "gamma": gamma, "tau0": tau0, "side": side}
     known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": scene.cells}
     if tau0 > 0.0:
         known["fracture_energy"] = scene.weakening * gamma / tau0**2
-    # Infinite where the middle of the length without friction never sticks.
+    # Infinite if the middle of the region without friction never sticks.
     middle = float(run.stick_time[np.argmin(np.abs(run.x))])
     known["first_stick"] = middle if math.isfinite(middle) else math.inf
     if math.isfinite(scene.trail):
-        # The middle was not followed for long enough.
+        # The run was too short to follow the middle until it sticks.
         known["first_stick"] = math.nan
     sticks = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
     known["earliest_stick"] = float(sticks.min())
@@ -209,7 +222,7 @@ def measured(
 
 
 def one_dimension(scene: LayerScene) -> dict[str, float]:
-    """Numbers of the paper's equation at the parameters of a scene."""
+    """Return the numbers of the paper's equation for the parameters of a scene."""
     tau0, gamma = scene.prestress.right, scene.gamma
     weakening = scene.weakening
     paper, damped = paper_pulse(tau0, gamma), weakening_pulse(tau0, gamma, BETA, weakening)
@@ -225,11 +238,11 @@ def one_dimension(scene: LayerScene) -> dict[str, float]:
 
 
 def field(scene: LayerScene) -> pd.DataFrame:
-    """Horizontal velocity over the layer at the end of a scene, where anything has moved."""
+    """Return the horizontal velocity in the layer at the end of a scene, where anything moves."""
     run = simulate_layer(scene)
     ahead = run.x <= scene.duration + 2.0 * scene.nucleation
-    columns = np.flatnonzero(ahead)[::EVERY]
-    rows = np.arange(0, scene.cells + 1, EVERY)
+    columns = np.flatnonzero(ahead)[::DRAWN_EVERY_CELLS]
+    rows = np.arange(0, scene.cells + 1, DRAWN_EVERY_CELLS)
     y, x = np.meshgrid(rows / scene.cells, run.x[columns], indexing="ij")
     velocity = run.velocity[np.ix_(rows, columns)]
     shape = {"x": x.ravel(), "y": y.ravel(), "velocity": velocity.ravel()}

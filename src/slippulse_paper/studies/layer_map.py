@@ -1,4 +1,4 @@
-"""Stability of pulses of the layer in the plane, over fracture energy and elasticity ratio.
+"""Map the stability of pulses in the two-dimensional layer by fracture energy and elasticity ratio.
 
 Each pulse runs three times: in a uniform pre-stress, and sent into it from a lower and from a
 higher one. Its width is about sqrt(2/gamma - 1), so that gamma sets the width over the height.
@@ -15,18 +15,18 @@ from .layer import LEVEL, across_a_step
 
 NEEDS = {"settings": ["figures.study_layer"]}
 
-# Pre-stress in which a pulse forms, divided by the one that it enters, by column.
-BEFORE = {"uniform": 1.0, "from_below": 0.9, "from_above": 1.1}
-# Places at GAMMA: before the step at 10, halfway, and far beyond.
-PLACES = (9.0, 18.0, 24.0)
-# The grid that tells how long a run lasts.
-COARSEST = 10
-# Slips are equal if they differ by less than this, relatively.
-EQUAL = 0.02
+# Pre-stress in which a pulse forms, divided by the pre-stress that it enters, by column name.
+RELATIVE_LEVELS_BEFORE = {"uniform": 1.0, "from_below": 0.9, "from_above": 1.1}
+# Positions of measurement at GAMMA: before the step at 10, halfway, and far beyond.
+STATION_POSITIONS = (9.0, 18.0, 24.0)
+# Cells of the grid whose run determines the duration of the other runs.
+COARSEST_CELLS = 10
+# Slips count as equal if their relative difference is smaller than this.
+EQUAL_SLIP_TOLERANCE = 0.02
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row per gamma and fracture energy, with the slips of its three runs and their outcome.
+    """Return one row per gamma and fracture energy, with the slips of three runs and the outcome.
 
     If the settings have a chunk, such as [3, 8], the table has the rows of that chunk alone.
     """
@@ -38,12 +38,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
-    """Row of one point of the map; slips are 0 where the pulse has died."""
-    grids, weakening = sorted({COARSEST, cells}), energy * LEVEL**2 / gamma
+    """Return the row of one point of the map; slips are 0 if the pulse has died."""
+    grids, weakening = sorted({COARSEST_CELLS, cells}), energy * LEVEL**2 / gamma
     out = {"gamma": gamma, "tau0": LEVEL, "fracture_energy": energy, "cells": cells}
-    for name, ratio in BEFORE.items():
-        rows = across_a_step(gamma, LEVEL, weakening, ratio * LEVEL, grids, PLACES)
-        entry, halfway, last = rows[-len(PLACES) :]
+    for name, ratio in RELATIVE_LEVELS_BEFORE.items():
+        rows = across_a_step(gamma, LEVEL, weakening, ratio * LEVEL, grids, STATION_POSITIONS)
+        entry, halfway, last = rows[-len(STATION_POSITIONS) :]
         if name == "uniform":
             out |= {key: last[key] for key in ("speed", "pulse_width")}
         out |= {f"{name}_slip_before": entry["pulse_slip"]}
@@ -52,21 +52,22 @@ def point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
 
 
 def outcome(slips: Mapping[str, float]) -> str:
-    """Return what the pulses of one point do.
+    """Classify the pulses of one point of the map.
 
-    dying: the slip in uniform pre-stress falls. growing: that slip, or that of a pulse from another
-    pre-stress, rises above the uniform one. steady: pulses from both sides reach the uniform slip.
-    lower dies: the one from above does, and the other one died in the lower pre-stress.
+    "dying" means that the slip in uniform pre-stress falls along the path, "growing" that a slip
+    rises. The point is "steady" if pulses from both sides reach the slip of the
+    uniform pre-stress. It is "lower dies" if the pulse from above reaches it and the other pulse
+    died before it entered. Everything else is "not settled".
     """
     steady = slips["uniform_slip"]
-    if not steady > (1.0 - EQUAL) * slips["uniform_slip_halfway"]:
+    if not steady > (1.0 - EQUAL_SLIP_TOLERANCE) * slips["uniform_slip_halfway"]:
         return "dying"
-    growing = steady > (1.0 + EQUAL) * slips["uniform_slip_halfway"]
+    growing = steady > (1.0 + EQUAL_SLIP_TOLERANCE) * slips["uniform_slip_halfway"]
     near = []
     for name in ("from_below", "from_above"):
         slip, halfway = slips[f"{name}_slip"], slips[f"{name}_slip_halfway"]
-        growing = growing or slip > max((1.0 + EQUAL) * steady, halfway)
-        near.append(abs(slip - steady) < EQUAL * steady)
+        growing = growing or slip > max((1.0 + EQUAL_SLIP_TOLERANCE) * steady, halfway)
+        near.append(abs(slip - steady) < EQUAL_SLIP_TOLERANCE * steady)
     if growing:
         return "growing"
     if all(near):

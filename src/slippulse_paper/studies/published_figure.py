@@ -1,4 +1,4 @@
-"""The published space-time figure: parameters that fit its readings best, by damping and rule.
+"""Fit parameters to the readings of the published space-time figure, by damping and release rule.
 
 The figure was drawn from a lattice. A trial is the exact solution of the continuum limit; the
 correction of each reading for a finite spacing is taken from a lattice run of the same trial. The
@@ -25,51 +25,51 @@ from slippulse.theory.rupture import Rupture
 
 NEEDS = {"settings": ["published"]}
 
-# The paper states beta for the figure; the left panel ends at this time, as read off.
-BETA, END = 1.0e-3, 10.8
+# The paper states this beta for the figure. The left panel ends at this time, which was read off.
+BETA, PANEL_END = 1.0e-3, 10.8
 # The fit begins at this tau_0 and gamma.
-NEAR = np.array([0.25, 0.55])
-# Evenly in their logarithm about the best fit of each rule, as far as a fit is accepted and beyond.
+FIRST_GUESS = np.array([0.25, 0.55])
+# Even steps of the logarithm around the best fit of each rule, beyond the range of accepted fits.
 DAMPING_RATIOS = {
     "total": (0.04, 0.055, 0.075, 0.1, 0.135, 0.18),
     "elastic": (0.075, 0.105, 0.145, 0.2, 0.28, 0.39),
 }
 # Damping ratio, release rule and spacing of the authors' public notebook for the paper.
-NOTEBOOK = 0.2, "total", 0.05005
-# The right panel: its pre-stress as read off, and a duration that covers it.
+NOTEBOOK_SETTINGS = 0.2, "total", 0.05005
+# Right panel: the pre-stress that was read off, and a duration that covers the panel.
 RIGHT_PANEL, RIGHT_DURATION = Prestress(-0.75, 0.0, 5.0), 30.0
-# Damping ratios of the right panel are about the best fit.
+# Damping ratios for the right panel, around the best fit of the left panel.
 RIGHT_RATIOS = (0.05, 0.1, 0.2)
-# Times at which the largest velocity is sought, and reach of the samples over the duration.
-TIMES, REACH = 109, 1.5
+# Number of times at which the largest velocity is sampled, and reach of the samples divided by the
+# duration.
+TIME_COUNT, SAMPLE_REACH = 109, 1.5
 lattice_of = partial(Scene, max_step=1.0, order=8)
-# A lattice's front is a straight line over this last fraction of its path; the exact one is beyond
-# the Gaussian there.
-WINDOW = 0.3
-# Positions of the exact trailing edge.
-EDGE = 241
-TRAILING = "trailing_edge_"
-# Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
-DIFFERENCE, FIRST = 0.01, 2
+# The front is straight over this last fraction of its path, which is beyond the Gaussian.
+FRONT_WINDOW = 0.3
+# Number of positions of the exact trailing edge.
+EDGE_POSITION_COUNT = 241
+TRAILING_EDGE_PREFIX = "trailing_edge_"
+# Relative change of tau_0 and gamma for a numerical slope; number of steps from the first guess.
+SLOPE_DIFFERENCE, FIRST_GUESS_STEPS = 0.01, 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts profile (all but the arrows), arrows (all readings), notebook, stress (right)."""
+    """Return the parts profile (without arrows), arrows (all readings), notebook and stress."""
     panel = LeftPanel(readings_of(settings["published"], "space_time_displacement"))
     parts = []
     for release in RELEASES:
         trials: list[tuple[float, np.ndarray]] = []
         for ratio in DAMPING_RATIOS[release]:
-            guess, steps = trials[-1][1] if trials else NEAR, FIRST
+            guess, steps = trials[-1][1] if trials else FIRST_GUESS, FIRST_GUESS_STEPS
             if len(trials) >= 2:
-                # The line through the last two trials, over the logarithm of the damping ratio.
+                # Extrapolate the last two fits linearly in the logarithm of the damping ratio.
                 (one, first), (other, second) = trials[-2:]
                 guess = second + (second - first) * np.log(ratio / other) / np.log(other / one)
                 steps = 1
             trial, rows = panel.fitted(ratio, release, BETA / ratio, guess, steps)
             trials.append((ratio, trial))
             parts.append(rows)
-    _, rows = panel.fitted(*NOTEBOOK, NEAR, FIRST)
+    _, rows = panel.fitted(*NOTEBOOK_SETTINGS, FIRST_GUESS, FIRST_GUESS_STEPS)
     parts.append(rows[rows["part"] == "profile"].assign(part="notebook"))
     readings = readings_of(settings["published"], "space_time_stress").drop(columns="arrow")
     readings = readings[readings["quantity"] == "largest_velocity"]
@@ -87,7 +87,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def readings_of(published: dict, simulation: str) -> pd.DataFrame:
-    """Readings of one simulation: rows reading, drawn, quantity, reading_error, arrow."""
+    """Return the readings of one simulation as a table, one row per reading."""
     rows = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
     rows = rows[rows["simulation"] == simulation].rename(columns={"value": "drawn"})
     rows["arrow"] = rows["arrow"].eq(True)
@@ -95,30 +95,32 @@ def readings_of(published: dict, simulation: str) -> pd.DataFrame:
 
 
 def sampled(scene: Scene, left: float) -> xr.Dataset:
-    """The lattice run of a scene, with samples at its blocks from x = left on."""
-    first, last = left / scene.dx, REACH * scene.duration / scene.dx
+    """Simulate a scene on a lattice, with samples at all blocks from x = left on."""
+    first, last = left / scene.dx, SAMPLE_REACH * scene.duration / scene.dx
     positions = scene.dx * np.arange(round(first), round(last))
-    return simulate_on_lattice(scene, Samples(np.linspace(0.0, scene.duration, TIMES), positions))
+    return simulate_on_lattice(
+        scene, Samples(np.linspace(0.0, scene.duration, TIME_COUNT), positions)
+    )
 
 
 class LeftPanel:
-    """The left panel: its readings, and the numbers that a trial (tau_0 and gamma) has for them."""
+    """The left panel: its readings, and the values for them at a trial tau_0 and gamma."""
 
     def __init__(self, readings: pd.DataFrame) -> None:
         self.readings = readings
         self.drawn, self.error = readings["drawn"].to_numpy(), readings["reading_error"].to_numpy()
         self.quantities = readings["quantity"].tolist()
-        self.edges = [name for name in self.quantities if name.startswith(TRAILING)]
-        self.times = [float(name.removeprefix(TRAILING)) for name in self.edges]
+        self.edges = [name for name in self.quantities if name.startswith(TRAILING_EDGE_PREFIX)]
+        self.times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
 
     def exact(self, trial: np.ndarray, ratio: float, release: str) -> np.ndarray:
-        """Numbers of the exact rupture, which ends where the figure does."""
+        """Return the values of the exact rupture, which ends at the end of the panel."""
         tau0, gamma = map(float, trial)
-        rupture = Rupture(Prestress(tau0, tau0), gamma, ratio, release, END)
+        rupture = Rupture(Prestress(tau0, tau0), gamma, ratio, release, PANEL_END)
         end = rupture.front_ends[-1][1]
-        before = (1.0 - WINDOW) * end.x
+        before = (1.0 - FRONT_WINDOW) * end.x
         speed = (end.x - before) / (end.time - float(rupture.release_time(before)))
-        x = np.linspace(0.0, end.x, EDGE)
+        x = np.linspace(0.0, end.x, EDGE_POSITION_COUNT)
         stick = rupture.stick_time(x)
         stuck = np.isfinite(stick)
         numbers = {
@@ -128,7 +130,7 @@ class LeftPanel:
             "transition_length": rupture.transition.length,
             "largest_velocity": rupture.largest_velocity,
         }
-        allowed = f"{', '.join(numbers)}, {TRAILING}TIME"
+        allowed = f"{', '.join(numbers)}, {TRAILING_EDGE_PREFIX}TIME"
         numbers |= zip(self.edges, np.interp(self.times, stick[stuck], x[stuck]), strict=True)
         for name in self.quantities:
             if name not in numbers:
@@ -136,11 +138,14 @@ class LeftPanel:
         return np.array([numbers[name] for name in self.quantities])
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
-        """Numbers of a lattice run."""
+        """Return the values of a lattice run."""
         tau0, gamma = map(float, trial)
         profile = Prestress(tau0, tau0)
-        scene = lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release)
-        run, settings = sampled(scene, 0.0), {"front_window": WINDOW, "trailing_times": self.times}
+        scene = lattice_of("displacement", profile, PANEL_END, dx, gamma, ratio * dx, release)
+        run, settings = (
+            sampled(scene, 0.0),
+            {"front_window": FRONT_WINDOW, "trailing_times": self.times},
+        )
         numbers, _ = measure_run(run, MEASURE_SETTINGS | settings)
         numbers["largest_velocity"] = float(run["sample_velocity"].max())
         return np.array([numbers[name] for name in self.quantities])
@@ -148,7 +153,7 @@ class LeftPanel:
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
     ) -> tuple[np.ndarray, pd.DataFrame]:
-        """tau_0 and gamma that fit all but the arrows best, by Gauss-Newton steps; rows of fits.
+        """Fit tau_0 and gamma to all readings except the arrows by Gauss-Newton steps.
 
         The fit of all readings is so near that one more step from it, and the same correction for
         the lattice, suffice.
@@ -159,7 +164,7 @@ class LeftPanel:
             correction = self.lattice(trial, ratio, release, dx) - exact
             misfit = (exact + correction - self.drawn) / self.error
             if step < steps:
-                nudges = np.diag(DIFFERENCE * trial)
+                nudges = np.diag(SLOPE_DIFFERENCE * trial)
                 nudged = [self.exact(trial + nudge, ratio, release) for nudge in nudges]
                 changes = (np.array(nudged) - exact) / nudges.sum(axis=1)[:, None]
                 slopes = changes.T / self.error[:, None]

@@ -1,4 +1,4 @@
-"""Exact pulses of the runs of figures 3, 8 and 9 over the distance from their largest velocity."""
+"""Tabulate the exact pulses for figures 3, 8 and 9 by distance from their largest velocity."""
 
 import numpy as np
 import pandas as pd
@@ -12,16 +12,16 @@ from ..configuration.runs import runs
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
-POINTS = 200
-# A curve goes on ahead of a pulse and behind it by these fractions of the width.
-AHEAD, BEHIND = 0.08, 0.25
-# The tail of a pulse that never ends is cut below this fraction of the largest velocity.
-TAIL = 1e-3
+POINT_COUNT = 200
+# A curve extends ahead of the pulse and behind it by these fractions of the pulse width.
+MARGIN_AHEAD, MARGIN_BEHIND = 0.08, 0.25
+# An infinite tail is cut off below this fraction of the largest velocity.
+TAIL_CUT = 1e-3
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulation, run (its row), x (0 at the largest velocity), and FIELDS."""
+    """Return the FIELDS of each pulse by simulation, run and x, which is 0 at the peak."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         for number, run in enumerate(runs(sweep)):
@@ -31,10 +31,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def profile(run: Run) -> pd.DataFrame:
-    """A steady pulse, its corners at the front and at the trailing edge kept sharp."""
+    """Return a steady pulse with sharp corners at the front and at the trailing edge."""
     level, ratio = run.prestress.right, run.damping_ratio
     pulse = steady_pulse(level, run.gamma, run.beta, damping_ratio=ratio, release=run.release)
-    even = np.linspace(-(1.0 + BEHIND), AHEAD, POINTS) * pulse.width
+    even = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT) * pulse.width
     edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
     xi = np.unique(np.concatenate([even, edges]))
     fields = dict(zip(FIELDS, pulse.profile(xi), strict=True))
@@ -42,16 +42,16 @@ def profile(run: Run) -> pd.DataFrame:
 
 
 def far_profile(run: Run) -> pd.DataFrame:
-    """The pulse far from its nucleation under a stress boundary, its integral and derivative."""
+    """Return the pulse far from its nucleation under held stress, its integral and derivative."""
     crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
     pulse = np.array(crack.far_pulse())
     delay, velocity = pulse[:, np.argsort(pulse[0], kind="stable")]
-    start = max(0, int(np.argmax(velocity > TAIL * velocity.max())) - 1)
+    start = max(0, int(np.argmax(velocity > TAIL_CUT * velocity.max())) - 1)
     x, v = delay[start:] - delay[np.argmax(velocity)], velocity[start:]
     apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, v = x[apart], v[apart]
-    # The pulse moves at the wave speed without changing: slip is the integral of its velocity.
+    # The pulse moves unchanged at the wave speed, so slip is the integral of the velocity.
     slip = cumulative_trapezoid(v[::-1], -x[::-1], initial=0.0)[::-1]
     curves = (slip, v, -np.gradient(v, x))
     rows = pd.DataFrame({"x": x} | dict(zip(FIELDS, curves, strict=True)))
-    return rows.iloc[:: max(1, len(rows) // (2 * POINTS))]
+    return rows.iloc[:: max(1, len(rows) // (2 * POINT_COUNT))]

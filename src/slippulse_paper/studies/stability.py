@@ -1,4 +1,4 @@
-"""Steps that blow up: the measured bound and the derived one, for every scheme and damping."""
+"""Compare measured and derived limits of the time step, for every scheme and damping ratio."""
 
 import math
 from collections.abc import Callable
@@ -14,30 +14,31 @@ from slippulse.solver.lattice import UnstableRun
 
 NEEDS = {"settings": ()}
 
-# No damping, that of the paper's figures (0.1), and the decades in which the bound changes its law.
+# No damping, the paper's figures (0.1), and the decades in which the form of the limit changes.
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
-# Bisected between these fractions of the derived bound, down to a relative resolution. The derived
-# bound of orders with weak growth stands far below the step at which that growth is seen.
-BETWEEN, RESOLUTION = (0.7, 12.0), 0.01
-# What a bisection found: a limit between both ends, or that the limit lies beyond one of them.
+# The bisection searches between these fractions of the derived limit, to a relative resolution.
+# Orders with weak growth have a derived limit far below the step at which the growth is visible.
+BISECTION_RANGE, RESOLUTION = (0.7, 12.0), 0.01
+# Results of a bisection: the limit lies within the range, below it or above it.
 WITHIN, BELOW, ABOVE = "within", "below", "above"
-# A mode beyond the bound grows from rounding in STEPS steps, before a wave crosses the blocks.
-BLOCKS, STEPS = 400, 400
-# Blocks never slide this far below any stress.
-HELD = -1.0e9
-WALLS = (BLOCKS + 0.5, HELD), (-BLOCKS - 0.5, HELD)
-# Steps between two counts of sticks: blocks of a run that blows up stick over and over.
-LOOK_AFTER = 100
+# A mode beyond the bound grows from rounding in STEP_COUNT steps, before a wave crosses the blocks.
+BLOCK_COUNT, STEP_COUNT = 400, 400
+# No stress releases blocks at this pre-stress.
+HELD_PRESTRESS = -1.0e9
+WALL_LEVELS = (BLOCK_COUNT + 0.5, HELD_PRESTRESS), (-BLOCK_COUNT - 0.5, HELD_PRESTRESS)
+# Number of steps between two checks for sticks; in a run that blows up, blocks stick repeatedly.
+CHECK_INTERVAL = 100
 PROFILES = {
-    # A stress far above the threshold releases all blocks at once: no event until they turn.
-    "measured": Prestress(0.9, 0.9, 10.0 * BLOCKS, peak=100.9, steps=WALLS),
-    # A crack that grows for ever has an event in almost every step.
+    # A stress far above the threshold releases all blocks at once, and no event follows until they
+    # reverse.
+    "measured": Prestress(0.9, 0.9, 10.0 * BLOCK_COUNT, peak=100.9, steps=WALL_LEVELS),
+    # An endless crack has an event in almost every step.
     "measured_rupture": Prestress(0.5, 0.5, 8.0),
 }
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The bound and the largest steps at which nothing sticks, in units of dx."""
+    """Return the derived limit and the largest steps at which nothing sticks, in units of dx."""
     rows = []
     for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
         for ratio in DAMPING_RATIOS:
@@ -55,9 +56,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def largest_stable(stable: Callable[[float], bool]) -> tuple[float, str]:
     """Return the largest stable fraction by bisection, and whether it lies between the ends.
 
-    If it lies beyond an end of BETWEEN, the fraction is that end.
+    If it lies beyond an end of BISECTION_RANGE, the fraction is that end.
     """
-    lower, upper = BETWEEN
+    lower, upper = BISECTION_RANGE
     if not stable(lower):
         return lower, BELOW
     if stable(upper):
@@ -71,17 +72,17 @@ def largest_stable(stable: Callable[[float], bool]) -> tuple[float, str]:
 def nothing_sticks(
     profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
 ) -> bool:
-    """True if nothing sticks: velocities are positive until a growing mode makes one negative."""
+    """Return True if nothing sticks; a growing mode would make velocities negative."""
     step = fraction * bound
-    # A chain between walls turns back after a wave has crossed it.
-    duration = min(STEPS * step, 0.8 * BLOCKS)
-    # The textbook scheme has no order to choose.
+    # A chain between walls reverses when a wave has crossed it.
+    duration = min(STEP_COUNT * step, 0.8 * BLOCK_COUNT)
+    # The textbook scheme has no adjustable order.
     order = max(order, 3)
     scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, order)
-    # A Scene refuses a step beyond the bound.
+    # A Scene refuses a step beyond the limit.
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)
-    lattice.call_steps = LOOK_AFTER
+    lattice.call_steps = CHECK_INTERVAL
 
     def stop_at_the_first_stick(_progress: float) -> None:
         if lattice.tally.sticks > 0:

@@ -1,0 +1,83 @@
+"""Claims and numbers about pulses on a rough pre-stress, over ensembles."""
+
+import pandas as pd
+
+from .evidence import Evidence
+from .kinds import Qualitative
+
+# Names of the exponent and of the ends of its interval, and numbers of ensembles under held stress.
+ENDS = (("exponent", ""), ("low", "_low"), ("high", "_high"))
+STRESS_KEYS = ("level", "deviation", "pulses", "deaths", "cracks", "survival", "low", "high")
+DISTANCES, VELOCITIES = ("death_scale", "stop"), ("velocity_deviation", "velocity_predicted")
+
+
+def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
+    """Ensembles of one boundary."""
+    table = evidence.tables["rough_prestress"]
+    return table[(table["part"] == "ensemble") & (table["boundary"] == boundary)]
+
+
+def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
+    """No pulse dies where the deviation is a small part of the level, a limit of ours."""
+    rows = ensembles(evidence, "displacement")
+    relative = rows["deviation"] / rows["level"]
+    small = relative <= evidence.tolerance(id)
+    alive, dead = (rows["pulses"] - rows["deaths"])[small].sum(), rows["deaths"][small].sum()
+    stronger = rows[~small]
+    dying = stronger["deaths"].sum()
+    told = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
+    told |= {"stronger": stronger["pulses"].sum(), "least_deviation": relative[~small].min()}
+    further = {"pulses that die at larger deviations": float(dying)}
+    further["of"] = float(told["stronger"])
+    decided = [True] * int(alive) + [False] * int(dead)
+    return Qualitative(decided=decided, condition=dying > 0, further=further, told=told)
+
+
+def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
+    """In every ensemble pulses come to differ from each other, die, or become cracks."""
+    rows = ensembles(evidence, "stress")
+    spread = rows["velocity_deviation"] / rows["velocity_mean"]
+    changed = (spread > evidence.tolerance(id)) | (rows["deaths"] > 0)
+    smallest = rows.loc[rows["deviation"].idxmin()]
+    further = {
+        "smallest deviation": smallest["deviation"],
+        "spread of its velocities": float(spread[smallest.name]),
+        "its cracks": smallest["cracks"],
+        "its deaths": smallest["deaths"],
+    }
+    return Qualitative(decided=[*changed], further=further)
+
+
+def rough_numbers(evidence: Evidence) -> dict[str, float]:
+    """Numbers of the findings on rough pre-stress."""
+    held, stress = (ensembles(evidence, name) for name in ("displacement", "stress"))
+    if held.empty or stress.empty:
+        return {}
+    study, checks = evidence.tables["rough_prestress"], evidence.tables["rough_checks"]
+    dying = held[held["deaths"] > 0]
+    ratio = dying["rate"] / dying["barrier_rate"]
+    long = dying["correlation_length"] == dying["correlation_length"].max()
+    settled = held.dropna(subset=["memory"]).sort_values("correlation_length")
+    forgotten = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
+    exponent = study[study["part"] == "long"].iloc[0]
+    rough = stress.loc[stress["deviation"].idxmax()]
+    quiet = stress.loc[stress["deviation"].idxmin()]
+    above = stress.loc[stress["level"].idxmax()]
+    balance = checks[checks["part"] == "balance"].sort_values("dx")
+    first, last = settled.iloc[0], settled.iloc[-1]
+    out = {"least_ratio": ratio.min(), "largest_ratio": ratio.max()}
+    out |= {"long_least": ratio[long].min(), "long_largest": ratio[long].max()}
+    out |= {"long_length": dying["correlation_length"].max()}
+    for name, row in (("short", first), ("smooth", last)):
+        out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation")}
+        out |= {f"{name}_local": row["off_local"], f"{name}_mean": row["off_mean"]}
+        out |= {f"{name}_slowness": row["slowness_off"]}
+    out |= {"memory": first["memory"], "forgotten": forgotten["high"].max()}
+    out |= {f"tail_{name}": exponent[f"exponent{end}"] for name, end in ENDS}
+    keys = (*STRESS_KEYS, *DISTANCES, *VELOCITIES, "predicted", "velocity_mean")
+    out |= {f"rough_{key}": rough[key] for key in keys}
+    out |= {f"quiet_{key}": quiet[key] for key in keys}
+    out |= {f"above_{key}": above[key] for key in keys}
+    out |= {"balance_coarse": balance["change"].iloc[-1], "balance_fine": balance["change"].iloc[0]}
+    out |= {"balance_dx": balance["dx"].iloc[0], "balance_coarse_dx": balance["dx"].iloc[-1]}
+    return {name: float(value) for name, value in out.items()}
