@@ -73,7 +73,7 @@ help:
 	@echo "make slurm       install the additional packages for a Slurm cluster (docs/cluster.md)"
 	@echo "make slurm-test  compare a draft that runs on a Slurm cluster of one node with one without Slurm"
 	@echo "make check       check format, types, imports and language"
-	@echo "make describe    write the tables of config/README.md and the JSON Schema of the configuration"
+	@echo "make describe    write the tables of config/README.md, the JSON Schema and rows of docs/columns.md"
 	@echo "make tutorial    run docs/tutorial.md, with its pictures in results/tutorial"
 	@echo "make reference   write the reference of the Python interface to results/reference"
 	@echo "make clean       remove results/;  make distclean: also remove the environment"

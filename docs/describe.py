@@ -1,4 +1,7 @@
-"""Write the JSON Schema and the tables of config/README.md from the definition of the keys.
+"""Write the JSON Schema, the tables of config/README.md and rows of docs/columns.md.
+
+The schema and the tables follow from the definition of the keys, and the rows from that of the
+numbers of a scene.
 
 python docs/describe.py      in the folder of the project, or with its path
 """
@@ -11,12 +14,14 @@ from typing import Any
 
 import yaml
 
+from slippulse.model.scene import SCENE_NUMBERS
 from slippulse_paper.configuration.read import read_overlay
 from slippulse_paper.configuration.refusals import json_schema, resolved, words
 
 README = "config/README.md"
 SCHEMA = "workflow/schemas/config.schema.yaml"
 SHIPPED = "config/config.yaml"
+COLUMNS = "docs/columns.md"
 # A table stands between two such lines; the first names the class of its keys, and the key of
 # config/config.yaml that has its values.
 TABLE = re.compile(r"(<!-- keys: (\w+)(?: at (\w+))? -->\n).*?(<!-- end of keys -->)", re.DOTALL)
@@ -77,12 +82,23 @@ def readme(text: str, shipped: Mapping) -> str:
     return TABLE.sub(table, text)
 
 
+def columns(text: str) -> str:
+    """The text of docs/columns.md with the rows of all numbers of a scene."""
+    head, rule, table = text.partition("|---|---|---|\n")
+    known = {row.split("`")[1]: row for row in table.splitlines()}
+    for name, number in SCENE_NUMBERS.items():
+        known[name] = f"| `{name}` | {number.unit} | {_escaped(number.meaning)} |"
+    return head + rule + "".join(f"{known[name]}\n" for name in sorted(known))
+
+
 def main(root: str = ".") -> None:
-    """Write both files of a project."""
+    """Write the three files of a project."""
     folder = Path(root)
     (folder / SCHEMA).write_text(schema_text(), encoding="utf-8")
     manual = (folder / README).read_text(encoding="utf-8")
     (folder / README).write_text(readme(manual, read_overlay(folder / SHIPPED)), encoding="utf-8")
+    table = (folder / COLUMNS).read_text(encoding="utf-8")
+    (folder / COLUMNS).write_text(columns(table), encoding="utf-8")
 
 
 if __name__ == "__main__":

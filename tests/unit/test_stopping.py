@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 
 import slippulse as sp
-from slippulse.simulation.progress_bar import bar
+from slippulse.simulation.progress_bar import make_bar
 from slippulse_paper.records import lock
 
 LONG = (
@@ -45,7 +45,7 @@ def test_an_interrupt_stops_a_run_within_a_second(kind):
 
 
 def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(capsys):
-    draw = bar()
+    draw = make_bar()
     time.sleep(0.25)
     draw(0.5)
     time.sleep(0.25)

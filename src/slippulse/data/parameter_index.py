@@ -16,7 +16,7 @@ from ..model.checks import short_repr
 from ..model.scene import ATTRIBUTES
 
 # `independent_parameters` tries the parameters in this order.
-PARAMETER_ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES.split()]
+PARAMETER_ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES]
 # Relative difference up to which two numbers are the same parameter: beta/dx is computed by a
 # division, so that equal ratios can differ by rounding.
 EQUALITY_TOLERANCE = 1e-9

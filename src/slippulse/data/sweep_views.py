@@ -29,7 +29,7 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     """
     number = {"units": "1", "long_name": VARIABLES["point"]}
     sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), number))
-    names = [name for name in ("point", *ATTRIBUTES.split()) if name in sweep]
+    names = [name for name in ("point", *ATTRIBUTES) if name in sweep]
     coordinates = names[1:]
     if "row_size" in sweep:
         size = sweep["row_size"].values
@@ -139,6 +139,6 @@ def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
 
 def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
     """Return a sweep in which each parameter that all runs share is a single value."""
-    parameters = [name for name in ATTRIBUTES.split() if name in sweep.coords and name not in axes]
+    parameters = [name for name in ATTRIBUTES if name in sweep.coords and name not in axes]
     constant = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
     return sweep.assign_coords({name: sweep[name].variable[0] for name in constant})

@@ -2,10 +2,11 @@
 
 import xarray as xr
 
-VARIABLES = {
+from ..model.scene import SCENE_NUMBERS
+
+VARIABLES = {name: definition.meaning for name, definition in SCENE_NUMBERS.items()}
+VARIABLES |= {
     "boundary": "condition at the top of the layer: displacement (Gamma = 1) or stress (Gamma = 0)",
-    "gamma": "elasticity ratio 2G/(lambda + 2G); 0 under a stress boundary",
-    "beta": "damping, in units of H times the wave speed",
     "damping_ratio": "beta/dx, which selects the front speed",
     "left": "pre-stress level far to the left, tau_{0,l}",
     "right": "pre-stress level far to the right, tau_{0,r}",
@@ -14,15 +15,9 @@ VARIABLES = {
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
     "profile": "number of the pre-stress in the list of profiles, from 1 (if one is a table)",
     "seed": "seed of a rough pre-stress; NaN if it is not rough",
-    "duration": "simulated time, in units of H divided by the wave speed",
-    "dx": "spacing of the blocks, in units of H",
     "release": "whether the released stress includes the damping force: total or elastic",
     "scheme": "localised, fixed_step or continuum",
-    "max_step": "largest time step divided by dx",
-    "order": "order of the Taylor step, or the observed order of a number as the spacing falls",
     "half_lattice": "1 if half of a symmetric scene may be simulated, otherwise 0",
-    "friction_ratio": "mu_k/(mu_s - mu_k)",
-    "resolved_blocks": "number of sliding blocks below which a pulse is flagged",
     "friction": "law of friction of sliding blocks with its parameters, as JSON",
     "rate_strengthening": "alpha, by which friction grows with slip rate, in units of c/H",
     "work_of_prestress": "work of the pre-stress on the slip",

@@ -14,6 +14,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
+from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify_regime
@@ -26,7 +27,7 @@ PARAMETERS = (
     "damping_ratio", "dx", "max_step", "duration", "release", "scheme", "order", "half_lattice",
     "friction_ratio", "resolved_blocks", "run_flags", "steps", "block_updates", "energy_residual",
     "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases", "end_time",
-    "friction",
+    "friction", *EXTRA_TERMS,
 )  # fmt: skip
 # Columns that also identify the profile of a run, if the pre-stress is a table.
 LABELS = ("profile", "seed")
@@ -47,7 +48,8 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     A number whose data were not recorded is left out. The pulse is None if slip velocity was not
     recorded.
     """
-    attributes = run.attrs | {"friction": json.dumps(read_recorded_law(run.attrs))}
+    attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
+    attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]
@@ -66,7 +68,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
         row |= {
             "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
             **{f"pulse_{name}": getattr(pulse, name) for name in PULSE_FIELDS},
-            "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
+            "pulse_stress_drop": gamma_without_extra_terms(run.attrs) * pulse.slip,
             "pulse_acceleration": acceleration_amplitude(run, pulse),
             "slip_variation": slip_variation(run, pulse),
             "pulse_half_width": half_width(run, pulse),

@@ -11,6 +11,7 @@ import numpy as np
 from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
+from ..model.scene import gamma_without_extra_terms
 from .front_paths import arrival, front_path, front_position, known_until
 
 # A left front is held up by the lattice if it waits longer between two blocks than this fraction of
@@ -24,13 +25,13 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
 
     In the paper the transition occurs when the slip at x = 0 reaches 2 tau/gamma. The names with
     "background" use the pre-stress of the level for tau (NaN if the two levels differ), the names
-    with "nucleation" use the pre-stress at x = 0.
+    with "nucleation" use the pre-stress at x = 0. Both are NaN if the equation has an extra term.
     """
     numbers = first_stick(run)
     has_one_level = run.attrs["left"] == run.attrs["right"]
     background = run.attrs["left"] if has_one_level else np.nan
     for name, tau in (("background", background), ("nucleation", run.attrs["peak"])):
-        time = slip_time(run, 2.0 * tau / run.attrs["gamma"])
+        time = slip_time(run, 2.0 * tau / gamma_without_extra_terms(run.attrs))
         numbers[f"slip_time_{name}"] = time
         numbers[f"slip_length_{name}"] = between_fronts(run, time)
     return numbers

@@ -1,7 +1,8 @@
 """The physical parameters of one run, which are all that theory needs to know of it."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from .prestress import Prestress
 
@@ -16,8 +17,14 @@ class Run(NamedTuple):
     beta: float
     release: str
     friction: Mapping  # name of the friction law ("law") and its parameters
+    extra_terms: Mapping[str, float] = MappingProxyType({})  # coefficients of extra terms by name
 
     @property
     def damping_ratio(self) -> float:
         """Ratio beta/dx, on which the front speed depends."""
         return self.beta / self.dx
+
+    def parameters(self) -> dict[str, Any]:
+        """Return the parameters by their names in `Scene`."""
+        values = self._asdict()
+        return values | values.pop("extra_terms")

@@ -17,6 +17,7 @@ from .recorded_law import read_recorded_law
 from .release import RELEASES
 from .removed import refuse_removed_argument
 from .runaway import check_runaway
+from .scene_numbers import definitions_of, number
 from .stability import largest_step
 from .table_resolution import check_resolved
 
@@ -29,24 +30,7 @@ ORDERS = (3, 4, 5, 6, 7, 8)
 MAX_REACH_IN_BLOCKS = 10**6
 # After this number of steps, adding one more step does not change the time, by rounding.
 MAX_STEPS = 2.0**52
-# Names of the attributes that describe a simulation in a data file.
-ATTRIBUTES = """
-    boundary gamma beta damping_ratio left right width peak steps_and_bumps duration dx release
-    scheme max_step order half_lattice friction_ratio resolved_blocks friction
-"""
 CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "order": ORDERS}
-# Allowed ranges, in the form that `check_number` takes. The square of the smallest and of the
-# largest spacing can still be represented.
-NUMBER_RANGES: dict[str, dict[str, Any]] = {
-    "duration": {"above": 0.0},
-    "dx": {"above": 0.0, "at_least": 1e-100, "at_most": 1e40},
-    "beta": {"at_least": 0.0},
-    "friction_ratio": {"at_least": 0.0},
-    "gamma": {},
-    "max_step": {},
-    "order": {"integer": True},
-    "resolved_blocks": {"integer": True, "at_least": 1},
-}
 
 
 def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
@@ -66,7 +50,7 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             spacing = arguments.get("dx")
-            check_number("dx", spacing, **NUMBER_RANGES["dx"])
+            check_number("dx", spacing, **SCENE_NUMBERS["dx"].bounds)
             arguments["beta"] = damping_ratio * float(spacing)  # type: ignore[arg-type]
         initialise_fields(**arguments)
 
@@ -148,17 +132,42 @@ class Scene:
 
     boundary: str
     prestress: Prestress
-    duration: float
-    dx: float
-    gamma: float = 0.0
-    beta: float = 0.0
+    duration: float = number(
+        "simulated time, in units of H divided by the wave speed", "T", above=0.0
+    )
+    # The square of the smallest and of the largest spacing can still be represented.
+    dx: float = number(
+        "spacing of the blocks, in units of H",
+        r"\Delta x",
+        above=0.0,
+        at_least=1e-100,
+        at_most=1e40,
+    )
+    gamma: float = number(
+        "elasticity ratio 2G/(lambda + 2G); 0 under a stress boundary", r"\gamma", 0.0
+    )
+    beta: float = number("damping, in units of H times the wave speed", r"\beta", 0.0, at_least=0.0)
     release: str = "total"
     scheme: str = "localised"
-    max_step: float = 0.2
-    order: int = 4
+    max_step: float = number("largest time step divided by dx", r"\Delta t/\Delta x", 0.2)
+    order: int = number(
+        "order of the Taylor step, or the observed order of a number as the spacing falls",
+        "n",
+        4,
+        integer=True,
+    )
     half_lattice: bool = True
-    friction_ratio: float = 5.0
-    resolved_blocks: int = 8
+    friction_ratio: float = number(
+        "mu_k/(mu_s - mu_k)", r"\mu_k/(\mu_s - \mu_k)", 5.0, at_least=0.0
+    )
+    resolved_blocks: int = number(
+        "number of sliding blocks below which a pulse is flagged",
+        "N",
+        8,
+        unit="count",
+        integer=True,
+        at_least=1,
+    )
     friction: Friction = COULOMB
 
     if TYPE_CHECKING:
@@ -181,12 +190,14 @@ class Scene:
         check_kind("prestress", self.prestress, Prestress)
         check_kind("friction", self.friction, Friction)
         self._check_physics()
-        for name, bounds in NUMBER_RANGES.items():
-            check_number(name, getattr(self, name), **bounds)
+        for name, definition in SCENE_NUMBERS.items():
+            check_number(name, getattr(self, name), **definition.bounds)
             # A number of another type would make numba compile the kernels a second time, or would
             # be less precise.
-            number_type = int if "integer" in bounds else float
+            number_type = int if "integer" in definition.bounds else float
             object.__setattr__(self, name, number_type(getattr(self, name)))
+        if self.scheme == "continuum":
+            refuse_extra_terms(vars(self), "with scheme 'continuum', which has no extra terms")
         width, allowed = self.prestress.width, f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
@@ -216,7 +227,7 @@ class Scene:
         """Raise ValueError if the time step is unstable, or too small for the duration."""
         bound = self.largest_stable_step
         damping_ratio, stiffness, _ = self.ratios
-        ratios = f"beta/dx = {damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
+        ratios = f"beta/dx = {damping_ratio:.4g}, stiffness dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
@@ -256,12 +267,8 @@ class Scene:
 
     @property
     def ratios(self) -> tuple[float, float, float]:
-        """Ratios beta/dx, gamma dx^2 and alpha dx, on which the stable step depends.
-
-        Here alpha is the largest derivative of friction by slip rate.
-        """
-        traits = self.friction.traits
-        return self.damping_ratio, self.gamma * self.dx**2, traits.max_rate_slope * self.dx
+        """The `stability_ratios` of the scene."""
+        return stability_ratios(vars(self), self.friction)
 
     def attributes(self) -> dict:
         """Return all parameters as plain numbers and texts, as a data file has them.
@@ -271,7 +278,7 @@ class Scene:
         values = vars(self) | attributes_of(self.prestress)
         values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
         values["friction"] = json.dumps(self.friction.mapping())
-        return {name: values[name] for name in ATTRIBUTES.split()}
+        return {name: values[name] for name in ATTRIBUTES}
 
     def _repr_html_(self) -> str:
         """Return the parameters as an HTML table, which a notebook shows."""
@@ -292,6 +299,8 @@ class Scene:
         try:
             # Numbers from a netCDF file have types of numpy; `item` converts them.
             values = {name: getattr(v, "item", lambda v=v: v)() for name, v in attributes.items()}
+            # Files from before the program knew an extra term do not have it.
+            values = DEFAULTS_OF_EXTRA_TERMS | values
             values["friction"] = friction_from(read_recorded_law(values))
             values["prestress"] = prestress_from(values)
             check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
@@ -300,6 +309,76 @@ class Scene:
         except KeyError as error:
             allowed = "every attribute of a run"
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
+
+
+# The numbers of a scene in the order of its fields, and those among them that are coefficients of
+# terms that the paper's equation does not have.
+SCENE_NUMBERS = definitions_of(Scene)
+EXTRA_TERMS = {name: term for name, term in SCENE_NUMBERS.items() if term.extra_term}
+DEFAULTS_OF_EXTRA_TERMS = {name: term.default for name, term in EXTRA_TERMS.items()}
+# Names of the attributes that describe a simulation in a data file.
+ATTRIBUTES = (
+    "boundary",
+    "gamma",
+    "beta",
+    "damping_ratio",
+    "left",
+    "right",
+    "width",
+    "peak",
+    "steps_and_bumps",
+    "duration",
+    "dx",
+    "release",
+    "scheme",
+    "max_step",
+    "order",
+    "half_lattice",
+    "friction_ratio",
+    "resolved_blocks",
+    "friction",
+    *EXTRA_TERMS,
+)
+
+
+def used_extra_terms(values: Mapping) -> dict[str, float]:
+    """Return the coefficients of the extra terms that a scene or a run has.
+
+    values : parameters by name. An extra term is used if its value is not the default.
+    """
+    used = {}
+    for name, default in DEFAULTS_OF_EXTRA_TERMS.items():
+        value = values.get(name, default)
+        if value != default:
+            used[name] = value
+    return used
+
+
+def refuse_extra_terms(values: Mapping, condition: str) -> None:
+    """Raise ValueError if an extra term is used.
+
+    values : parameters by name
+    condition : when no extra term is allowed, as the end of the message
+    """
+    for name, value in used_extra_terms(values).items():
+        check_that(False, name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
+
+
+def gamma_without_extra_terms(attributes: Mapping) -> float:
+    """Return gamma, or NaN if a run has extra terms, which may resist slip as leaf springs do."""
+    return math.nan if used_extra_terms(attributes) else attributes["gamma"]
+
+
+def stability_ratios(values: Mapping, friction: Friction) -> tuple[float, float, float]:
+    """Return beta/dx, the stiffness of a block times dx^2, and the slope of friction times dx.
+
+    The stable step depends on them (`slippulse.model.stability`). The slope is the largest
+    derivative of friction by slip rate.
+
+    values : parameters of a scene by name
+    """
+    dx, stiffness = values["dx"], values["gamma"]
+    return values["beta"] / dx, stiffness * dx**2, friction.traits.max_rate_slope * dx
 
 
 # Results in the attributes of a run that measurements and figures need.

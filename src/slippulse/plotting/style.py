@@ -25,6 +25,7 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from ..data.files import configuration, write_whole
+from ..model.scene import SCENE_NUMBERS
 
 # Keyword arguments of Matplotlib that set colours, line widths and the like.
 Look: TypeAlias = dict[str, Any]
@@ -43,14 +44,13 @@ COLOUR_CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
 VELOCITY_MAP = "viridis"
 MARKERS = ("o", "s", "^", "D", "v", "P")
 # Symbols of parameters, by the name of their column.
-SYMBOLS = {
+SYMBOLS = {name: definition.symbol for name, definition in SCENE_NUMBERS.items()}
+SYMBOLS |= {
     "tau_0": r"\tau_0",
     "left": r"\tau_{0,l}",
     "right": r"\tau_{0,r}",
-    "gamma": r"\gamma",
     "width": "W",
     "damping_ratio": "b",
-    "dx": r"\Delta x",
     "time": "t",
 }
 # Markers that are not filled, and the font size of the smallest text.

@@ -19,6 +19,7 @@ from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
 from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
+from ..model.scene import used_extra_terms
 from ..theory.closed_pulse import (
     paper_pulse,
     paper_transition_displacement,
@@ -61,6 +62,8 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
                 paper = paper[0], math.nan
         else:
             paper = paper_transition_stress(prestress_from(run.attrs))
+        if used_extra_terms(run.attrs):
+            paper = math.nan, math.nan
         row["paper_transition_time"], row["paper_transition_length"] = paper
     return row
 
@@ -70,15 +73,16 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
 
     A steady pulse has uniform slip, and the width of the exact pulse, which solves
     beta v U''' + (v^2 - 1) U'' + gamma U = tau_0. The state is "none" if there is no pulse to
-    judge, or if no exact pulse is known: under a stress boundary, or with another friction law than
-    "coulomb".
+    judge, or if no exact pulse is known: under a stress boundary, with another friction law than
+    "coulomb", or with an extra term of the equation.
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
     if np.isfinite(pulse.front) and pulse.pulses != 1:
         return "several" if pulse.pulses else "stopped"
     is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
-    if not np.isfinite([pulse.width, pulse.speed]).all() or not is_coulomb:
+    has_exact_pulse = is_coulomb and not used_extra_terms(run.attrs)
+    if not np.isfinite([pulse.width, pulse.speed]).all() or not has_exact_pulse:
         return "none"
     _, distances = front_path(run)
     block_at_front = np.argmin(np.abs(np.asarray(run["x"]) - distances[-1]))
@@ -103,14 +107,14 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
 def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None = None) -> float:
     """Return the largest deviation of slip velocity from the paper's pulse, relative to its peak.
 
-    The paper's pulse is a cosine, equations (9) and (C10). NaN under a stress boundary, if there is
-    no pulse, or if the pulse has too few blocks.
+    The paper's pulse is a cosine, equations (9) and (C10). NaN under a stress boundary, with an
+    extra term of the equation, if there is no pulse, or if the pulse has too few blocks.
 
     level_ahead : pre-stress in front of the pulse; by default the level on the right of the profile
     """
     tau = level_ahead if level_ahead is not None else run.attrs["right"]
-    is_held = run.attrs["boundary"] == "displacement"
-    if not is_held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
+    has_cosine = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
+    if not has_cosine or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)

@@ -1,11 +1,12 @@
 """The exact rupture of a scene, constructed by the theory."""
 
-from ..model.scene import Scene
+from ..model.scene import Scene, refuse_extra_terms
 from ..theory.rupture import Rupture
 
 
 def exact_rupture(scene: Scene) -> Rupture:
     """Return the exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
+    refuse_extra_terms(vars(scene), "for the exact rupture, which has no extra terms")
     return Rupture(
         scene.prestress,
         scene.gamma,

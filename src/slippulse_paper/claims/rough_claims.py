@@ -25,12 +25,12 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     alive, dead = (rows["pulses"] - rows["deaths"])[small].sum(), rows["deaths"][small].sum()
     stronger = rows[~small]
     dying = stronger["deaths"].sum()
-    told = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
-    told |= {"stronger": stronger["pulses"].sum(), "least_deviation": relative[~small].min()}
+    template_values = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
+    template_values |= {"stronger": stronger["pulses"].sum(), "least_deviation": relative[~small].min()}
     further = {"pulses that die at larger deviations": float(dying)}
-    further["of"] = float(told["stronger"])
+    further["of"] = float(template_values["stronger"])
     decided = [True] * int(alive) + [False] * int(dead)
-    return Qualitative(decided=decided, condition=dying > 0, further=further, told=told)
+    return Qualitative(decided=decided, condition=dying > 0, further=further, template_values=template_values)
 
 
 def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:

@@ -10,7 +10,7 @@ from slippulse.model.friction import friction_from
 from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
 from slippulse.model.samples import Samples
-from slippulse.model.scene import Scene
+from slippulse.model.scene import Scene, stability_ratios
 from slippulse.model.stability import STABILITY_MARGIN, choose_step
 
 from .runs import runs
@@ -33,7 +33,8 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
     # The simulation's own step, or the preset's, cut where it is not stable or accurate.
     friction, largest = friction_from(run.friction), accuracy["max_step"]
     traits = friction.traits
-    ratios = run.damping_ratio, run.gamma * run.dx**2, traits.max_rate_slope * run.dx
+    parameters = run.parameters() | {"friction": friction}
+    ratios = stability_ratios(parameters, friction)
     step = min(largest, choose_step(scheme, accuracy["order"], *ratios))
     step = simulation.get("max_step", min(step, STABILITY_MARGIN * traits.longest_step / run.dx))
     if "promise" in accuracy:
@@ -41,7 +42,7 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
     if "fixed" in simulation["spacing"]:
         step *= simulation["coarser"]
     return Scene(
-        **(run._asdict() | {"friction": friction}),
+        **parameters,
         duration=_duration(simulation["duration"], run.prestress, run.gamma),
         scheme=scheme,
         max_step=step,

@@ -7,7 +7,7 @@ import numpy as np
 
 from slippulse.model.checks import check_that
 from slippulse.model.cost import Bound, bound_cost
-from slippulse.model.scene import Scene
+from slippulse.model.scene import Scene, used_extra_terms
 from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed
 
@@ -101,7 +101,7 @@ def _pulse_blocks(scene: Scene) -> float:
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
     level = max(scene.prestress.left, scene.prestress.right)
-    if scene.scheme == "continuum" or level <= 0.0:
+    if scene.scheme == "continuum" or level <= 0.0 or used_extra_terms(vars(scene)):
         return math.inf
     try:
         speed = float(front_speed(level, scene.damping_ratio, scene.release))

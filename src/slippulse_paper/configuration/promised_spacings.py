@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from slippulse.model.checks import check_that
+from slippulse.model.scene import refuse_extra_terms
 from slippulse.simulation.accuracy import settings_for
 
 from .runs import entries
@@ -29,7 +30,8 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
-    for release, prestress, gamma, _, damping_ratio, _ in entries(simulation):
+    for release, prestress, gamma, _, damping_ratio, _, extra_terms in entries(simulation):
+        refuse_extra_terms(extra_terms, "where accuracy is given, or a dx of its own")
         common |= {"release": release, "gamma": gamma, "damping_ratio": damping_ratio}
         spacings.append(settings_for(promise, prestress=prestress, **common)["dx"])
     return {**simulation, "spacings": spacings}

@@ -8,6 +8,7 @@ import numpy as np
 
 from slippulse.model.cost import bound_front_reach
 from slippulse.model.friction import COULOMB, LinearRate
+from slippulse.model.scene import EXTRA_TERMS
 from slippulse.simulation.accuracy import LARGEST_STEP, TAYLOR_ORDER
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 
@@ -19,9 +20,9 @@ TIMES, POSITIONS = 241, 801
 # Levels at which the exact front speed is computed for a table.
 LEVELS = 65
 # Keys of which a scene has one value and a simulation a list.
-LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening")
+LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
 # Lists of a simulation whose smallest and largest values are the most demanding ones.
-ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels")
+ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels", *EXTRA_TERMS)
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:

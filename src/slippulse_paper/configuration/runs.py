@@ -8,6 +8,7 @@ from typing import Any
 from slippulse.model.checks import check_that
 from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
+from slippulse.model.scene import EXTRA_TERMS
 
 from .chunks import runs_of
 from .profiles import TABLES, labels_of, prestress_of
@@ -16,28 +17,32 @@ from .profiles import TABLES, labels_of, prestress_of
 def runs(simulation: Mapping) -> Iterator[Run]:
     """The runs of a resolved simulation, or of a chunk of it, one after the other."""
     for index, entry in enumerate(entries(simulation)):
-        release, profile, gamma, given, damping, law = entry
+        release, profile, gamma, given, damping, law, extra_terms = entry
         dx = _spacing(simulation, profile, gamma, given, index)
         beta = damping if "beta" in simulation else damping * dx
         boundary = simulation["boundary"]
-        yield Run(boundary, profile, gamma, dx, beta, release, law)
+        yield Run(boundary, profile, gamma, dx, beta, release, law, extra_terms)
 
 
 def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
     """The parameters of each run by name."""
     for run in runs(simulation):
-        yield {**run._asdict(), **vars(run.prestress), "damping_ratio": run.damping_ratio}
+        yield {**run.parameters(), **vars(run.prestress), "damping_ratio": run.damping_ratio}
 
 
 def entries(simulation: Mapping) -> Iterator[tuple]:
-    """One entry of each list: release rule, pre-stress, gamma, spacing or None, damping, law."""
-    for release, *shape, gamma, dx, damping, law in _combinations(simulation):
+    """One entry of each list, for each run.
+
+    These are the release rule, the pre-stress, gamma, the spacing or None, the damping, the law of
+    friction, and the coefficients of the extra terms by name.
+    """
+    for release, *shape, gamma, dx, damping, law, extra_terms in _combinations(simulation):
         if "profiles" in simulation:
             profile = prestress_of(shape[0])
         else:
             left, right, width, steps = shape
             profile = Prestress(left, left if right is None else right, width, steps=steps)
-        yield release, profile, gamma, dx, damping, law
+        yield release, profile, gamma, dx, damping, law, extra_terms
 
 
 def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
@@ -78,7 +83,9 @@ def _axes(simulation: Mapping) -> list[Sequence]:
     gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
     damping = simulation.get("beta", simulation["damping_ratio"])
     laws = simulation.get("friction", [{"law": "coulomb"}])
-    return [releases, *shapes, gamma, dx, damping, laws]
+    coefficients = [simulation.get(name, [term.default]) for name, term in EXTRA_TERMS.items()]
+    extra_terms = [dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)]
+    return [releases, *shapes, gamma, dx, damping, laws, extra_terms]
 
 
 def _spacing(

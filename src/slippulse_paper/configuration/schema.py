@@ -5,10 +5,10 @@ tables of config/README.md from them. A class has no docstring where the key of 
 """
 
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model, model_validator
 from pydantic_core import PydanticCustomError
 
 from slippulse.model.checks import short_repr
@@ -17,12 +17,15 @@ from slippulse.model.layer_units import BOUNDARY_OF_TOP, Layer
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough
+from slippulse.model.scene import EXTRA_TERMS
 from slippulse.model.si_quantities import PROFILE_QUANTITIES
 
 from ..text.markdown import harmless
 from .problems import nearest
 
 T = TypeVar("T")
+# Names in pydantic of the limits that `check_number` takes.
+LIMITS = {"above": "gt", "at_least": "ge", "at_most": "le", "below": "lt"}
 
 
 class Block(BaseModel):
@@ -267,7 +270,27 @@ class Physics(Block):
             require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
 
 
-class Simulation(Physics):
+def _with_extra_terms(lists: bool) -> type[Physics]:
+    """Return `Physics` with a key for each extra term of the equation: a list, or a number."""
+    keys: dict[str, Any] = {}
+    for name, term in EXTRA_TERMS.items():
+        limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
+        number: Any = int if "integer" in term.bounds else float
+        value: Any = Annotated[number, Field(**limits)]
+        meaning = f"{term.meaning}; by default {term.default:g}"
+        keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
+    return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
+
+
+# To the type checker the keys of extra terms are not known, and nothing uses them by name.
+if TYPE_CHECKING:
+    PhysicsOfSweep = Physics
+    PhysicsOfScene = Physics
+else:
+    PhysicsOfSweep, PhysicsOfScene = _with_extra_terms(True), _with_extra_terms(False)
+
+
+class Simulation(PhysicsOfSweep):
     """A sweep: the product of its lists."""
 
     left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
@@ -337,7 +360,7 @@ class LayerKeys(Block):
         return Layer(**given)
 
 
-class NamedScene(Profile, Physics):
+class NamedScene(Profile, PhysicsOfScene):
     """One run by name, non-dimensional, or in SI units with a layer."""
 
     title: str = key("above figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)

@@ -3,6 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
+from slippulse.model.scene import EXTRA_TERMS
 from slippulse.plotting.style import (
     COLOUR_CYCLE,
     GREY,
@@ -23,6 +24,7 @@ VARYING_COLUMNS = (
     "left",
     "right",
     "gamma",
+    *EXTRA_TERMS,
     "damping_ratio",
     "width",
     "beyond",
@@ -31,7 +33,16 @@ VARYING_COLUMNS = (
 )
 # The same for a sweep with pre-stress tables, which seed and profile number describe better than
 # the levels at their ends.
-TABLE_SWEEP_COLUMNS = ("seed", "profile", "gamma", "damping_ratio", "width", "release", "dx")
+TABLE_SWEEP_COLUMNS = (
+    "seed",
+    "profile",
+    "gamma",
+    *EXTRA_TERMS,
+    "damping_ratio",
+    "width",
+    "release",
+    "dx",
+)
 # Names of columns without a symbol.
 COLUMN_WORDS = {"beyond": "level beyond the step", "release": "release rule"}
 COLUMN_WORDS |= {"profile": "profile", "seed": "seed"}

@@ -12,6 +12,7 @@ from slippulse.data.readable_units import readable_unit
 from slippulse.model.layer_units import Layer
 from slippulse.model.prestress import prestress_from
 from slippulse.model.recorded_law import read_recorded_law
+from slippulse.model.scene import EXTRA_TERMS
 from slippulse.model.si_quantities import QUANTITIES
 
 from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
@@ -21,7 +22,7 @@ from .html import page
 PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
 LATTICE = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
 WORK = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
-SHOWN = (*PHYSICS, "friction", *LATTICE, *WORK, "pulse_state", "run_flags")
+SHOWN = (*PHYSICS, *EXTRA_TERMS, "friction", *LATTICE, *WORK, "pulse_state", "run_flags")
 NO_NUMBER = "\N{EN DASH}"
 
 

@@ -8,6 +8,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from slippulse.model.scene import EXTRA_TERMS
+
 from ..claims.claim_texts import read_text
 from ..claims.ledger import Entry, Ledger
 from ..claims.rules import WORST_FIRST
@@ -92,6 +94,7 @@ def parameters(config: Mapping, name: str) -> str:
     left, right = _profile_values(simulation, "left"), _profile_values(simulation, "right")
     boundary = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}[simulation["boundary"]]
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
+    values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
     if right == ["same"]:
         values[r"$\tau_0$"] = left
     else:

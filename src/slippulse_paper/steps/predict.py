@@ -7,6 +7,7 @@ import pandas as pd
 
 from slippulse.data.tables import save_table
 from slippulse.model.run import Run
+from slippulse.model.scene import used_extra_terms
 
 from ..configuration.runs import runs
 
@@ -33,13 +34,16 @@ def predictions(
 ) -> pd.DataFrame:
     """Join the predictions on some topics to a table with one row for each run.
 
-    A number is NaN if the theory does not cover the friction law of the run.
+    A number is NaN if the theory does not cover the friction law or an extra term of the run.
     """
     tables = []
     for topic in topics:
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
         table = module.predictions(swept_runs, settings)
-        # A number that ignores the friction of a run would be misleading.
-        is_covered = [swept_run.friction["law"] in module.LAWS for swept_run in swept_runs]
+        # A number that ignores the friction or an extra term of a run would be misleading.
+        is_covered = [
+            swept_run.friction["law"] in module.LAWS and not used_extra_terms(swept_run.extra_terms)
+            for swept_run in swept_runs
+        ]
         tables.append(table[is_covered].reindex(table.index))
     return pd.concat(tables, axis=1)
