@@ -26,11 +26,16 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     stronger = rows[~small]
     dying = stronger["deaths"].sum()
     template_values = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
-    template_values |= {"stronger": stronger["pulses"].sum(), "least_deviation": relative[~small].min()}
+    template_values |= {
+        "stronger": stronger["pulses"].sum(),
+        "least_deviation": relative[~small].min(),
+    }
     further = {"pulses that die at larger deviations": float(dying)}
     further["of"] = float(template_values["stronger"])
     decided = [True] * int(alive) + [False] * int(dead)
-    return Qualitative(decided=decided, condition=dying > 0, further=further, template_values=template_values)
+    return Qualitative(
+        decided=decided, condition=dying > 0, further=further, template_values=template_values
+    )
 
 
 def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:

@@ -30,8 +30,8 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
-    for release, prestress, gamma, _, damping_ratio, _, extra_terms in entries(simulation):
-        refuse_extra_terms(extra_terms, "where accuracy is given, or a dx of its own")
-        common |= {"release": release, "gamma": gamma, "damping_ratio": damping_ratio}
-        spacings.append(settings_for(promise, prestress=prestress, **common)["dx"])
+    for entry in entries(simulation):
+        refuse_extra_terms(entry.extra_terms, "where accuracy is given, or a dx of its own")
+        common |= {"release": entry.release, "gamma": entry.gamma, "damping_ratio": entry.damping}
+        spacings.append(settings_for(promise, prestress=entry.prestress, **common)["dx"])
     return {**simulation, "spacings": spacings}
