@@ -35,7 +35,7 @@ def artificial_pulse(reached, stopped=0.0, pulses=(), wait=0.0) -> tuple[Leading
         velocity[inside] = peak * np.sin(np.pi * (x[inside] - start) / (end - start))
         stick[inside] = np.nan
     arrays = {"release_time": release, "stick_time": stick, "slip": 1.0 * released}
-    arrays |= {"slip_velocity": velocity, "prestress": 0.5 + 0.0 * x}
+    arrays |= {"slip_velocity": velocity, "slip_acceleration": 0.0 * x, "prestress": 0.5 + 0.0 * x}
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), END, 0.05, GAMMA)
     data = {name: ("x", array) for name, array in arrays.items()}
     run = xr.Dataset(data, {"x": x}, scene.attributes() | {"end_time": END})
