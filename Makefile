@@ -11,15 +11,15 @@ ALLOW_LARGE ?=
 AGAINST ?=
 PACKAGES ?=
 KILLS ?= 24
-# No option is read as a command: make would expand $(shell ...) in a value that it uses or exports,
-# so each value is taken as it was written, and goes through the environment.
+# No value of an option is executed. Make would expand $(shell ...) in a value that it uses or exports,
+# and so each value is taken as it was written and passed on in the environment.
 OPTIONS := PYTHON CORES PRESET OVERLAY TARGET AGAINST PACKAGES ALLOW_LARGE KILLS
 GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 $(foreach name,$(OPTIONS) $(GIVEN),$(eval override $(name) := $$(value $(name))))
 export $(OPTIONS)
-# Without compiled modules each process imports for 3 s instead of 1.
+# Python may write compiled modules. Without them each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
-# Settings of the user for other places to install do not apply to this environment.
+# Settings of the user for the installation of packages do not apply to this environment.
 unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT \
     PIP_PYTHON PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
@@ -27,7 +27,7 @@ LOCK := src/slippulse_paper/records/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
-# Install by the uv of the lock, or by pip on a machine without it.
+# Install with uv, which the lock contains, or with pip if uv does not run on this machine.
 define install
 if "$(BIN)/uv" --version >/dev/null 2>&1; then \
     "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes --only-binary :all: $(1); \
@@ -36,11 +36,12 @@ else \
 fi
 endef
 
-# Packages that have no wheel. From 3.14 on immutables has none either, which needs a compiler of C.
+# Install these packages from source, since they have no wheels. From Python 3.14 on immutables has none
+# either, and needs a compiler of C.
 FROM_SOURCE = --no-binary connection-pool \
     $$("$(BIN)/python" -c 'import sys; sys.version_info < (3, 14) or print("--no-binary immutables")')
 
-# Snakemake would stop late or never at these: jobs find no interpreter below such a folder.
+# Jobs find no interpreter if the path has such characters, and Snakemake would notice it late or never.
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) \
     echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; \
     exit 1;; esac
@@ -56,39 +57,39 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     test-library test-pages test-site test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
-	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
-	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers"
-	@echo "make compare     AGAINST=other/results: old beside new as a page, results/compare.html"
-	@echo "make rulegraph   which rules make what, as a mermaid graph"
-	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
-	@echo "make test-library  the library alone, with the oldest and newest packages: PACKAGES=oldest for one"
-	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility"
-	@echo "make test-site   the pages of the documentation in the same way"
-	@echo "make test-all    these and the slow ones: edits, every example, kills, Slurm"
-	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
-	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must not change"
-	@echo "make docs        the documentation as a site, in results/site"
-	@echo "make notebook    JupyterLab, for .venv/bin/jupyter lab"
-	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
-	@echo "make slurm-test  the draft through a Slurm of one node, against the draft without"
-	@echo "make check       format and lint"
-	@echo "make describe    the tables of config/README.md, the JSON Schema and rows of docs/columns.md"
-	@echo "make tutorial    docs/tutorial.md from top to bottom, its pictures into results/tutorial"
-	@echo "make reference   the reference of the Python interface, into results/reference"
-	@echo "make clean       remove results/;  make distclean: the environment too"
+	@echo "make replicate   make every figure of the paper, from config/config.yaml, into results/"
+	@echo "make verify      list results that a run would make again; AGAINST=other/results compares numbers"
+	@echo "make compare     write old beside new to results/compare.html; AGAINST=other/results"
+	@echo "make rulegraph   print the graph of the rules, in the mermaid format"
+	@echo "make test        run the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make test-library  test the library alone, with the oldest and the newest packages; PACKAGES=oldest or newest"
+	@echo "make test-pages  test the pages of results/ in a headless chromium: links, accessibility"
+	@echo "make test-site   test the pages of the documentation in the same way"
+	@echo "make test-all    run all tests, also the slow ones: edits, every example, killed runs, Slurm"
+	@echo "make benchmark   measure the speed of the kernels and of a whole scene, as ratios within one run"
+	@echo "make faults      kill a small run at KILLS=24 random times; its results must not change"
+	@echo "make docs        write the documentation as a site to results/site"
+	@echo "make notebook    install JupyterLab, for .venv/bin/jupyter lab"
+	@echo "make slurm       install the additional packages for a Slurm cluster (docs/cluster.md)"
+	@echo "make slurm-test  compare a draft that runs on a Slurm cluster of one node with one without Slurm"
+	@echo "make check       check format, types, imports and language"
+	@echo "make describe    write the tables of config/README.md, the JSON Schema and rows of docs/columns.md"
+	@echo "make tutorial    run docs/tutorial.md, with its pictures in results/tutorial"
+	@echo "make reference   write the reference of the Python interface to results/reference"
+	@echo "make clean       remove results/;  make distclean: also remove the environment"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=fig05"
 
 setup: $(READY)
 
 ifndef LOCKED
-# Of two set-ups at once the second waits, and then finds it done.
+# If two set-ups run at once, the second waits and then has nothing to do.
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(CHECK_PLACE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
 	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) -s --no-print-directory LOCKED=yes $(READY)
 else
 $(READY): requirements-build.lock requirements.lock pyproject.toml
-	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/slippulse.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
+	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/slippulse.lock || { echo "A run is using this folder: wait for it. Then the environment is set up again" >&2; exit 1; }
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
@@ -98,7 +99,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@touch "$(READY)"
 endif
 
-# The packages that a cluster adds; all others are those of requirements.lock.
+# The additional packages for a cluster. All others have the versions of requirements.lock.
 $(VENV)/.slurm: $(READY) requirements-slurm.lock
 	@$(call install,-r requirements-slurm.lock)
 	@touch "$@"
@@ -128,15 +129,15 @@ lock:
 describe: $(READY)
 	@"$(BIN)/python" docs/describe.py
 
-# The tutorial as a script; its pictures go to results/tutorial.
+# Run the tutorial as a script.
 tutorial: $(READY)
 	@"$(BIN)/python" docs/run_tutorial.py results/tutorial
 
-# The documentation as a site, from docs, the tutorial and the docstrings.
+# Write the documentation as a site, from docs, the tutorial and the docstrings.
 docs: $(VENV)/.docs
 	@"$(BIN)/python" docs/build_site.py results/site
 
-# The reference of the Python interface, from its docstrings.
+# Write the reference of the Python interface from its docstrings.
 reference: $(READY)
 	@"$(BIN)/python" docs/reference.py results/reference
 
@@ -162,7 +163,7 @@ faults: $(READY)
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
 
-# The library alone in temporary environments, with the oldest and the newest packages it allows.
+# Test the library alone, in temporary environments with the oldest and the newest allowed packages.
 test-library: $(READY)
 	@case "$$PACKAGES" in *[!a-z\ ]*) echo "PACKAGES: $$PACKAGES; allowed: oldest, newest or both" >&2; exit 1;; esac; \
 	"$(BIN)/python" tests/library_environments.py $$PACKAGES
@@ -181,7 +182,7 @@ test-slow: $(READY)
 
 test-all: test test-pages test-slow slurm-test
 
-# Daemons are often not on the path.
+# The daemons of Slurm are often in folders that are not on the path.
 slurm-test: $(VENV)/.slurm
 	@test "$$(id -u)" = 0 || { echo "make slurm-test starts a Slurm cluster, for which it must be root" >&2; exit 1; }
 	@export PATH="$$PATH:/usr/sbin:/sbin" DEBIAN_FRONTEND=noninteractive; \

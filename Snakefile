@@ -1,7 +1,7 @@
-# The whole paper from one configuration: simulate, measure, draw, judge, report.
-#   snakemake --cores 2                                        everything
+# The workflow: it simulates, measures, draws figures, judges the claims and writes the report.
+#   snakemake --cores 2                                        all results
 #   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and its inputs
-#   snakemake --cores 2 --configfile mine.yaml                 with an overlaid configuration
+#   snakemake --cores 2 --configfile mine.yaml                 with an overlay
 
 from snakemake.utils import min_version
 
@@ -38,7 +38,7 @@ rule scenes:
 
 onstart:
     check_packages_and_lock()
-    # Without the profile of this folder, Snakemake starts a process of its own for each job.
+    # Without the profile of this folder, Snakemake starts a separate process for each job.
     if workflow.execution_settings.use_threads:
         WORKERS.start(workflow.cores)
 

@@ -14,7 +14,7 @@ from selection import SMALL_STUDIES, small_sweep
 from slippulse.data.tables import load_table, save_table
 from slippulse_paper.configuration.selected import selected
 from slippulse_paper.records.lock import take
-from slippulse_paper.steps.inputs import given
+from slippulse_paper.steps.inputs import load_inputs
 from slippulse_paper.steps.needs import declared
 
 # Two workers share two cores.
@@ -83,7 +83,9 @@ def study(project, shipped, shared):
                 sweeps = {sweep: small_sweep(shipped, sweep) for sweep in needs.get("sweeps", ())}
                 settings |= {"sweeps": sweeps} if sweeps else {}
                 module = import_module(f"slippulse_paper.studies.{name}")
-                lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
+                lists = load_inputs(
+                    {"lists": [project / listed for listed in needs.get("lists", [])]}
+                ).tables
                 with pytest.MonkeyPatch.context() as patch:
                     for constant, value in SMALL_STUDIES.get(name, {}).items():
                         patch.setattr(module, constant, value)

@@ -1,10 +1,11 @@
-"""Stop a reduced run at random instants, over and over; its results must be those of a quiet run.
+"""Stop a small run at random times, again and again. Its results must equal those of a quiet run.
 
     make faults                   24 stops
     python tests/faults.py 3      3 stops
 
-A run that `make replicate` starts is stopped by a signal, or its server of jobs is killed. Of a run
-that Snakemake starts, Snakemake, a job or everything is killed. The next run goes on.
+There are several ways to stop a run. If `make replicate` has started it, it gets a signal, or the
+process that starts its workers is killed. If Snakemake was started directly, Snakemake, one job or
+all processes are killed. The next run must continue from what is there.
 """
 
 import hashlib
@@ -39,79 +40,85 @@ OVERLAY = {
 }
 SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGKILL")
 WITHOUT_MAKE = ("Snakemake", "a job", "everything")
-WAYS = (*SIGNALS, "the server of jobs", *WITHOUT_MAKE)
-# Seconds until all processes have ended; after SIGKILL each ends by itself when it begins to work.
-AT_ONCE, AFTER_SIGKILL = 2.0, 60.0
+WAYS_TO_STOP = (*SIGNALS, "the server of jobs", *WITHOUT_MAKE)
+# Longest time in seconds until all processes have ended. After SIGKILL a worker only notices that
+# its parent has ended when it has started completely.
+MAX_SECONDS_TO_END, MAX_SECONDS_AFTER_SIGKILL = 2.0, 60.0
 
 
 def prepare(folder: Path) -> Path:
-    """Link the sources of the reduced run into a folder, and write its overlay."""
+    """Make a folder for the small run, with links to the sources and its overlay."""
     copy_project(PROJECT, folder, link=True)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
     return folder
 
 
 def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subprocess.Popen:
-    """Start a run in a process group of its own, as `make replicate` does, or by Snakemake."""
+    """Start a run in a new process group, as `make replicate` does, or by Snakemake."""
     command = [*SNAKEMAKE, "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
     if by_make:
         command = [sys.executable, "workflow/run.py", "replicate"]
     options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
-    how = {"cwd": folder, "env": os.environ | options, "start_new_session": True}
-    with open(folder / "said.txt", "w", encoding="utf-8") as said:
-        return subprocess.Popen(command, stdout=said, stderr=said, **how)
+    process_options = {"cwd": folder, "env": os.environ | options, "start_new_session": True}
+    with open(folder / "output.txt", "w", encoding="utf-8") as output_file:
+        return subprocess.Popen(command, stdout=output_file, stderr=output_file, **process_options)
 
 
-def said(folder: Path) -> str:
-    return (folder / "said.txt").read_text(encoding="utf-8")
+def output_of(folder: Path) -> str:
+    """Return what the last run in a folder has printed."""
+    return (folder / "output.txt").read_text(encoding="utf-8")
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
-    """Digest every result except logs and records; hidden files may be left by a kill."""
+    """Return the digest of every result, without logs and hidden files.
+
+    Records are hidden files, and so are the unfinished files that a killed run leaves.
+    """
     digest = {}
     for path in sorted((folder / results).rglob("*")):
         name = path.relative_to(folder / results)
-        beside = name.parts[0] == "logs" or any(part.startswith(".") for part in name.parts)
-        if path.is_file() and not beside:
+        is_hidden = any(part.startswith(".") for part in name.parts)
+        if path.is_file() and not is_hidden and name.parts[0] != "logs":
             digest[str(name)] = hashlib.sha256(path.read_bytes()).hexdigest()
     return digest
 
 
-def at_work(folder: Path) -> dict[int, bytes]:
-    """Arguments of the other processes that work in a folder or name it, by process number."""
+def processes_in(folder: Path) -> dict[int, bytes]:
+    """Return the arguments of the other processes that run in a folder or name it, by their ids."""
     folder, others = folder.resolve(), {}
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
-            arguments, place = (entry / "cmdline").read_bytes(), (entry / "cwd").resolve()
-            named = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
-            if arguments and (named or place.is_relative_to(folder)):
+            arguments = (entry / "cmdline").read_bytes()
+            working_directory = (entry / "cwd").resolve()
+            names_folder = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
+            if arguments and (names_folder or working_directory.is_relative_to(folder)):
                 others[int(entry.name)] = arguments
     others.pop(os.getpid(), None)
     return others
 
 
 def find_victims(run: subprocess.Popen, folder: Path, way: str) -> list[int]:
-    """List the processes of a run that a way of stopping it may kill."""
-    others = {number: name for number, name in at_work(folder).items() if number != run.pid}
+    """Return the ids of the processes of a run, of which one is killed to stop it in some way."""
+    others = {number: name for number, name in processes_in(folder).items() if number != run.pid}
     if way == "a job":
         return [*others]
     if way == "the server of jobs":
         servers = sorted(number for number, name in others.items() if b"forkserver" in name)
-        # The first is the server, if there is another, which is a job.
+        # The first process is the server if there is a second one, which is a worker.
         return servers[:1] if len(servers) > 1 else []
     return [run.pid]
 
 
 def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -> bool:
-    """Stop a run in some way, and tell whether there was something to kill before it ended.
+    """Stop a run in some way, and return True if there was a process to kill before it ended.
 
-    All that the run has started must end too, but for jobs of a Snakemake that was killed alone.
+    All processes of the run must end too, except the jobs of a Snakemake that was killed alone.
     """
     victims: list[int] = []
     while not victims and run.poll() is None:
         victims = find_victims(run, folder, way)
     kill = os.killpg if way in (*SIGNALS, "everything") else os.kill
-    # There is nothing to choose from where the run has ended.
+    # If the run has ended, there is no process to choose from.
     with suppress(ProcessLookupError, IndexError):
         kill(chance.choice(victims), getattr(signal, way, signal.SIGKILL))
     since = time.monotonic()
@@ -120,42 +127,47 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
         return bool(victims)
     if way not in SIGNALS:
         since = time.monotonic()
-    limit = since + (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE)
-    while others := at_work(folder):
+    longest = MAX_SECONDS_AFTER_SIGKILL if way == "SIGKILL" else MAX_SECONDS_TO_END
+    limit = since + longest
+    while others := processes_in(folder):
         assert time.monotonic() < limit, (way, others)
         time.sleep(0.02)
     unwanted = "Traceback|Exception" if way in SIGNALS else "Traceback"
-    assert not re.search(unwanted, said(folder)), said(folder)[-4000:]
+    assert not re.search(unwanted, output_of(folder)), output_of(folder)[-4000:]
     return bool(victims)
 
 
 def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARGETS) -> str:
-    """Stop runs ``stops`` times; compare whenever one ends by itself. Returns what happened."""
+    """Stop runs ``stops`` times, and return a summary of what happened.
+
+    Whenever a run ends by itself, its results are compared with those of a quiet run.
+    """
     chance, harmed = random.Random(seed), prepare(folder / "harmed")
     stopped, compared = Counter(), 0
     quiet, began = prepare(folder / "quiet"), time.monotonic()
-    assert start(quiet, targets).wait(timeout=1200) == 0, said(quiet)
+    assert start(quiet, targets).wait(timeout=1200) == 0, output_of(quiet)
     duration, expected = time.monotonic() - began, digests(quiet)
     assert len(expected) >= 3 * len(targets)
-    # Every file is named, so that each file that is taken away is missed.
+    # Every file is a target, so that each file that is removed is made again.
     targets = [f"results/{name}" for name in expected]
     while True:
-        way = min(WAYS, key=stopped.__getitem__)
+        # The way that was used least comes next.
+        way = min(WAYS_TO_STOP, key=stopped.__getitem__)
         run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
-        last = stopped.total() >= stops
+        is_last = stopped.total() >= stops
         with suppress(subprocess.TimeoutExpired):
-            run.wait(1200 if last else chance.uniform(0.02, 0.7) * duration)
+            run.wait(1200 if is_last else chance.uniform(0.02, 0.7) * duration)
         if run.poll() is None:
             stopped[way] += stop(run, harmed, way, chance)
             assert run.returncode or digests(harmed) == expected
             continue
-        assert run.returncode == 0, said(harmed)[-4000:]
+        assert run.returncode == 0, output_of(harmed)[-4000:]
         differing = dict(digests(harmed).items() ^ expected.items())
-        assert not differing, f"other than in a quiet run: {sorted(differing)}"
+        assert not differing, f"files that differ from a quiet run: {sorted(differing)}"
         compared += 1
-        if last:
+        if is_last:
             break
-        # Some of the files are taken away, so that the next runs have work.
+        # Some of the files are removed, so that the next runs have work.
         for name in sorted(expected)[chance.randrange(3) :: chance.choice((1, 3))]:
             (harmed / "results" / name).unlink()
     counts = ", ".join(f"{count} by {way}" for way, count in stopped.items())

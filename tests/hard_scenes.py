@@ -125,7 +125,7 @@ def scene(number: int) -> Keys:
 
 
 class Answers:
-    """What a solution says of a scene at positions and times, in lengths of the first scene."""
+    """Numbers of a solution at positions and times, in units of the length of the first scene."""
 
     def __init__(self, keys: Keys, rupture: Rupture, x: np.ndarray, times: np.ndarray) -> None:
         size = abs(keys.x)

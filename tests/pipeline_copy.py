@@ -1,4 +1,4 @@
-"""A copy of the sources of the project, in which a test may run, edit and break things."""
+"""Copies of the project in which tests run the workflow and may edit or break files."""
 
 import os
 import re
@@ -9,11 +9,11 @@ from pathlib import Path
 
 FOLDERS = ("workflow", "profiles", "config", "src", "manuscript")
 PARTS = ("CITATION.cff", "Snakefile", "requirements.lock", *FOLDERS)
-# The profile of the folder logs for people; without it the log is plain lines.
+# With the profile of the project the log is for people, and without it the log has plain lines.
 BY_PROFILE = (sys.executable, "-m", "snakemake")
 WITHOUT_PROFILE = (*BY_PROFILE, "--workflow-profile", "none")
 SNAKEMAKE = (*WITHOUT_PROFILE, "--rerun-incomplete", "--force-use-threads")
-# A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
+# A user-defined sweep and a scene. The sweep has chunks so that the rules that join them take part.
 SWEEP = {"boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65]}
 SWEEP |= {"duration": {"time": 6.0}, "spacing": {"scale": 4.0}}
 SWEEP |= {"record": ["fronts", "fields"], "chunks": 2}
@@ -23,21 +23,25 @@ OVERLAY = {"preset": "draft", "simulations": {"mine": SWEEP}, "scenes": {"one": 
 
 
 def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
-    """Copy what a run needs, or link it where nothing is edited; returns the folder."""
+    """Copy the files that a run needs, or link them if the test does not edit them.
+
+    Returns the folder.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     for part in PARTS:
         source = project / part
         if link:
             (folder / part).symlink_to(source)
         elif source.is_dir():
-            # Compiled modules too, which stay valid as the times are kept.
+            # Compiled modules are copied too. They stay valid, since copies keep the times.
             shutil.copytree(source, folder / part)
         else:
             shutil.copy2(source, folder / part)
     return folder
 
 
-# The step of an imitated job: each output says by what and from what it is made.
+# A replacement for all steps: each output contains the step, the settings and the digests of
+# inputs.
 IMITATION = """
 
 class import_module:
@@ -63,32 +67,40 @@ def imitate_steps(folder: Path) -> None:
     (steps / "worker_libraries.py").write_text("", encoding="utf-8")
 
 
-# What make gives to tests that it starts, which a run that a test starts must not take as its own.
-OF_MAKE = ("MAKELEVEL", "MAKEFLAGS", "CORES", "PRESET", "OVERLAY", "TARGET", "ALLOW_LARGE")
+# Variables that make sets for the tests, and which a run that a test starts must not get.
+VARIABLES_OF_MAKE = (
+    "MAKELEVEL",
+    "MAKEFLAGS",
+    "CORES",
+    "PRESET",
+    "OVERLAY",
+    "TARGET",
+    "ALLOW_LARGE",
+)
 
 
 def snakemake(
     folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
 ):
-    """Run Snakemake in a folder; returns the completed process."""
+    """Run Snakemake in a folder and return the completed process."""
     options = ["--cores", str(cores)]
     if overlay:
         options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
     how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
-    around = {name: value for name, value in os.environ.items() if name not in OF_MAKE}
-    how["env"] = around | (environment or {})
+    variables = {name: value for name, value in os.environ.items() if name not in VARIABLES_OF_MAKE}
+    how["env"] = variables | (environment or {})
     return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 
 def made(folder: Path, *arguments, **how) -> subprocess.CompletedProcess:
-    """Run Snakemake, which must succeed; returns the completed process."""
+    """Run Snakemake, which must succeed, and return the completed process."""
     result = snakemake(folder, *arguments, **how)
     assert result.returncode == 0, result.stderr
     return result
 
 
 def refused(folder: Path, *arguments, **how) -> str:
-    """Run Snakemake, which must fail in clear words; returns what it said."""
+    """Run Snakemake, which must fail with a clear message, and return what it prints."""
     result = snakemake(folder, *arguments, **how)
     text = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in text, text
@@ -96,7 +108,7 @@ def refused(folder: Path, *arguments, **how) -> str:
 
 
 def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
-    """Rules and how often each is to run, from a dry run."""
+    """Return how often each rule would run, from a dry run."""
     assert result.returncode == 0, result.stderr + result.stdout
     text = result.stdout + result.stderr
     table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\ntotal", text, re.S)
@@ -107,7 +119,7 @@ def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
 
 
 def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
-    """Jobs of a dry run, with the name of the figure or study in place of these two rules."""
+    """Return the jobs of a dry run, with figures and studies counted by their names."""
     jobs = planned(result)
     text = result.stdout + result.stderr
     names = re.findall(r"^Job \d+: Drawing (?!scene )(\S+)$", text, re.M)
@@ -117,6 +129,6 @@ def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
 
 
 def edges(graph: str) -> set[tuple[str, str]]:
-    """Pairs of rules, by name, of which the first feeds the second, in a mermaid graph."""
+    """Return the edges of a mermaid graph: pairs of rules, the second of which needs the first."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
     return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}

@@ -18,7 +18,7 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-from faults import at_work, digests
+from faults import digests, processes_in
 from pipeline_copy import SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -83,11 +83,11 @@ def start_cluster(folder: Path) -> dict[str, str]:
 def end_all(folder: Path) -> None:
     """End every process that names the folder, gently at first."""
     for sign in (signal.SIGTERM, signal.SIGKILL):
-        for number in at_work(folder):
+        for number in processes_in(folder):
             with suppress(ProcessLookupError):
                 os.kill(number, sign)
         until = time.monotonic() + 10
-        while at_work(folder) and time.monotonic() < until:
+        while processes_in(folder) and time.monotonic() < until:
             time.sleep(0.1)
 
 
@@ -122,7 +122,7 @@ def compare(folder: Path) -> str:
     data = draft(remote, environment, "--profile=workflow/profiles/slurm", *through)
     end_all(daemons)
     states = re.findall(r"\bJobState=(\S*)", (daemons / "finished.txt").read_text(encoding="utf-8"))
-    left = at_work(daemons)
+    left = processes_in(daemons)
     assert not left, f"still running: {left}"
     assert states and set(states) == {"COMPLETED"}, f"jobs ended as {sorted(set(states))}"
     differing = sorted(name for name, _ in expected.items() ^ data.items())

@@ -1,9 +1,11 @@
-"""Run Snakemake for make: short names of targets, results renewed, and the verdicts at the end.
+"""Run Snakemake for the commands of make.
 
     python workflow/run.py replicate|verify|rulegraph
 
-The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE. A signal
-ends the run at once, with all of its processes and with one line. Everything else is Snakemake's.
+The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET and ALLOW_LARGE. In
+addition to what Snakemake does, targets may have short names, results that were edited by hand are
+made again, and the verdicts are printed at the end. A signal ends the run and all of its processes
+at once, with one line.
 """
 
 import json
@@ -21,18 +23,18 @@ from pathlib import Path
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "src"))
 RESULTS, STATE = Path("results"), Path(".snakemake")
-# Where docs/compare.md keeps the results from before an altered run.
-KEPT = Path("shipped")
+# In this folder docs/compare.md keeps the results of the shipped configuration for a comparison.
+KEPT_RESULTS = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
-# Folders and files of results that no rule makes.
-OTHER_PLACES = ("logs", "benchmarks", "reference", "tutorial", "site")
-OTHER_PLACES += ("compare.html", "compare.csv")
+# Folders and files of results that are not made by rules.
+PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
+PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
 
 
 def options_of(given: Mapping[str, str]) -> list[str]:
-    """Return Snakemake's options for the options of make."""
+    """Return the options of Snakemake that correspond to the options of make."""
     names = [name for name in ("PRESET", "ALLOW_LARGE") if given.get(name)]
     options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
     if given.get("OVERLAY"):
@@ -42,7 +44,7 @@ def options_of(given: Mapping[str, str]) -> list[str]:
 
 
 def check_overlay(path: str) -> None:
-    """Refuse an overlay that is no plain data, since Snakemake obeys templates."""
+    """Refuse an overlay that is not plain data, since Snakemake would execute templates in it."""
     from slippulse_paper.configuration.read import ConfigError, read_overlay
 
     try:
@@ -59,29 +61,29 @@ def full_target(target: str) -> str:
     if numbered:
         paths = modules.glob(f"fig{int(numbered[1]):02d}_*.py")
         name = next((path.stem for path in paths), name)
-    drawn = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
-    known = drawn or name.startswith("sweep_")
-    return f"results/figures/{name}.{ending or 'png'}" if known else target
+    has_module = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
+    is_figure = has_module or name.startswith("sweep_")
+    return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
 
 
-def take_over() -> None:
-    """Remove what a killed run has left, unless another run is at work in this folder."""
+def clean_up_after_kill() -> None:
+    """Remove the unfinished files of a killed run. Exit if another run uses this folder."""
     from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
 
-    held = take(STATE / "slippulse.lock")
-    if held is None:
-        sys.exit("Another run is at work in this folder: wait for it, or stop it.")
+    lock = take(STATE / "slippulse.lock")
+    if lock is None:
+        sys.exit("Another run is using this folder: wait for it, or stop it.")
     locks = [*STATE.glob("locks/*.lock")]
     if locks:
         for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED_MARK}*")]:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
-    held.close()
+    lock.close()
 
 
 def changed_results() -> dict[str, str]:
-    """Return results that are not what their jobs wrote, which Snakemake does not notice."""
+    """Return results that Snakemake does not know to have changed, with the reasons."""
     from slippulse_paper.records.job_records import RecordedFiles
 
     problems = dict(RecordedFiles(RESULTS).problems())
@@ -91,29 +93,29 @@ def changed_results() -> dict[str, str]:
     return problems
 
 
-def renewal(options: list[str], targets: list[str]) -> list[str]:
-    """Return Snakemake's options that renew the changed results among those of the targets."""
+def options_for_changed_results(options: list[str], targets: list[str]) -> list[str]:
+    """Return options with which Snakemake makes changed results that the targets need again."""
     problems = changed_results()
     if not problems:
         return []
-    look = summary(options, targets)
-    needed = {line.partition("\t")[0] for line in look.stdout.splitlines()}
-    names = [name for name in problems if name in needed]
+    listing = summary(options, targets)
+    required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
+    names = [name for name in problems if name in required_outputs]
     if names:
         count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
-        print(f"{count} renewed: {names[0]}: {problems[names[0]]}", file=sys.stderr)
+        print(f"{count} made again: {names[0]}: {problems[names[0]]}", file=sys.stderr)
     return ["--forcerun", *names] if names else []
 
 
 def summary(options: list[str], targets: list[str]) -> subprocess.CompletedProcess[str]:
     """Run Snakemake's --summary, which lists the files of the targets with their state."""
-    look = ["--profile", "none", "--workflow-profile", "none", "--summary"]
-    command = [sys.executable, "-m", "snakemake", *look, *options, "--", *targets]
+    summary_options = ["--profile", "none", "--workflow-profile", "none", "--summary"]
+    command = [sys.executable, "-m", "snakemake", *summary_options, *options, "--", *targets]
     return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
 
 
 def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
-    """Return what to open when a run has ended, with the verdicts if it made or kept them."""
+    """Return the text that is printed after a run: the verdicts, if requested, and what to open."""
     from slippulse_paper.claims.claim_texts import read_text
     from slippulse_paper.claims.ledger import Ledger
     from slippulse_paper.configuration.read import read_config, read_overlay
@@ -123,43 +125,45 @@ def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
     overlays = [read_overlay(given["OVERLAY"])] if given.get("OVERLAY") else []
     preset = {"preset": given["PRESET"]} if given.get("PRESET") else {}
     config = read_config(shipped, overlays, preset, every_run=False)
-    draft = targets in ([], ["all"]) and not config.presets[config.preset].whole
-    whole = not draft and {*targets} <= {"all", "everything", "results/index.html"}
+    is_draft = targets in ([], ["all"]) and not config.presets[config.preset].whole
+    is_whole = not is_draft and {*targets} <= {"all", "everything", "results/index.html"}
     text = ""
-    if whole or any(target.startswith("results/claims.") for target in targets):
+    if is_whole or any(target.startswith("results/claims.") for target in targets):
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
         text = f"{ledger.summary()}\n"
         if changes(shipped, {**config.given(), "preset": shipped["preset"]}):
-            line = "Differs from the shipped: {key}: {shipped} -> {here}\n".format
+            line = "Differs from the shipped verdict: {key}: {shipped} -> {here}\n".format
             verdicts = read_text(PROJECT / "manuscript/shipped_verdicts.yaml")
             text += "".join(line(**change) for change in ledger.differences(verdicts))
-    if whole:
+    if is_whole:
         return f"{text}Open results/index.html"
-    if draft:
-        return "Open results/figures; TARGET=everything makes studies, claims and report too"
+    if is_draft:
+        return "Open results/figures; TARGET=everything also makes studies, claims and report"
     return f"{text}Made: {', '.join(targets)}"
 
 
 class Run:
-    """Snakemake in a group of processes of its own, which ends with this process."""
+    """A run of Snakemake in a separate process group, which ends when this process ends."""
 
     def __init__(self, arguments: list[str]) -> None:
-        # A profile of the user may change what is made, or that anything is made.
-        surroundings = {
+        # A profile of the user could change what is made.
+        environment = {
             key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"
         }
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
         try:
             cache.mkdir(parents=True, exist_ok=True)
         except OSError:
-            # Snakemake needs a folder for its caches, and there may be no home on a cluster.
-            surroundings["XDG_CACHE_HOME"] = str((STATE / "caches").resolve())
+            # Snakemake needs a folder for its caches. On a cluster there may be no home folder.
+            environment["XDG_CACHE_HOME"] = str((STATE / "caches").resolve())
         command = [sys.executable, "-m", "snakemake", "--profile", "none", *arguments]
-        self.process = subprocess.Popen(command, env=surroundings, start_new_session=True)
-        # The shell waits for the other end of this pipe, which the system closes with this process.
+        self.process = subprocess.Popen(command, env=environment, start_new_session=True)
+        # If this process is killed, the system closes its end of the pipe. The shell, which waits
+        # for that, then kills the group.
         end_group = f"read _; kill -KILL -{self.process.pid}"
-        how = {"stdin": subprocess.PIPE, "start_new_session": True}
-        self.guard = subprocess.Popen(["sh", "-c", end_group], **how)
+        self.guard = subprocess.Popen(
+            ["sh", "-c", end_group], stdin=subprocess.PIPE, start_new_session=True
+        )
 
     def end(self) -> None:
         """End all processes of the run."""
@@ -175,79 +179,89 @@ class Run:
 
 
 def replicate(given: Mapping[str, str]) -> int:
-    """Make the targets, and print what to open. Returns the exit code."""
+    """Make the targets, print what to open, and return the exit code."""
     began = time.monotonic()
     targets = [*map(full_target, given.get("TARGET", "").split())]
     options = options_of(given)
-    if given.get("OVERLAY") and (RESULTS / "provenance.json").exists() and not KEPT.exists():
-        line = "To see old beside new later, stop now, keep these results, and start again: "
-        print(f"{line}cp -r {RESULTS} {KEPT} (docs/compare.md)", file=sys.stderr)
-    take_over()
-    renewed = renewal(options, targets)
-    run = Run(["--cores", given.get("CORES") or "2", *options, *renewed, "--", *targets])
+    if (
+        given.get("OVERLAY")
+        and (RESULTS / "provenance.json").exists()
+        and not KEPT_RESULTS.exists()
+    ):
+        line = "To compare these results with the new ones, stop now, copy them, and start again: "
+        print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
+    clean_up_after_kill()
+    cores = ["--cores", given.get("CORES") or "2"]
+    changed = options_for_changed_results(options, targets)
+    run = Run([*cores, *options, *changed, "--", *targets])
 
     def stop(number: int, _frame: object) -> None:
+        """End the run with a line on a signal, and ignore further signals."""
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         run.end()
-        cursor = b"\x1b[?25h" if sys.stderr.isatty() else b""
-        os.write(2, cursor + b"\nStopped; the next run goes on from what is there.\n")
+        # A progress bar hides the cursor of the terminal.
+        show_cursor = b"\x1b[?25h" if sys.stderr.isatty() else b""
+        os.write(2, show_cursor + b"\nStopped; the next run continues from the finished files.\n")
         sys.exit(128 + number)
 
     for number in SIGNALS:
         signal.signal(number, stop)
     code = run.wait()
     if code == 0:
-        last = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
-        last["targets"] = ["everything"] if "everything" in targets else []
-        LAST_RUN.write_text(json.dumps(last), encoding="utf-8")
+        last_run = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
+        last_run["targets"] = ["everything"] if "everything" in targets else []
+        LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
         time_taken = timedelta(seconds=round(time.monotonic() - began))
         print(f"{closing_line(targets, given)}. It took {time_taken}.")
-        if given.get("OVERLAY") and KEPT.exists():
-            print(f"Old beside new: make compare AGAINST={KEPT}")
+        if given.get("OVERLAY") and KEPT_RESULTS.exists():
+            print(
+                f"To compare the old results with the new ones: make compare AGAINST={KEPT_RESULTS}"
+            )
     return code
 
 
-def wanted(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
-    """Return the options and targets to verify: without options, those of the last run."""
+def verified_run(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
+    """Return the options and targets to verify. Without options they are those of the last run."""
     options = {name: given[name] for name in OPTIONS if given.get(name)}
     targets = [*map(full_target, given.get("TARGET", "").split())]
     if not options:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-            last = json.loads(LAST_RUN.read_text(encoding="utf-8"))
-            last_options = {name: str(value) for name, value in last["options"].items()}
-            options, targets = last_options, targets or [*{"everything"} & {*last["targets"]}]
+            last_run = json.loads(LAST_RUN.read_text(encoding="utf-8"))
+            last_targets = ["everything"] if "everything" in last_run["targets"] else []
+            options = {name: str(value) for name, value in last_run["options"].items()}
+            targets = targets or last_targets
     return options, targets
 
 
 def verify(given: Mapping[str, str]) -> int:
-    """Print each result that is not as a run would make it now. Returns the exit code."""
-    options, targets = wanted(given)
-    look = summary(options_of(options), targets)
-    if look.returncode:
-        return look.returncode
-    problems = dict(outdated(look.stdout))
+    """Print each result that differs from what a run would make now, and return the exit code."""
+    options, targets = verified_run(given)
+    listing = summary(options_of(options), targets)
+    if listing.returncode:
+        return listing.returncode
+    problems = dict(outdated(listing.stdout))
     problems |= dict(unrecorded(problems))
     for name, reason in sorted(problems.items()):
         print(f"{name}: {reason}")
     if not problems:
-        files = look.stdout.count("\n") - 1
+        files = listing.stdout.count("\n") - 1
         print(f"{files} files are as a run would make them now")
     return int(bool(problems))
 
 
 def rulegraph(given: Mapping[str, str]) -> int:
-    """Print which rules make what, as a mermaid graph. Returns the exit code."""
+    """Print the graph of the rules in the mermaid format, and return the exit code."""
     targets = [*map(full_target, given.get("TARGET", "").split())]
     targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
-    look = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
+    quiet = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
     graph = ["--rulegraph", "mermaid-js", "--", *targets]
-    command = [sys.executable, "-m", "snakemake", *look, *options_of(given), *graph]
+    command = [sys.executable, "-m", "snakemake", *quiet, *options_of(given), *graph]
     return subprocess.run(command, check=False).returncode
 
 
 def outdated(summary: str) -> Iterable[tuple[str, str]]:
-    """Yield the files that Snakemake would make again, with its reason, from its summary."""
+    """Yield the files that Snakemake would make again, with the reasons, from its summary."""
     for line in summary.splitlines()[1:]:
         name, *_, status, plan = line.split("\t")
         if plan != "no update" or status == "missing":
@@ -255,17 +269,17 @@ def outdated(summary: str) -> Iterable[tuple[str, str]]:
 
 
 def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
-    """Yield the files that are not what their jobs wrote, and those that no job wrote."""
+    """Yield the files that differ from what their jobs wrote, and the files that no job wrote."""
     from slippulse_paper.records.job_records import RecordedFiles
 
     recorded = RecordedFiles(RESULTS)
     yield from recorded.problems()
-    known = recorded.states()
+    states = recorded.states()
     for path in sorted(RESULTS.rglob("*")):
         parts = path.relative_to(RESULTS).parts
-        hidden = any(part.startswith(".") for part in parts)
-        ours = path.is_file() and not hidden and parts[0] not in OTHER_PLACES
-        if ours and str(path) not in known and str(path) not in outdated:
+        is_hidden = any(part.startswith(".") for part in parts)
+        is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
+        if is_result and str(path) not in states and str(path) not in outdated:
             yield str(path), "no job has recorded it"
 
 

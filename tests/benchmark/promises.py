@@ -122,7 +122,7 @@ def judge(number, accuracy, max_steps):
         rows.append(numbers(layer, duration, spacing, ratio, max_step=step, order=8))
     tables = [pd.DataFrame([row]) for row in rows]
     study = grid_tables(tables[:3], SPACING_FACTORS[1:3], PARAMETERS)
-    study = judge_promises(study, tables[0], accuracy, MEASURE_SETTINGS["share"])
+    study = judge_promises(study, tables[0], accuracy, MEASURE_SETTINGS["fraction"])
     truth = numbers(layer, duration, min(0.01, duration / 2000.0), ratio, scheme="continuum")
     promised = study[study["kept"] != ""].set_index("quantity")
     exact = pd.Series({name: truth.get(name, math.nan) for name in promised.index}, dtype=float)

@@ -3,7 +3,7 @@
 import pytest
 
 from slippulse_paper.configuration.resolve import resolve
-from slippulse_paper.steps.inputs import given
+from slippulse_paper.steps.inputs import load_inputs
 from slippulse_paper.studies import open_choices
 
 # Medians of L_trans under leaf springs in percent, by release rule and damping ratio.
@@ -18,7 +18,7 @@ ARRESTS = {0.9: (8.96, 5.64), 0.95: (21.8, 12.6), 0.99: (41.0, 24.1)}
 def test_known_cases(project, shipped):
     settings, names = (shipped["model"], shipped["presets"]["paper"]), open_choices.NEEDS["sweeps"]
     sweeps = {name: resolve(shipped["simulations"][name], *settings) for name in names}
-    lists = given({"lists": [project / path for path in open_choices.NEEDS["lists"]]})[1]
+    lists = load_inputs({"lists": [project / path for path in open_choices.NEEDS["lists"]]}).tables
     table = open_choices.table({}, lists, {"sweeps": sweeps})
     for quantity in ("time", "length"):
         ratio = table[f"transition_{quantity}"] / table[f"paper_transition_{quantity}"]

@@ -58,9 +58,9 @@ def test_an_undamped_front_over_a_ramp_is_the_closed_form(gamma):
 
 
 def test_slip_under_held_stress_is_a_polynomial_and_waves():
-    """Where tau is linear, u - tau t^2/2 is a solution of the wave equation.
+    """If tau is linear in x, u - tau t^2/2 is a solution of the wave equation.
 
-    Every solution of it is a sum of two waves.
+    Every solution of the wave equation is a sum of two waves.
     """
     profile = sp.Prestress.through([-8.0, -1.0, 0.0, 2.0, 9.0], [0.2, 0.7, 1.0, 0.4, 0.8])
     rupture, h = Rupture(profile, 0.0, 0.1, duration=9.0), 0.3

@@ -34,11 +34,11 @@ def test_a_note_names_altered_keys_that_a_figure_reads_and_nothing_else():
     assert altered.note([], ["figures.fig01_system_sketch"]) == "altered: strip_width = 0.5"
     assert altered.note([], ["figures.fig07_damage_zone"]) == ""
     altered = alterations({})
-    assert not altered.untaken() and not any(altered.simulations.values())
+    assert not altered.overridden_defaults() and not any(altered.simulations.values())
 
 
 def test_simulations_that_do_not_take_a_default_are_named():
-    (line,) = alterations({"model": {"damping_ratio": 0.05}}).untaken()
+    (line,) = alterations({"model": {"damping_ratio": 0.05}}).overridden_defaults()
     assert "model.damping_ratio = 0.05" in line
     names = line.rpartition(": ")[2].split(", ")
     assert "steady_displacement" in names and "scaling_displacement" not in names

@@ -19,7 +19,7 @@ from slippulse.prediction.comparison import measured_table
 from slippulse_paper.figures.shared.main_numbers import scene_numbers
 from slippulse_paper.report.scene_page import scene_page
 
-SHARE = 0.95
+FRACTION = 0.95
 COMMON = {"run_flags": "", "damping_ratio": 0.1, "width": 1.0, "peak": 1.0, "dx": 0.1}
 COMMON |= {"steps_and_bumps": '{"steps": [], "bumps": []}', "end_time": 20.0}
 COMMON |= {"front_intercept_left": 0.0, "front_intercept_right": 0.0, "front_speed_left": 1.2}
@@ -70,7 +70,7 @@ COVERS = [
 
 @pytest.mark.parametrize(("run", "changed", "covered", "not_covered"), COVERS)
 def test_the_expected_numbers_are_covered(run, changed, covered, not_covered):
-    names = covered_numbers(run | changed, SHARE)
+    names = covered_numbers(run | changed, FRACTION)
     assert names.issuperset(covered) and names.isdisjoint(not_covered)
     assert "transition_time" not in covered_numbers(CRACK, 0.99)
 
@@ -78,7 +78,7 @@ def test_the_expected_numbers_are_covered(run, changed, covered, not_covered):
 @pytest.fixture(scope="module")
 def tables(shipped):
     """Measured tables of one run under each boundary, at three spacings."""
-    assert shipped["measure"]["share"] == SHARE
+    assert shipped["measure"]["fraction"] == FRACTION
     out = []
     for dx in (0.05, 0.1, 0.2):
         pulse = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 30.0, dx, 0.3, 0.1 * dx)
@@ -106,7 +106,7 @@ def test_every_measured_number_is_covered_or_has_a_reason_not_to_be(study):
 
 def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, study):
     generous, strict = (
-        judge_promises(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9)
+        judge_promises(study, tables[0], promise, FRACTION) for promise in (10.0, 1e-9)
     )
     assert set(generous["kept"]) == {"true", ""} and set(strict["kept"]) == {"false", ""}
     pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
@@ -118,10 +118,10 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     )
     relative = (study["uncertainty"] / study["value"].abs())[generous["kept"] != ""]
     middle = float(relative.median())
-    between = judge_promises(study, tables[0], middle, SHARE)["kept"][relative.index]
+    between = judge_promises(study, tables[0], middle, FRACTION)["kept"][relative.index]
     assert list(between == "true") == list(relative <= middle)
     # A user-defined spacing promises nothing.
-    unknown = judge_promises(study, tables[0], math.nan, SHARE)
+    unknown = judge_promises(study, tables[0], math.nan, FRACTION)
     assert set(unknown["kept"]) == {""} and unknown["promised"].isna().all()
     assert (
         summarise_promises(unknown, math.nan) == "its spacing is user-defined and promises nothing"
@@ -129,14 +129,14 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     coarse = tables[2].assign(front_speed_right=math.nan)
     # An unknown uncertainty has not kept its promise.
     study = grid_tables((*tables[:2], coarse), (2.0, 4.0), PARAMETERS)
-    study = judge_promises(study, tables[0], 10.0, SHARE)
+    study = judge_promises(study, tables[0], 10.0, FRACTION)
     row = study[(study["quantity"] == "front_speed_right") & (study["point"] == 0)]
     assert list(row["kept"]) == ["false"]
     assert "missed by 0 (front_speed_right inf)" in summarise_promises(study, 10.0)
 
 
 def test_the_numbers_and_the_page_of_a_scene_carry_the_verdict(tables, study, tmp_path):
-    parts = (study, judge_promises(study, tables[0], 10.0, SHARE))
+    parts = (study, judge_promises(study, tables[0], 10.0, FRACTION))
     first = tables[0].iloc[0]
     plain, promised = (scene_numbers(first, part[part["point"] == 0]) for part in parts)
     assert set(promised.columns) - set(plain.columns) == {"promised", "kept"}

@@ -64,7 +64,7 @@ def test_the_factor_by_cauchys_integral(v):
 
 @pytest.mark.parametrize("v", [1.2, 2.0, 3.0])
 def test_strong_damping(v):
-    """By the elastic rule, tau tends to 1 - 1/v^2 as 1/b; by the total rule, b tau to v - 1/v."""
+    """For large b, tau tends to 1 - 1/v^2 (elastic rule), and b tau to v - 1/v (total rule)."""
     limit = 1.0 - v**-2
     elastic = [theory.prestress_for_speed(v, b, "elastic") - limit for b in (4.0, 20.0, 100.0)]
     assert abs(elastic[1]) < 0.3 * abs(elastic[0]) and abs(elastic[2]) < 0.3 * abs(elastic[1])

@@ -1,4 +1,4 @@
-"""A sweep in chunks through Snakemake: only what is lost is made again, to the same bytes."""
+"""Sweeps in chunks: only lost files are made again, and they have the same bytes."""
 
 import json
 from pathlib import Path
@@ -24,7 +24,7 @@ def write_overlay(folder: Path, name: str, **changes) -> str:
 
 @pytest.fixture(scope="module")
 def folder(project, tmp_path_factory) -> Path:
-    """A copy in which the sweep was made; one of its chunks is a run longer."""
+    """A copy with the results of the sweep, of whose chunks one has one run more than the other."""
     folder = copy_project(project, tmp_path_factory.mktemp("chunks"), link=True)
     overlay = write_overlay(folder, "overlay.yaml")
     made(folder, "--quiet", "--", *targets("mine"), overlay=overlay, cores=2)
@@ -52,11 +52,11 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     lost = targets("mine/1-of-2")
     for target in lost:
         (folder / target).unlink()
-    # A file that the joined files were made from is not missed.
+    # The joined files do not need the chunks any more.
     asked = targets("mine")
     assert planned(snakemake(folder, "--dry-run", "--", *asked, overlay="overlay.yaml")) == {}
-    said = made(folder, "--", *(lost + asked), overlay="overlay.yaml", cores=2).stderr
-    assert "Simulating mine/1-of-2" in said and "2-of-2\n" not in said
+    output = made(folder, "--", *(lost + asked), overlay="overlay.yaml", cores=2).stderr
+    assert "Simulating mine/1-of-2" in output and "2-of-2\n" not in output
     assert [path.read_bytes() for path in joined] == before
 
 

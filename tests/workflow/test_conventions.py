@@ -1,4 +1,4 @@
-"""The workflow behaves as any other: Snakemake's options do what Snakemake documents."""
+"""The workflow follows conventions: Snakemake's options do what Snakemake documents."""
 
 import os
 import re
@@ -12,7 +12,7 @@ from workflow.conftest import FIGURE, SMALL
 from workflow.test_edits import DRAWING, edit, times
 
 OVERLAY = {"overlay": "overlay.yaml"}
-# Rules that a user adds in a file of their own.
+# Rules that a user adds in a separate file.
 OWN_RULES = """
 rule mine_by_shell:
     input: "results/measurements/mine.csv"
@@ -65,7 +65,7 @@ def test_a_look_changes_no_file_and_no_time(small, options):
     assert listed.returncode == 0, listed.stderr
     assert times(small) == before
     if options.endswith("params"):
-        # The outputs of the job whose sources have changed.
+        # They are the outputs of the job whose sources have changed.
         assert {*listed.stdout.split()} == {
             FIGURE.replace("png", end) for end in ("csv", "pdf", "png")
         }
@@ -127,7 +127,7 @@ rule counted:
     assert (tmp_path / "counted.txt").read_text() == "1\n"
     assert (tmp_path / f"{place}figures/.records").is_dir()
     assert "Drawing fig07_damage_zone" in result.stderr
-    # Results are below the prefix alone.
+    # With a prefix, all results are below it.
     assert (tmp_path / "results").exists() is (form == "plain")
 
 

@@ -21,14 +21,14 @@ from rules_by_imports import (
     files_of,
     rules_of,
 )
-from workflow.conftest import NAMES, TARGETS
+from workflow.conftest import TARGET_RULES, TARGETS
 
 from slippulse_paper.records.job_records import Record, RecordedFiles, digest_of, file_digest
 from slippulse_paper.records.provenance import source_files
 from slippulse_paper.steps.predict import MODULES as TOPIC_MODULES
 
 LOCK = "requirements.lock"
-# One file of each folder: a test above covers them all.
+# One file of each folder is edited. The test of digests below covers all files.
 EDITED = {
     Path(file).parent: file for file in FILES if Path(file).stem not in TOPIC_MODULES.values()
 }.values()
@@ -36,7 +36,7 @@ EDITED = {
 
 @pytest.fixture(scope="module")
 def inputs(linked) -> dict[str, set[str]]:
-    """Files that each rule takes, from one look of Snakemake at everything."""
+    """Return the input files of each rule, from Snakemake's graph of all files."""
     targets = (*TARGETS, "results/predictions/mine.csv")
     result = made(linked, "--forceall", "--filegraph", "--", *targets, overlay="overlay.yaml")
     files = {}
@@ -49,7 +49,7 @@ def inputs(linked) -> dict[str, set[str]]:
 
 
 def test_the_code_of_each_job_is_what_its_step_reaches_and_nothing_else(imitated):
-    """The digest in each record is that of the files which the imports of the step lead to."""
+    """Each record has the digest of the files that the step imports, directly or indirectly."""
     digest = cache(lambda path: file_digest(imitated / path))
 
     def codes(rule: str) -> set[str]:
@@ -66,13 +66,13 @@ def test_the_code_of_each_job_is_what_its_step_reaches_and_nothing_else(imitated
         assert record.code in codes(rule), path
         seen.add(rule)
     assert seen == RULES and len(FILES) > 150
-    # Predictions that two figures share do not stand in the module of one of them.
+    # No figure imports the module of another figure.
     for name in DRAWN:
         assert rules_of(f"src/slippulse_paper/figures/{name}.py") == {name} | EVERY_SOURCE
 
 
 def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
-    """An import that is computed at run time is not seen in the text of a module."""
+    """Only these modules import others by computed names, which the graph of imports misses."""
     computed = {
         path.relative_to(PACKAGE).with_suffix("").as_posix()
         for path in PACKAGE.rglob("*.py")
@@ -89,13 +89,13 @@ def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(input
         files = (f"data/{name}.nc", f"measurements/{name}.csv", f"uncertainties/{name}.csv")
         assert {f"results/{file}" for file in files} <= listed
     assert {f"results/scenes/one.{ending}" for ending in ("html", "png", "pdf", "csv")} <= listed
-    # Data of a figure and of a claim.
+    # Data of a figure and measurements of a claim are listed, too.
     assert {"results/data/steady_stress.nc", "results/measurements/scaling_stress.csv"} <= listed
 
 
 @pytest.fixture(scope="module")
 def downstream(imitated):
-    """A function of some jobs: these, and all that take what they make, by their records."""
+    """Return a function that finds all jobs that depend on some jobs, from the records."""
     taken = grimp.ImportGraph()
     records = RecordedFiles(imitated / "results").records
     jobs = {path: name_of(path, record) for path, record in records.items()}
@@ -124,7 +124,10 @@ def name_of(path: Path, record: Record) -> str:
 
 
 def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
-    """Jobs of a dry run after an edit of a file or of some values, without those of names."""
+    """Return the jobs of a dry run after an edit of a file or of some values.
+
+    Rules that only list targets are left out.
+    """
     file, values = (change, "{}") if change in (*FILES, LOCK) else ("overlay.yaml", change)
     (folder / "values.yaml").write_text(values, encoding="utf-8")
     path = folder / file
@@ -136,7 +139,7 @@ def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
     finally:
         path.write_bytes(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
-    return {rule: count for rule, count in jobs.items() if rule not in NAMES}
+    return {rule: count for rule, count in jobs.items() if rule not in TARGET_RULES}
 
 
 @pytest.mark.slow
@@ -145,15 +148,15 @@ def test_an_edit_runs_what_depends_on_the_file(imitated, downstream, file):
     assert set(jobs_after(imitated, file)) == downstream(RULES if file == LOCK else rules_of(file))
 
 
-# The whole configuration stands in the report and in the provenance, what an overlay alters on the
-# pages; and a study draws the claims.
+# These jobs run after every change. The report and the provenance contain the whole configuration,
+# the claims page shows what an overlay alters, and a study draws the claims.
 ALWAYS = {"write_claims", "study_open_choices", "write_report", "write_index"}
 CHAIN = ("simulate", "measure", "predict", "study_grid")
 PUBLISHED = ("study_published_figure", "study_of_exact_space_time", "study_of_derivations")
 PUBLISHED += ("fig04_space_time",)
 SCENES = ("draw_scene", "animate_scene", "write_scenes_page")
 FIGURE = "fig07_damage_zone"
-# Values that are laid over the configuration, and which jobs then run besides.
+# Changes of the configuration, and the jobs that then run in addition.
 CONFIGURATIONS = {
     "simulations: {space_time_displacement: {left: [0.3]}}": (*CHAIN, *PUBLISHED),
     "simulations: {mine: {left: [0.5, 0.3]}}": (*2 * CHAIN, *4 * ("join",), "sweep_mine"),
@@ -173,20 +176,20 @@ def test_another_configuration_runs_only_its_chain(imitated, change):
 
 SKETCHES = {"fig01_system_sketch", FIGURE, "study_barriers", "compile_kernels"}
 DAMPED, HELD = "fig10_damping_displacement", "fig08_steady_state_displacement"
-# They stand for all studies, which take what they read in one rule. The first two read other parts
-# of `measure`, one of them the model too, and the last reads nothing.
+# Examples of studies, all of which run in one rule. The first two read different parts of
+# `measure`, one of them also the model, and the last reads no settings.
 STUDIES = {"study_of_extremes", "study_of_regime_plane", "study_of_layer"}
-# A change, some of the rules that it marks, and rules that it does not mark.
-SHARES = {
-    "share": (
-        "measure: {share: 0.9}",
+# A change, some of the rules that then run, and rules that do not run.
+CHANGES = {
+    "fraction": (
+        "measure: {fraction: 0.9}",
         {"measure", "study_grid", "draw_scene", "write_claims", "fig05_scaling"},
         SKETCHES | STUDIES | {"simulate", "animate_scene", "fig06_burridge_knopoff", HELD, DAMPED},
     ),
     "damping ratio": (
         "model: {damping_ratio: 0.2}",
         {"measure", "study_grid", "simulate", "animate_scene", "fig04_space_time"},
-        # Its simulations have damping ratios of their own.
+        # The simulations of this figure set their own damping ratios.
         SKETCHES | STUDIES - {"study_of_regime_plane"} | {DAMPED},
     ),
     "coarser lattices": (
@@ -203,7 +206,7 @@ SHARES = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("change", "readers", "untouched"), SHARES.values(), ids=SHARES)
+@pytest.mark.parametrize(("change", "readers", "untouched"), CHANGES.values(), ids=CHANGES)
 def test_a_shared_value_or_topic_runs_its_readers_alone(imitated, change, readers, untouched):
     jobs = set(jobs_after(imitated, change))
     assert readers | ALWAYS <= jobs and not untouched & jobs and untouched <= RULES

@@ -1,4 +1,4 @@
-"""After each kind of edit, exactly the jobs that depend on it run again, for the true reason."""
+"""After each kind of edit, exactly the jobs that depend on it run again, for the right reason."""
 
 import os
 import re
@@ -18,7 +18,7 @@ from slippulse_paper.steps.job import Job, JobFailed, run_job
 
 DRAWING = "src/slippulse_paper/figures/fig07_damage_zone.py"
 KERNEL = "src/slippulse/solver/taylor.py"
-# Times and sizes of all files, which a command that only looks does not change.
+# Times and sizes of all results, which a command that only lists things does not change.
 times = lambda folder: {
     path: (path.stat().st_mtime_ns, path.stat().st_size)
     for path in Path(folder, "results").rglob("*")
@@ -26,7 +26,7 @@ times = lambda folder: {
 
 
 def jobs(folder: Path, *options: str, overlay="overlay.yaml"):
-    """Jobs of a dry run by rule, and the reasons that it gives; it must change nothing."""
+    """Return the jobs of a dry run by rule, and its reasons. The dry run must change nothing."""
     before = times(folder)
     result = snakemake(folder, "--dry-run", *options, "--", *SMALL, overlay=overlay)
     assert times(folder) == before
@@ -36,7 +36,7 @@ def jobs(folder: Path, *options: str, overlay="overlay.yaml"):
 
 
 def edit(path: Path, year: int = 2020) -> None:
-    """Add a comment to a source, and date the file to some year."""
+    """Add a comment to a source, and set the time of the file to some year."""
     path.write_text(path.read_text(encoding="utf-8") + "\n# A comment.\n", encoding="utf-8")
     os.utime(path, ((year - 1970) * 31556952,) * 2)
 
@@ -70,14 +70,14 @@ def test_another_duration_simulates_again(small):
     (small / "other.yaml").write_text("scenes: {one: {duration: 7.0}}", encoding="utf-8")
     planned_jobs, reasons = jobs(small, overlay=("overlay.yaml", "other.yaml"))
     chain = ("simulate", "measure", "predict", "study_grid", "draw_scene")
-    # A page tells what differs from the shipped configuration.
+    # The page shows the differences from the shipped configuration.
     assert planned_jobs == dict.fromkeys(chain, 1)
     assert "Params have changed" in reasons["Simulating one"]
 
 
 @pytest.fixture
 def job(tmp_path, monkeypatch) -> Job:
-    """A job that joins tables, in an empty folder; it has one source, which is not changed."""
+    """A job that joins tables in an empty folder, with one unchanged source."""
     monkeypatch.chdir(tmp_path)
     write_text("point\n1\n", "results/a.csv")
     sources = sources_of(("slippulse_paper.records.lock",))
@@ -131,7 +131,7 @@ def test_a_result_edited_by_hand_fails_the_job_that_reads_it(job):
 
 
 def replicate(folder: Path, **options: str) -> str:
-    """Run `make replicate` for the small targets, which must succeed; returns what it prints."""
+    """Run `make replicate` for the small targets, which must succeed, and return what it prints."""
     given = {"CORES": "2", "OVERLAY": "overlay.yaml", "TARGET": " ".join(SMALL), "PRESET": ""}
     command = [sys.executable, "workflow/run.py", "replicate"]
     how = {"cwd": folder, "env": os.environ | given | options, "text": True}
@@ -144,16 +144,16 @@ def replicate(folder: Path, **options: str) -> str:
 def test_a_result_edited_by_hand_is_named_by_a_look_and_renewed_by_make(small):
     before = digests(small)
     (small / "results/data/one.nc").write_text("edited by hand", encoding="utf-8")
-    # A result of another overlay, which no rule makes here.
+    # This result of another overlay is not made by any rule here.
     (small / "results/data/.records").joinpath("other.nc.json").write_text("[", encoding="utf-8")
     result = snakemake(small, "--dry-run", "--quiet", "--", *SMALL, overlay="overlay.yaml")
-    line = "2 results are not as made: results/data/other.nc, results/data/one.nc"
+    line = "2 results are changed: results/data/other.nc, results/data/one.nc"
     assert sum(line in text for text in result.stderr.splitlines()) == 1
     assert "make replicate" in result.stderr
-    said = replicate(small)
+    output = replicate(small)
     reason = "results/data/one.nc: not what its job wrote"
-    assert f"1 result is renewed: {reason}" in said
-    assert {*re.findall(r"^  (.+): [0-9.]+ s$", said, re.M)} == {
+    assert f"1 result is made again: {reason}" in output
+    assert {*re.findall(r"^  (.+): [0-9.]+ s$", output, re.M)} == {
         "simulate one",
         "measure one",
         "study_grid one",
@@ -167,11 +167,11 @@ def test_lost_records_of_snakemake_are_named_by_a_look_and_all_is_renewed_by_mak
     before = digests(small)
     shutil.rmtree(small / ".snakemake")
     result = snakemake(small, "--dry-run", "--quiet", "--", *SMALL, overlay="overlay.yaml")
-    assert f"{len(before)} results are not as made" in result.stderr
-    said = replicate(small)
-    # Only what the targets need is made again; the line names the other results the next time.
-    assert re.search(r"^\d+ results are renewed: results/", said, re.M)
-    assert len(re.findall(r"^  (.+): [0-9.]+ s$", said, re.M)) == 13
+    assert f"{len(before)} results are changed" in result.stderr
+    output = replicate(small)
+    # Only files that the targets need are made again. The next run names the other ones.
+    assert re.search(r"^\d+ results are made again: results/", output, re.M)
+    assert len(re.findall(r"^  (.+): [0-9.]+ s$", output, re.M)) == 13
     assert digests(small) == before
 
 
@@ -185,8 +185,8 @@ def test_a_source_that_is_edited_while_a_run_is_at_work_fails_its_job(small):
     write = f"open({str(small / DRAWING)!r}, 'a').write('# A comment.')"
     loop = "for path in _paths(outputs):"
     path.write_text(text.replace(loop, f"{write}\n        {loop}"), encoding="utf-8")
-    said = refused(small, "--", FIGURE, overlay="overlay.yaml")
-    assert f"{DRAWING}: changed since this run was planned; run again" in said
+    output = refused(small, "--", FIGURE, overlay="overlay.yaml")
+    assert f"{DRAWING}: changed since this run was planned; run again" in output
     path.write_text(text, encoding="utf-8")
     result = made(small, "--", FIGURE, overlay="overlay.yaml")
     assert "Drawing fig07_damage_zone" in result.stderr

@@ -1,4 +1,4 @@
-"""Every example overlay runs, at draft, and does what its comment promises."""
+"""Every example overlay runs with the preset draft and does what its comment promises."""
 
 from itertools import product
 from pathlib import Path
@@ -17,7 +17,7 @@ FRICTION = {"static_friction": 0.6, "kinetic_friction": 0.5}
 
 @pytest.fixture(scope="module")
 def make(project, tmp_path_factory):
-    """A function that makes a target with an example's overlay and returns its path."""
+    """Return a function that makes a target with the overlay of an example and returns its path."""
     folder = copy_project(project, tmp_path_factory.mktemp("examples"), link=True)
 
     def make(name: str, target: str) -> Path:
@@ -30,7 +30,7 @@ def make(project, tmp_path_factory):
 
 # A function for each example checks its measured table and the path of its target.
 def another_gamma(table, path):
-    """It changes the size and not the speed."""
+    """A change of gamma changes the size of the pulse and not its speed."""
     assert set(table["gamma"]) == {0.3}
     undamped = table[table["damping_ratio"] == 0.0]
     assert np.allclose(undamped["pulse_slip"], 2.0 * undamped["left"] / 0.3, rtol=tol.DRAFT_SLIP)
@@ -49,7 +49,7 @@ def two_nucleation_sites(table, path):
 
 
 def stress_barrier(table, path):
-    """The barrier stands at 18, the undisturbed front on the left is beyond 35 by the end."""
+    """The barrier begins near 18. At the end the undisturbed front on the left is beyond 35."""
     speed = pytest.approx(theory.front_speed(0.5, 0.1), rel=tol.DRAFT_SPEED)
     assert table["front_speed_left"][0] == speed
     fronts = pd.read_csv(path.with_suffix(".csv")).query("role == 'front'")
@@ -58,7 +58,7 @@ def stress_barrier(table, path):
 
 
 def other_friction(table, path):
-    """No theory of another friction stands beside its numbers."""
+    """The page compares its numbers with no theory, since the theory has another friction."""
     assert table["front_speed_right"][0] == pytest.approx(1.0, rel=tol.DRAFT_SPEED)
     law = "<td>slip weakening, d_c = 0.1, nucleation = 2</td>"
     assert law in path.read_text(encoding="utf-8")
@@ -69,7 +69,7 @@ def other_friction(table, path):
 
 
 def exact_scene(table, path):
-    """It is drawn like a run."""
+    """The exact solution is drawn like a run on a lattice."""
     assert table["scheme"][0] == "continuum"
     stops = theory.Rupture(Prestress(-0.5, 0.5), gamma=0.65, duration=12.0).front_ends[0][0].x
     fronts = pd.read_csv(path.with_suffix(".csv")).query("role == 'front'")
@@ -84,7 +84,7 @@ def elastic_release(table, path):
 
 
 def fixed_beta(table, path):
-    """A null has removed the damping ratio."""
+    """The value null has removed the damping ratio."""
     assert set(table["beta"]) == {0.01} and table["damping_ratio"].nunique() == len(table) > 1
     assert table.sort_values("dx")["front_speed_right"].is_monotonic_decreasing
 
@@ -95,7 +95,7 @@ def halved_spacing(table, path):
 
 
 def user_defined_sweep(table, path):
-    """Without a target error, its grid study says nothing of one."""
+    """Without a target error, the grid study does not mention one."""
     measured = pd.read_csv(path.parents[1] / "measurements/user_defined_sweep.csv")
     assert len(measured) == 12 and np.isfinite(measured["pulse_slip"]).all()
     assert table.columns[-1] == "uncertainty"
@@ -114,7 +114,7 @@ def prestress_ramp(table, path):
 
 
 def stress_file(table, path):
-    """The rupture starts where the file has its 1, and no theory of levels stands beside it."""
+    """The rupture starts where the file has the value 1, and no theory of levels is compared."""
     assert np.isnan(table["width"][0]) and "121 points" in table["steps_and_bumps"][0]
     numbers = pd.read_csv(path.with_name("stress_file_numbers.csv"))
     assert np.isfinite(numbers["value"]).all() and numbers["theory"].isna().all()
@@ -123,7 +123,7 @@ def stress_file(table, path):
 
 
 def rough_prestress(table, path):
-    """All pulses live, and each seed has its own."""
+    """The pulse of every seed survives, and they all differ."""
     measured = pd.read_csv(path.parents[1] / "measurements/rough_prestress.csv")
     assert measured["seed"].tolist() == [1, 2, 3, 4, 5, 6] and set(measured["profile"]) == {1}
     assert set(measured["pulse_state"]) == {"unsteady"}
@@ -145,7 +145,7 @@ def chunked_sweep(table, path):
 
 
 def target_error(table, path):
-    """It is kept and said; narrow pulses and damped ones take a finer lattice."""
+    """All runs keep it, and the log reports that. Narrow and damped pulses take finer lattices."""
     promised = table[table["promised"].notna()]
     assert set(promised["promised"]) == {0.01} and set(promised["point"]) == set(range(12))
     assert promised["kept"].all()
@@ -168,7 +168,7 @@ def layer_map(table, path):
 
 
 def laboratory_block(table, path):
-    """A whole rupture that stops before the ends of the block, drawn in SI units."""
+    """The rupture stops before the ends of the block, and is drawn in SI units."""
     drawn = pd.read_csv(path.with_suffix(".csv"))
     roles = dict([*drawn.groupby("role")])
     units = roles["unit"].set_index("series")["unit"]
@@ -180,7 +180,7 @@ def laboratory_block(table, path):
     assert 0.33e3 < roles["largest"]["value"].iloc[0] < 0.35e3
     slip = roles["profile"].query("series == 'slip' and abs(position) < 70")["value"]
     assert slip.median() == pytest.approx(1.7, abs=0.05)
-    # The numbers of the measured table are those of the model.
+    # The measured table has numbers without units.
     numbers = pd.read_csv(path.with_name("laboratory_block_numbers.csv")).set_index("quantity")
     layer = Layer(0.01, 2.1e9, poisson_ratio=0.33, density=1170.0, **FRICTION, normal_stress=5e6)
     stick = layer.convert_to_si(table["first_stick_time"][0], "time")
@@ -188,7 +188,7 @@ def laboratory_block(table, path):
 
 
 def damage_zone(table, path):
-    """The numbers of the comment, which are those of the exact pulse of this layer."""
+    """The numbers in the comment are the numbers of the exact pulse of this layer."""
     numbers = pd.read_csv(path.with_name("damage_zone_numbers.csv")).set_index("quantity")
     layer = Layer(100.0, 5.2e9, poisson_ratio=0.25, density=2300.0, **FRICTION, normal_stress=4e7)
     results = theory.layer_results(layer, 21.6e6, damping_ratio=0.1).exact

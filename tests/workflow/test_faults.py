@@ -1,4 +1,4 @@
-"""Faults of machines: a run works, or fails in one clear line and leaves what was there."""
+"""Faults of machines: a run works, or it fails with one clear line and keeps existing results."""
 
 import multiprocessing
 import os
@@ -28,8 +28,8 @@ FIGURE = "results/figures/fig07_damage_zone.png"
 
 
 def test_a_run_is_stopped_by_each_signal_and_the_next_gives_the_same(tmp_path):
-    said = fault_run(tmp_path / "und Umläuten", len(SIGNALS), 3, [FIGURE])
-    assert all(f"1 by {signal}" in said for signal in SIGNALS)
+    output = fault_run(tmp_path / "und Umläuten", len(SIGNALS), 3, [FIGURE])
+    assert all(f"1 by {signal}" in output for signal in SIGNALS)
 
 
 @pytest.mark.slow
@@ -64,8 +64,8 @@ def test_a_log_that_cannot_be_written_is_named(tmp_path):
 def test_a_file_in_place_of_the_results_fails_in_one_line(project, tmp_path):
     folder = copy_project(project, tmp_path / "copy", link=True)
     (folder / "results").write_text("mine")
-    said = refused(folder, "--", FIGURE)
-    assert "results is a file; remove or rename it: a folder of that name is needed" in said
+    output = refused(folder, "--", FIGURE)
+    assert "results is a file; remove or rename it: a folder of that name is needed" in output
     assert (folder / "results").read_text() == "mine"
 
 
@@ -73,7 +73,7 @@ def test_a_file_in_place_of_the_results_fails_in_one_line(project, tmp_path):
 def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     path, numbers = tmp_path / kind, pd.DataFrame({"a": np.arange(1e5)})
     path.write_text("what was there\n")
-    # A limit on the size of files stands for a disk without room: writing fails in the same place.
+    # With a limit on the size of files, writing fails in the same place as on a full disk.
     least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     reason = r"make room and run again[^\n]+\Z"
     with pytest.raises(JobFailed, match=reason), logged(tmp_path / "log"), ExitStack() as after:
@@ -85,7 +85,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
 
 
 def job_of(step: str) -> Job:
-    """A job that writes a page without inputs."""
+    """Return a job that writes a page and has no inputs."""
     return Job(
         step=step,
         name="a job",
@@ -106,7 +106,7 @@ def pool(tmp_path, monkeypatch) -> WorkerPool:
 
 
 def test_a_job_that_fails_says_why(pool, capfd):
-    # The worker is there for the next job.
+    # The worker survives the first failure and runs the next job.
     for _ in range(2):
         with pytest.raises(JobFailed, match=r"\A[^\n]+No module named[^\n]+one.traceback\)\Z"):
             pool.run(job_of("no_such_step"), workers=1)
@@ -156,11 +156,11 @@ def test_of_two_first_runs_in_a_fresh_clone_one_sets_up_and_one_runs(project, tm
     subprocess.run(["git", "clone", "--quiet", project, folder], check=True)
     options = {"cwd": folder, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     runs = [subprocess.Popen(run, **options) for _ in range(2)]
-    said = [process.communicate(timeout=500)[0] for process in runs]
-    both = "".join(said)
+    output = [process.communicate(timeout=500)[0] for process in runs]
+    both = "".join(output)
     assert both.count("Setting up") == 1 and "Traceback" not in both
-    # The second run may begin when the first has ended.
+    # The second run is not refused if it begins after the first has ended.
     refused = [process.returncode for process in runs if process.returncode]
-    assert len(refused) == both.count("Another run is at work in this folder") <= 1
+    assert len(refused) == both.count("Another run is using this folder") <= 1
     assert (folder / FIGURE).exists()
     assert subprocess.run(run, cwd=folder, check=False, timeout=100).returncode == 0

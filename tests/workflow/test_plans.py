@@ -45,12 +45,12 @@ def test_the_graph_in_the_readme_is_the_pipelines(linked, project):
 @pytest.mark.slow
 def test_without_a_terminal_a_run_shows_one_short_line_a_job(linked):
     result = snakemake(linked, "--force", "--", FIGURE, command=BY_PROFILE)
-    said = result.stdout + result.stderr
+    output = result.stdout + result.stderr
     assert (
-        result.returncode == 0 and len(re.findall(rf"draw_figure {FIGURE}: [0-9.]+ s", said)) == 1
+        result.returncode == 0 and len(re.findall(rf"draw_figure {FIGURE}: [0-9.]+ s", output)) == 1
     )
-    assert "input:" not in said and len(said.splitlines()) < 40
-    # Its report is one file that loads nothing.
+    assert "input:" not in output and len(output.splitlines()) < 40
+    # The report is one file that loads no other files.
     made(linked, "--report", "report.html", "--", f"results/figures/{FIGURE}.png")
     text = (linked / "report.html").read_text(encoding="utf-8")
     assert '"Figures of the paper"' in text and FIGURE in text

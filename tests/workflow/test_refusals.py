@@ -13,20 +13,20 @@ from slippulse.model.cost import OPTION_TO_ALLOW
 from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep
 from slippulse_paper.configuration.problems import ConfigError
-from slippulse_paper.configuration.read import LARGEST_FILE, read_config, read_overlay
+from slippulse_paper.configuration.read import MAX_FILE_BYTES, read_config, read_overlay
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse_paper.steps.needs import declared, needs_of
 
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]
 KEPT += ["burridge_knopoff_stress", "steady_stress"]
-# Each case has an overlay and its refusal: parts that the refusal must have, one a line.
+# Each case has an overlay and texts that its refusal must contain.
 MISTAKES = read_overlay(Path(__file__).with_name("refusals.yaml"))
 LONG_NAME = {"simulations": {"a" * 900: {}}}
 MISTAKES["name of 900 letters"] = {"overlay": LONG_NAME, "refusal": ["'aaaa", "..."]}
 MANY = [0.001 * i for i in range(1, 801)]
 GRID, SAMPLES = {"left": MANY, "gamma": MANY}, {"times": 100_000, "positions": 100_000}
-# Changes of simulations that take too much, and words of the refusal.
+# Changes of simulations whose cost is then too high, and words of the refusal.
 EXPENSIVE = {
     "many runs": ("steady_displacement", GRID, "1.92e+06 runs; allowed: 2e+04"),
     "long duration": ("steady_displacement", {"duration": {"time": 1e6}}, "allowed: 4e+13"),
@@ -35,14 +35,14 @@ EXPENSIVE = {
     "many chunks": ("steady_displacement", GRID | {"chunks": 1000}, "1000 chunks; allowed: 1e+03"),
 }
 # Values of the command line, and their refusals.
-SAID = {
+COMMAND_LINE_VALUES = {
     "word for a switch": ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
     "number for a switch": ({"allow_large": "2"}, "allow_large: 2; allowed: true or false"),
     "word for a number": ({"model": {"damping_ratio": "much"}}, "'much'; allowed: a number >= 0"),
     "number for a preset": ({"preset": "01"}, "preset: '01'; allowed: draft, paper, reference"),
     "anchor": ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
 }
-# Files that are no overlay at all.
+# Files that are not overlays.
 FILES = {
     "text": (b"just some text\n", "'just some text'", "a mapping of keys"),
     "list": (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
@@ -70,7 +70,7 @@ FILES = {
     "collection as a key": (b"{[1, 2]: 3}", "line 1", "a collection as a key", "text"),
     "two documents": (b"preset: draft\n---\npreset: paper\n", "line 2", "another document"),
     "deep nesting": (b"[" * 1000, "nested too deeply"),
-    "large file": (b"# " + b"x" * LARGEST_FILE, f"more than {LARGEST_FILE} bytes"),
+    "large file": (b"# " + b"x" * MAX_FILE_BYTES, f"more than {MAX_FILE_BYTES} bytes"),
 }
 # A scene in SI units, and changes of it with their refusals.
 BLOCK = {
@@ -119,7 +119,7 @@ LAYERS = {
         "right": 2.7e6,
     },
 }
-# Values that are put in place of any other.
+# Values that replace any other value.
 ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
 ODD += ["x" * 2000, "a\nb", "stress", [], [[]], [1, 0.2], [[1, 0.2]], [[1, 0.2, 0.3]], [None], {}]
 ODD += [{"a": 1}, {"time": 1.0}, {"": {}}, [{"left": 1}], ["samples"], {"fixed": 0.1}, [1e-300]]
@@ -163,7 +163,7 @@ def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, monkeypatch, case
 
 
 def mutated(value, chance: random.Random) -> object:
-    """A change of a value, of one below it, or of a key, for an overlay."""
+    """Return an overlay that changes a value, a value nested in it, or a key."""
     if chance.random() < 0.2 or not (value and isinstance(value, dict | list)):
         return chance.choice(ODD)
     if isinstance(value, list):
@@ -230,31 +230,32 @@ def test_a_file_that_is_no_overlay_is_refused(tmp_path, case):
 def test_scalars_are_what_yaml_and_json_say(tmp_path):
     text = "key: [1, -2.5, .5, 1e-3, 0x10, true, null, 010, '010', yes, total, 1:30, 1.]"
     values = [1, -2.5, 0.5, 1e-3, 16, True, None, 10, "010", "yes", "total", "1:30", 1.0]
-    # Braces and quoted keys are those of JSON.
+    # YAML has the braces and quoted keys of JSON, too.
     (tmp_path / "mine.yaml").write_text(f'{{{text}, "dx": 1e-2}}', encoding="utf-8")
     overlay = read_overlay(tmp_path / "mine.yaml")
     assert overlay == {"key": values, "dx": 0.01}
     assert [*map(type, overlay["key"])] == [*map(type, values)]
 
 
-def test_the_command_line_sets_nested_values_and_says_a_switch_in_words(shipped):
+def test_the_command_line_sets_nested_values_and_switches_in_words(shipped):
     nested = {"damping_ratio": "0.2", "release": "elastic"}
     config = read_config(shipped, (), {"model": nested, "accuracy": "1e-2"})
     assert (config.model.damping_ratio, config.model.release) == (0.2, "elastic")
     assert config.model.scheme == shipped["model"]["scheme"] and config.accuracy == 0.01
     words = {1: True, "yes": True, "on": True, "true": True, 0: False, "no": False, "False": False}
-    for said, meant in words.items():
-        assert read_config(shipped, (), {"allow_large": said}, every_run=False).allow_large is meant
+    for word, meaning in words.items():
+        config = read_config(shipped, (), {"allow_large": word}, every_run=False)
+        assert config.allow_large is meaning
 
 
-@pytest.mark.parametrize("case", SAID)
+@pytest.mark.parametrize("case", COMMAND_LINE_VALUES)
 def test_the_command_line_is_refused(shipped, case):
-    values, refusal = SAID[case]
+    values, refusal = COMMAND_LINE_VALUES[case]
     with pytest.raises(ConfigError, match=re.escape(refusal)):
         read_config(shipped, (), values)
 
 
-# Changes of a simulation that a figure draws: the figure, the simulation, the change, its refusal.
+# Figures, simulations that they draw, changes of these, and the refusals.
 EQUAL = "at least one run with boundary displacement and equal levels above 0"
 BALANCED = "at least one run with boundary stress, left level below 0, right level 0 and no steps"
 OTHER = "; or another name for the simulation"

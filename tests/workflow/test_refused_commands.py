@@ -1,4 +1,4 @@
-"""Refusals by the pipeline's own command before any job, and runs that are allowed in spite."""
+"""Refusals by the command of the workflow before any job, and unusual runs that are allowed."""
 
 import os
 import runpy
@@ -24,13 +24,13 @@ COMMANDS = [
     ),
     (LONG, "--", ["steady_displacement.cost: up to", "allow_large=true"]),
     ("", "--config preset=01", ["preset: '01'; allowed: draft, paper, reference"]),
-    # Snakemake has messages of its own for targets that there are not.
+    # Targets that do not exist are refused by Snakemake itself.
     (DRAFT, "-- simulate", ["Target rules may not contain wildcards"]),
     (DRAFT, "-- results/scenes/bariere.html", ["MissingRuleException", "bariere.html"]),
     (DRAFT, "--config preset=$(touch\twritten)", ["'$(touch"]),
     ("accuracy: 1.0e-4\n", "-- fig05", ["simulations.scaling_stress.cost", "updates"]),
 ]
-# The first five take every way through the pipeline.
+# The first five cover every kind of refusal, and so the others are slow tests.
 COMMANDS[5:] = [pytest.param(*case, marks=pytest.mark.slow) for case in COMMANDS[5:]]
 ODD_NOTES = ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
 
@@ -50,8 +50,8 @@ def test_the_command_refuses_before_any_job(folder, overlay, arguments, refusal)
 
 
 @pytest.mark.slow
-def test_odd_surroundings_of_the_user_do_not_stop_a_run(folder, tmp_path_factory):
-    """A long TMPDIR, a time without a value, no home, and a profile that only touches files."""
+def test_an_odd_environment_of_the_user_does_not_stop_a_run(folder, tmp_path_factory):
+    """TMPDIR is long, SOURCE_DATE_EPOCH is empty, there is no home, and a profile touches files."""
     long = tmp_path_factory.mktemp("t") / ("x" * 110)
     long.mkdir()
     profile = tmp_path_factory.mktemp("profile")
@@ -67,7 +67,7 @@ def test_odd_surroundings_of_the_user_do_not_stop_a_run(folder, tmp_path_factory
 
 
 @pytest.mark.slow
-def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
+def test_a_run_that_costs_too_much_can_be_allowed(folder):
     (folder / "mine.yaml").write_text(LONG, encoding="utf-8")
     allowed, target = OPTION_TO_ALLOW.split()[:2], "results/data/steady_displacement.nc"
     made(folder, "--dry-run", *allowed, "--", target, overlay="mine.yaml")
@@ -75,7 +75,7 @@ def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
 
 @pytest.fixture
 def make(project, folder):
-    """A function that runs make in a folder with the sources, and returns what it said."""
+    """Return a function that runs make in a copy of the project and returns what it prints."""
     if shutil.which("make") is None:
         pytest.skip("no make on this machine")
     for part in ("Makefile", "pyproject.toml", "requirements-build.lock"):
@@ -100,7 +100,7 @@ def make(project, folder):
 def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overlay):
     template = "__use_yte__: true\npreset: ?open('written', 'w')\n"
     (tmp_path / "mine.yaml").write_text(template, encoding="utf-8")
-    # Nothing waits for a writer of the pipe.
+    # The command must not wait until something is written to the pipe.
     os.mkfifo(tmp_path / "pipe")
     for command in ("replicate", "rulegraph", "verify"):
         assert overlay in make(command, f"OVERLAY={overlay.partition(':')[0]}")
@@ -130,7 +130,7 @@ CHECKED = {"CORES": "replicate", "PRESET": "replicate", "KILLS": "faults"}
 @pytest.mark.parametrize("value", ["$(shell touch written)", "$(error written)", "`touch written`"])
 def test_no_value_of_an_option_is_read_as_a_command(make, tmp_path, name, value):
     make("help", f"{name}={value}", "OTHER=$(shell touch written)", code=0)
-    # This one also uses the option.
+    # These commands also use the option.
     if name in CHECKED:
         assert f"{name}: {value}; allowed" in make(CHECKED[name], f"{name}={value}")
     assert not (tmp_path / "written").exists()
@@ -149,10 +149,10 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
 @pytest.mark.parametrize("text", ODD_NOTES)
 def test_an_odd_note_on_the_last_run_counts_as_absent(project, tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
-    wanted = runpy.run_path(str(project / "workflow/run.py"))["wanted"]
+    verified_run = runpy.run_path(str(project / "workflow/run.py"))["verified_run"]
     (tmp_path / ".snakemake").mkdir()
     (tmp_path / ".snakemake/slippulse-last-run.json").write_text(text)
-    assert wanted({"TARGET": "fig07.csv"}) == ({}, ["results/figures/fig07_damage_zone.csv"])
+    assert verified_run({"TARGET": "fig07.csv"}) == ({}, ["results/figures/fig07_damage_zone.csv"])
 
 
 @pytest.mark.slow
@@ -175,5 +175,5 @@ def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
     short["sweep_mine"] = "results/figures/sweep_mine.png"
     full_target = runpy.run_path("workflow/run.py")["full_target"]
     assert [*map(full_target, short)] == [*short.values()]
-    # The plan refuses a figure that there is not.
+    # Snakemake refuses a figure that does not exist.
     assert full_target("fig99") == "fig99"

@@ -1,6 +1,6 @@
-"""A results folder cannot mislead: `make verify` names every change, and the next run repairs it.
+"""Changes in the results folder: `make verify` names each, and the next run repairs it.
 
-Each job is imitated by one that writes by what and from what it is made: the tests see which run.
+Imitated jobs write their step, settings and inputs instead of results.
 """
 
 import os
@@ -21,7 +21,7 @@ FIGURE = "figures/fig07_damage_zone"
 
 
 def by_make(folder: Path, command: str, *targets: str, overlay: str = "overlay.yaml"):
-    """Run `make replicate` or `make verify`; returns the completed process."""
+    """Run `make replicate` or `make verify`, and return the completed process."""
     given = {"CORES": "2", "OVERLAY": overlay, "TARGET": " ".join(targets or TARGETS), "PRESET": ""}
     how = {"cwd": folder, "env": os.environ | given, "text": True, "timeout": 600}
     line = [sys.executable, "workflow/run.py", command]
@@ -38,7 +38,7 @@ def run(folder: Path, *targets: str, overlay: str = "overlay.yaml") -> str:
 
 
 def verify(folder: Path) -> dict[str, str]:
-    """Verify as `make verify` does, and return the reason by file."""
+    """Run `make verify`, and return the reason that it prints for each file."""
     result = by_make(folder, "verify")
     lines = [line.partition(": ") for line in result.stdout.splitlines()]
     reasons = {name.removeprefix("results/"): reason for name, _, reason in lines if reason}
@@ -48,26 +48,26 @@ def verify(folder: Path) -> dict[str, str]:
 
 @pytest.fixture
 def folder(small) -> Path:
-    """A folder with the imitated results, a copy beside them, and another overlay."""
+    """A folder with imitated results, a copy of them, and a second overlay."""
     shutil.copytree(small / "results", small / "overlay")
     other = OVERLAY | {"model": {"release": "elastic"}}
     (small / "other.yaml").write_text(yaml.safe_dump(other), encoding="utf-8")
     return small
 
 
-# A function of the shell that edits a source or a text, as `rsync -a` and `cp -p` leave it.
+# A shell function that edits a file and restores its time, as `rsync -a` and `cp -p` would do.
 SHELL = 'edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }; '
-# Reasons that verify gives: the first and the last two are ours, the others are Snakemake's.
+# Reasons that `make verify` prints. "missing" and "params changed" are reasons of Snakemake.
 CHANGED, MISSING, SOURCES = "not what its job wrote", "missing", "params changed"
 RECORD, UNKNOWN = "its record cannot be read", "no job has recorded it"
-# Files of each kind: some are removed, and some changed, which keeps their size.
+# Files of each kind that are removed, or edited without a change of their size.
 REMOVED = f"{FIGURE}.csv findings.json explorer.html manuscript/replication.pdf codecheck.yml"
 EDITED = f"data/barrier.nc uncertainties/coarser/one.csv {FIGURE}.png claims.json checksums.txt"
 EDITED += " predictions/arrest.csv data/mine.nc manuscript/verdicts.yaml studies/extremes.csv"
 EDITED += " manuscript/replication.html provenance.json kernels/localised.txt"
 EDITED += " measurements/mine/2-of-2.csv measurements/arrest.csv figures/sweep_mine.csv claims.html"
-# Commands, and what verify then says of some results. All commands of a table change one folder,
-# where each change is named and repaired by itself.
+# Commands, and the reasons that `make verify` then prints for some results. All commands of a table
+# change the same folder, in which each change is named and repaired separately.
 CONTENT = {f"rm results/{name}": {name: MISSING} for name in REMOVED.split()}
 CONTENT |= {f"sed -i 's/.$/!/' results/{name}": {name: CHANGED} for name in EDITED.split()}
 MOVES = {
@@ -97,7 +97,7 @@ def test_a_change_of_a_folder_is_named_and_repaired(folder, changes):
     assert digests(folder, "overlay") == digests(folder) and verify(folder) == {}
 
 
-# Commands that lose nothing: logs, the same content again, what a kill and a user leave.
+# Commands that change no result: they affect logs, times, unfinished files and files of a user.
 HARMLESS = (
     "rm -r results/logs",
     "cp overlay/index.html results/index.html",
@@ -111,8 +111,8 @@ def test_nothing_is_made_again_where_nothing_is_lost_and_a_users_file_stays(fold
     # The last run was killed.
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
     (folder / ".snakemake/locks/0.input.lock").touch()
-    said = run(folder)
-    assert "The last run was killed" in said and "renewed" not in said
+    output = run(folder)
+    assert "The last run was killed" in output and "made again: " not in output
     assert digests(folder, "overlay") == digests(folder)
     assert (folder / "results/figures/.notes-20261127.md").exists()
     assert not (folder / "results/data/.one.slippulse-unfinished-12345678.nc").exists()
@@ -120,7 +120,10 @@ def test_nothing_is_made_again_where_nothing_is_lost_and_a_users_file_stays(fold
 
 
 def change_and_verify(folder: Path, changes: dict) -> dict[str, str]:
-    """Change a folder by commands; verify must name each change. Returns all reasons by file."""
+    """Change a folder by commands, and return the reasons of `make verify` for each file.
+
+    It must name each change.
+    """
     for command in changes:
         subprocess.run(["sh", "-ec", SHELL + command], cwd=folder, check=True)
     named = verify(folder)
@@ -136,5 +139,5 @@ def test_a_run_of_one_target_touches_nothing_else(folder):
     run(folder, "results/data/one.nc", overlay="other.yaml")
     assert page.read_bytes() == before and page.stat() == times
     assert (folder / "results/manuscript/replication.pdf").exists()
-    # The data are of another configuration than that which is verified.
+    # The data were made with another configuration than the verified one.
     assert SOURCES in verify(folder)["data/one.nc"]

@@ -1,4 +1,4 @@
-# Sweeps that are divided into chunks, for a cluster: the files of the chunks are joined.
+# Joining of the files of chunks. Sweeps are divided into chunks on a cluster.
 
 
 rule join:
@@ -11,7 +11,7 @@ rule join:
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        # A million runs took 1.2 kB each; other sweeps may take twice as much.
+        # A sweep of a million runs took 1.2 kB for each run. Other sweeps may take twice as much.
         mem_mb=lambda wildcards, attempt: attempt * (1000 + joined_runs(wildcards) // 400),
     params:
         settings=joined_settings,

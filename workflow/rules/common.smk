@@ -1,4 +1,4 @@
-# The checked configuration, and what rules share: paths, settings, the digest of the sources.
+# The checked configuration, and functions that all rules use: paths, settings and source digests.
 
 import os
 import re
@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
-# The code is the one beside this file, whatever is installed or on PYTHONPATH; so in the workers.
+# Workers, too, run the code of this project, even if another version is installed or on PYTHONPATH.
 sys.path.insert(0, str(PROJECT / "src"))
 os.environ["PYTHONPATH"] = os.pathsep.join(
     filter(None, [str(PROJECT / "src"), os.environ.get("PYTHONPATH")])
@@ -21,6 +21,7 @@ from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
 from slippulse_paper.configuration.problems import ConfigError
 from slippulse_paper.configuration.promised_spacings import promised
 from slippulse_paper.configuration.read import read_config, read_overlay
+from slippulse_paper.configuration.renamed_keys import rename_warnings
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse_paper.configuration.runs import run_count
 from slippulse_paper.configuration.selected import selected
@@ -32,19 +33,22 @@ from slippulse_paper.steps.job import Job, JobFailed
 from slippulse_paper.steps.needs import declared, needs_of
 from slippulse_paper.steps.worker_pool import WorkerPool, run_here
 
-# In a module of another workflow, `config` is what the module is given, and paths may get a prefix.
+# As a module of another workflow, this one takes its configuration from `config`, and the other
+# workflow may add a prefix to the paths.
 IS_MODULE = not workflow.modifier.is_main_snakefile()
-WORKERS, FAILED, HELD = WorkerPool(), [], []
+WORKERS = WorkerPool()
+# Lines on jobs that have failed, and the lock of this folder while the run holds it.
+FAILED, HELD_LOCKS = [], []
 
 
 def project(path):
-    """Path of a file of the project from the working directory, which may be another folder."""
-    inside = Path.cwd() == PROJECT and not IS_MODULE
-    return path if inside else f"{PROJECT}/{path}"
+    """Return the path of a file of the project from the working directory."""
+    is_in_project = Path.cwd() == PROJECT and not IS_MODULE
+    return path if is_in_project else f"{PROJECT}/{path}"
 
 
 try:
-    # `configfile:` reads YAML 1.1 and names no line.
+    # Snakemake's `configfile:` reads YAML 1.1, and its errors do not name the line.
     SHIPPED = read_overlay(PROJECT / "config/config.yaml")
     OVERLAYS = [] if IS_MODULE else [*map(read_overlay, workflow.overwrite_configfiles)]
     GIVEN = dict(config if IS_MODULE else workflow.config_settings.config)
@@ -52,9 +56,9 @@ try:
         # Snakemake reads the name of a preset such as 01 as a number.
         texts = dict(text.split("=", 1) for text in workflow.config_settings.config_args or ())
         GIVEN |= {name: texts[name] for name in ("preset",) if texts.get(name)}
-    # A job on another node starts Snakemake again; its scenes were checked here.
+    # Only the main process checks all scenes. A job on another node starts Snakemake again.
     CONFIG = read_config(SHIPPED, OVERLAYS, GIVEN, workflow.is_main_process)
-    # Changes from the shipped configuration; None where nothing can have changed.
+    # Differences from the shipped configuration, or None if there is no overlay.
     ALTERED = None
     if OVERLAYS or GIVEN:
         ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
@@ -72,28 +76,36 @@ try:
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
+if workflow.is_main_process:
+    for line in rename_warnings([*OVERLAYS, GIVEN]):
+        print(line, file=sys.stderr)
+
 if Path("results").is_file():
     sys.exit("results is a file; remove or rename it: a folder of that name is needed")
 
 config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
-# Parameters of the layers of scenes in SI units.
+# The parameters of the layer of each scene in SI units, or None.
 LAYERS = {name: scene.layer_parameters() for name, scene in CONFIG.scenes.items()}
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
-# Inputs of each figure and study, as its module says: names by kind of file, and keys.
+# The NEEDS of each figure: its inputs by kind of file, and the keys of the configuration it reads.
 NEEDS = needs_of("figures")
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 TOPICS = declared("steps.predict", "TOPICS")
 SWEEPS = {f"sweep_{name}": {"measured": {name: TOPICS}} for name in OWN_SIMULATIONS}
 CLAIM_SIMULATIONS = declared("claims.paper_claims", "SIMULATIONS")
 CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
-# The front speeds are those of one level, without a grid study.
+# Claims use the predicted front speeds of this simulation, which has no grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
-READ = [CLAIM_PREDICTED, *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
-# Paths by kind of file, for a name.
+# The topics of predictions that claims, the report and figures read, for each simulation.
+READ_TOPICS = [
+    CLAIM_PREDICTED,
+    *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values())),
+]
+# Path of the file of each kind with a name.
 FILES = {
     "data": "results/data/{name}.nc",
     "measured": "results/measurements/{name}.csv",
@@ -115,12 +127,15 @@ KERNELS = {
 
 
 def made(kind, names):
-    """Files of one kind."""
+    """Return the files of one kind with some names."""
     return expand(FILES[kind], name=[*names])
 
 
 def inputs_of(needs):
-    """Files that a figure or a study is made from, by kind; predictions of the topics it names."""
+    """Return the files by kind that a figure or a study is made from.
+
+    They contain predictions for the simulations that have topics in its NEEDS.
+    """
     predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
     files = {
         kind: made(kind, names)
@@ -134,7 +149,7 @@ def inputs_of(needs):
 
 
 def sources(step, *modules, texts=()):
-    """Sources of a step, and of modules that it runs by name, and texts that it reads."""
+    """Return the sources of a step, of modules that it imports by name, and texts that it reads."""
     names = (f"slippulse_paper.steps.{step}", *modules)
     return sources_of(names, tuple(texts))
 
@@ -143,21 +158,21 @@ SOURCES_BY_DIGEST = {}
 
 
 def code_of(step, *modules, texts=()):
-    """Digest of the sources of a step: a job runs again when, and only when, it changes."""
+    """Return the digest of the sources of a step. A job runs again if it changes."""
     found = sources(step, *modules, texts=texts)
     SOURCES_BY_DIGEST[found.digest] = found.files
     return found.digest
 
 
 def templates(*names):
-    """Templates of pages, with those that every page is made with."""
+    """Return the paths of templates, and of the templates that all pages use."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
     paths = [path for name in ("base.html", "style.css", *names) for path in folder.glob(name)]
     return [path.relative_to(PROJECT).as_posix() for path in paths]
 
 
 def run_step(step, wildcards, input, output, params, threads, log):
-    """Run a step: in a worker process, or here where Snakemake has started a process for the job."""
+    """Run a step in a worker process, or in this one if Snakemake has started it for the job."""
     files, outputs = (
         {
             key: str(file) if isinstance(file, str) else [*map(str, file)]
@@ -180,7 +195,7 @@ def run_step(step, wildcards, input, output, params, threads, log):
     try:
         WORKERS.run(job, workflow.cores) if workflow.is_main_process else run_here(job)
     except JobFailed as reason:
-        # Snakemake reads the log of a failed job, which a process that never began has not written.
+        # Snakemake reads the log of a failed job. If no process was started, there is none.
         with suppress(OSError):
             Path(str(log)).touch()
         FAILED.append(f"{job.name}: {reason}")
@@ -188,7 +203,10 @@ def run_step(step, wildcards, input, output, params, threads, log):
 
 
 def note_of(needs, *keys):
-    """One line on what differs from the shipped configuration in what a figure is made from."""
+    """Return a line on altered parameters of the inputs of a figure, or no text.
+
+    ``keys`` are keys of the configuration that the figure reads in addition to those in its NEEDS.
+    """
     if ALTERED is None:
         return ""
     names, settings = set(), [*keys, *needs.get("settings", ())]
@@ -199,60 +217,68 @@ def note_of(needs, *keys):
     return ALTERED.note(sorted(names), settings)
 
 
-# Snakemake asks for the params of all waiting jobs whenever a job has ended.
+# Snakemake evaluates the params of all waiting jobs whenever a job has ended.
 @cache
 def settings_of(job):
-    """Settings of the jobs on a simulation, or on a chunk of it, such as NAME/3-of-8."""
+    """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8."""
     name, _, chunk = job.partition("/")
     simulation = SIMULATIONS[name]
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     scheme = sweep["scheme"]
-    # A fraction of the way to the arrest counts under a stress boundary only.
-    share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
+    # Under a displacement boundary no number depends on the fraction.
+    fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
-        # Where an accuracy is asked for, the sweep has the spacing of each run.
+        # If an accuracy is requested, `promised` adds the spacing of each run.
         "sweep": promised(sweep),
         "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
-        "measure": {**config["measure"], "share": share},
-        # A shipped simulation has the topics that are read; an added one has all.
-        "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
+        "measure": {**config["measure"], "fraction": fraction},
+        "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
-        # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
+        # The bound is a function, since most rules do not use it and it takes time.
         "bound": cache(lambda: bound_of_sweep(whole, simulation.chunks)),
         "runs": run_count(whole),
     }
 
 
+def topics_of(name):
+    """Return the topics of predictions for a simulation that something reads.
+
+    They are all topics if nothing does, which is so for the simulations of an overlay.
+    """
+    topics = set().union(*(topics.get(name, ()) for topics in READ_TOPICS))
+    return sorted(topics or TOPICS)
+
+
 def setting(key):
-    """A setting of the simulation of a rule, as a function of its wildcards."""
+    """Return a function of the wildcards that returns one setting of their simulation."""
     return lambda wildcards: settings_of(wildcards.simulation)[key]
 
 
 def check_packages_and_lock():
-    """Refuse packages of other versions than in the lock, and a second run in this folder."""
+    """Exit if packages do not have the versions of requirements.lock, or if another run is here."""
     if problem := package_problem(PROJECT / "requirements.lock"):
         sys.exit(problem)
-    # The system frees the lock when this process ends, however that happens.
-    held = take(".snakemake/slippulse.lock")
-    if held is None:
-        sys.exit("Another run is at work in this folder: wait for it, or stop it.")
-    HELD.append(held)
-    for line in ALTERED.untaken() if ALTERED else ():
+    # The system releases the lock when this process ends, even if it is killed.
+    lock = take(".snakemake/slippulse.lock")
+    if lock is None:
+        sys.exit("Another run is using this folder: wait for it, or stop it.")
+    HELD_LOCKS.append(lock)
+    for line in ALTERED.overridden_defaults() if ALTERED else ():
         print(line, file=sys.stderr)
 
 
 def report_changed_results():
-    """Print one line if results are not what their jobs wrote, which Snakemake does not notice."""
+    """Print one line if results have changed in a way that Snakemake does not notice."""
     if problems := dict(RecordedFiles("results").problems()):
         name, reason = next(iter(problems.items()))
         count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
         more = " ..." if len(problems) > 5 else ""
         print(
-            f"{count} not as made: {', '.join([*problems][:5])}{more} ({name}: {reason})."
-            " Renew: make replicate, or snakemake --forcerun and their names",
+            f"{count} changed: {', '.join([*problems][:5])}{more} ({name}: {reason})."
+            " To make them again: make replicate, or snakemake --forcerun and their names",
             file=sys.stderr,
         )
 
@@ -261,21 +287,22 @@ if workflow.is_main_process and not IS_MODULE:
     report_changed_results()
 
 
-# Chunks of the sweeps that are divided. The name has their number: files of another are not taken.
+# The chunks of each sweep that is divided. Their names contain the number of chunks, so that files
+# of another division are not used.
 CHUNKS = {
     name: [f"{name}/{number}-of-{sweep.chunks}" for number in range(1, sweep.chunks + 1)]
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
-# Chunks of the studies that are divided.
+# The chunks of each study that is divided.
 STUDY_CHUNKS = {}
 if (count := config["figures"]["study_layer"].get("chunks", 1)) > 1:
     STUDY_CHUNKS["layer_map"] = [f"layer_map/{number}-of-{count}" for number in range(1, count + 1)]
-# The simulation of one job is one without chunks, or a chunk of another.
-ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
+# A job runs a simulation without chunks, or one chunk.
+JOB_NAMES = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 
 
-# Kind and simulation of each joined file, below results/.
+# Kind and simulation of each joined file, by its path below results/.
 KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
 JOINED = {
     made(kind, [name])[0].removeprefix("results/"): (kind, name)
@@ -287,50 +314,53 @@ ALL_FIGURES = NEEDS | SWEEPS
 
 
 def solver_of(wildcards):
-    """Module of the solver of a simulation."""
+    """Return the module of the solver of a simulation."""
     return settings_of(wildcards.simulation)["solver"].partition(":")[0]
 
 
 def prediction_modules(wildcards):
-    """Modules that compute the predictions of a simulation."""
+    """Return the modules that compute the predictions of a simulation."""
     modules = declared("steps.predict", "MODULES")
     topics = settings_of(wildcards.simulation)["topics"]
     return [f"slippulse.prediction.{modules[topic]}" for topic in topics]
 
 
 def joined_inputs(wildcards):
-    """Files of the chunks; uncertainties are joined in the order of the joined measurements."""
+    """Return the files of the chunks, and for uncertainties also the joined measurements.
+
+    The joined uncertainties have the order of the runs in the measurements.
+    """
     kind, name = JOINED[wildcards.joined]
     finest = made("measured", [name] if kind == "uncertainties" else [])
     return {"chunks": made(kind, (CHUNKS | STUDY_CHUNKS)[name]), "finest": finest}
 
 
 def joined_settings(wildcards):
-    """Kind of a joined file, and what the runs of its simulation record."""
+    """Return the kind of a joined file, and what the runs of its simulation record."""
     kind, name = JOINED[wildcards.joined]
     return {"kind": kind, "record": SIMULATIONS[name].record if name in SIMULATIONS else []}
 
 
 def joined_runs(wildcards):
-    """Number of runs in a joined file; a study has few."""
+    """Return the number of runs in a joined file, or 0 for a study, which is small."""
     _, name = JOINED[wildcards.joined]
     return settings_of(name)["runs"] if name in SIMULATIONS else 0
 
 
 def study_of(wildcards):
-    """Name of a study, or of the study that a chunk belongs to."""
+    """Return the name of a study, or of the study that a chunk belongs to."""
     return wildcards.study.partition("/")[0]
 
 
 def study_inputs(wildcards):
-    """Inputs of a study, and the kernels that it runs."""
+    """Return the inputs of a study, and the kernels that it runs."""
     reached = modules_reached(f"slippulse_paper.studies.{study_of(wildcards)}")
     schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
     return {**inputs_of(STUDY_NEEDS[study_of(wildcards)]), "kernels": made("kernels", schemes)}
 
 
 def study_settings(wildcards):
-    """The study, and the values of the configuration that it depends on."""
+    """Return the study, and the values of the configuration that it depends on."""
     study, _, chunk = wildcards.study.partition("/")
     needs = STUDY_NEEDS[study]
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
@@ -341,17 +371,17 @@ def study_settings(wildcards):
 
 
 def texts_of(needs):
-    """Texts of the project among the inputs of a figure or a study."""
+    """Return the texts of the project among the inputs of a figure or a study."""
     return [path for path in needs.get("lists", ()) if not path.startswith("results/")]
 
 
 def module_of(figure):
-    """Module that draws a figure."""
+    """Return the module that draws a figure."""
     return figure if figure in NEEDS else "user_defined_sweep"
 
 
 def figure_settings(wildcards):
-    """The module of a figure, the values that it depends on, and a note on altered ones."""
+    """Return the module of a figure, the values it depends on, and a note on altered ones."""
     figure, needs = wildcards.figure, ALL_FIGURES[wildcards.figure]
     values = selected(config, needs.get("settings", ()), config["figures"].get(figure, {}))
     altered = note_of(needs, f"figures.{figure}")
@@ -359,30 +389,30 @@ def figure_settings(wildcards):
 
 
 def figure_category(wildcards):
-    """Heading of a figure in Snakemake's report."""
+    """Return the heading of a figure in Snakemake's report."""
     return "Figures of the paper" if wildcards.figure in FIGURES else "Studies and sweeps"
 
 
 @cache
 def captions():
-    """Texts of the figures."""
+    """Return the captions of all figures."""
     from slippulse_paper.report.texts import read_captions
 
     return read_captions(PROJECT / "manuscript/captions.yaml")
 
 
 def title_of(figure):
-    """Title of a figure."""
+    """Return the title of a figure."""
     return captions()[figure].title if figure in captions() else figure
 
 
 def one_of(names):
-    """Regular expression of a wildcard that has one of some values."""
+    """Return the regular expression for a wildcard that has one of some values."""
     return "|".join(map(re.escape, names)) or "(?!)"
 
 
 wildcard_constraints:
-    simulation=one_of(ONE_JOB),
+    simulation=one_of(JOB_NAMES),
     scene=one_of(SCENES),
     scheme=one_of(KERNELS),
     study=one_of([job for name in STUDY_NEEDS for job in STUDY_CHUNKS.get(name, [name])]),

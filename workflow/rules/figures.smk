@@ -1,4 +1,4 @@
-# Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
+# Tables of studies, figures, and the pages and animations of single scenes.
 
 
 rule study:
@@ -22,7 +22,7 @@ rule study:
         run_step("run_study", wildcards, input, output, params, threads, log)
 
 
-# A figure is drawn from its table (CSV) alone.
+# Each figure is drawn from its table (CSV) only.
 rule figure:
     input:
         unpack(lambda wildcards: inputs_of(ALL_FIGURES[wildcards.figure])),
@@ -37,7 +37,7 @@ rule figure:
         csv="results/figures/{figure}.csv",
     log:
         "results/logs/figure/{figure}.log",
-    # The report waits for the figures: they go before scenes and the explorer.
+    # The report waits for the figures, and so they are drawn before scenes and the explorer.
     priority: 1
     params:
         settings=figure_settings,

@@ -1,4 +1,4 @@
-# Files to read: claims, explorer, report, and the page that leads to all, with the provenance.
+# Pages to read: claims, explorer, report, and the index of all results, with the provenance.
 
 from slippulse_paper.records.provenance import changes, source_files
 
@@ -9,7 +9,7 @@ CLAIM_STUDIES = (
 ).split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
-    # The claims are first here, and so in Snakemake's report.
+    # Snakemake's report has this order.
     *[f"results/{name}" for name in ("claims.html", "claims.json", "findings.json")],
     "results/explorer.html",
     *made("figures", [*NEEDS, *SWEEPS]),
@@ -21,7 +21,7 @@ RESULTS = [
     *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
 ]
 EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
-# By default, a draft makes the figures of the paper and what an overlay adds.
+# By default, a draft makes the figures of the paper, and everything that an overlay adds.
 DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS)
 DRAFT += made("scenes", [name for name in SCENES if name not in SHIPPED.get("scenes", {})])
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
@@ -146,7 +146,7 @@ rule write_index:
             "figures": [*NEEDS, *SWEEPS],
             "scenes": TITLES,
         },
-        # The provenance has a digest of every source.
+        # The provenance contains a digest of all source files.
         code=code_of(
             "write_index",
             texts=[path.relative_to(PROJECT).as_posix() for path in source_files(PROJECT)],

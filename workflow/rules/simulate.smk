@@ -1,4 +1,4 @@
-# Data, measured numbers, predictions and uncertainties of each simulation, or of its chunks.
+# Data, measured numbers, predictions and uncertainties of each simulation or chunk.
 
 BOUNDS = {
     "runtime": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().minutes,
@@ -28,7 +28,7 @@ rule simulate:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
-    # The report waits for the claims: what these wait for goes before what only draws.
+    # The report waits for the claims, and so their inputs are made before figures of scenes.
     priority: 2
     threads: lambda wildcards: setting("bound")(wildcards)().threads
     resources:
@@ -71,7 +71,7 @@ rule predict:
         settings=lambda wildcards: {
             "sweep": settings_of(wildcards.simulation)["sweep"],
             "topics": settings_of(wildcards.simulation)["topics"],
-            "share": settings_of(wildcards.simulation)["measure"]["share"],
+            "fraction": settings_of(wildcards.simulation)["measure"]["fraction"],
             "still": config["measure"]["still"],
         },
         code=lambda wildcards: code_of("predict", *prediction_modules(wildcards)),

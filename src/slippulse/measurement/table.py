@@ -57,7 +57,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     for side in ("right", "left"):
         names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
         row |= zip(names, fit_front(run, settings["front_window"], side), strict=True)
-    row |= measure_transition(run, settings["share"])
+    row |= measure_transition(run, settings["fraction"])
     row["first_stick_time"] = run.attrs["first_stick_time"]
     times = settings["trailing_times"]
     edges = front_position(run, times, "right", "stick_time").tolist()

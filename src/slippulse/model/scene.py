@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import wraps
 from html import escape
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from .checks import check_choice, check_kind, check_number, check_that, short_repr
 from .friction import COULOMB, Friction, friction_from
@@ -59,6 +59,18 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
     initialise.__signature__ = shown  # type: ignore[attr-defined]
     scene.__init__ = initialise  # type: ignore[method-assign]
     return scene
+
+
+class StabilityRatios(NamedTuple):
+    """Numbers on which the stable step depends (`slippulse.model.stability`).
+
+    They are beta/dx, the stiffness of a block times dx^2, and the largest derivative of friction by
+    slip rate, times dx.
+    """
+
+    damping_ratio: float
+    stiffness: float
+    friction_slope: float
 
 
 @takes_damping_ratio
@@ -266,8 +278,8 @@ class Scene:
         return min(bound, self.friction.traits.longest_step / self.dx)
 
     @property
-    def ratios(self) -> tuple[float, float, float]:
-        """The `stability_ratios` of the scene."""
+    def ratios(self) -> StabilityRatios:
+        """Numbers on which the stable step depends."""
         return stability_ratios(vars(self), self.friction)
 
     def attributes(self) -> dict:
@@ -369,16 +381,14 @@ def gamma_without_extra_terms(attributes: Mapping) -> float:
     return math.nan if used_extra_terms(attributes) else attributes["gamma"]
 
 
-def stability_ratios(values: Mapping, friction: Friction) -> tuple[float, float, float]:
-    """Return beta/dx, the stiffness of a block times dx^2, and the slope of friction times dx.
-
-    The stable step depends on them (`slippulse.model.stability`). The slope is the largest
-    derivative of friction by slip rate.
+def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
+    """Return the numbers on which the stable step depends.
 
     values : parameters of a scene by name
     """
     dx, stiffness = values["dx"], values["gamma"]
-    return values["beta"] / dx, stiffness * dx**2, friction.traits.max_rate_slope * dx
+    slope = friction.traits.max_rate_slope
+    return StabilityRatios(values["beta"] / dx, stiffness * dx**2, slope * dx)
 
 
 # Results in the attributes of a run that measurements and figures need.

@@ -21,7 +21,7 @@ from .comparison import measured_row
 # The settings under ``measure`` in the shipped configuration. They are repeated here, because that
 # file is not part of the library.
 MEASURE_SETTINGS: dict[str, Any] = {
-    "share": 0.95,
+    "fraction": 0.95,
     "front_window": 0.3,
     "steady_tolerance": 0.02,
     "trailing_times": [5.0, 6.0, 7.0, 8.0, 9.0, 10.0],
@@ -137,7 +137,7 @@ def _explain_missing_transition(row: Mapping[str, Any], has_several_nucleations:
         if "transition_state" not in row:
             return "under a stress boundary the paper defines it only for left < 0 and right = 0"
         if math.isnan(time):
-            return f"the left front did not cover {MEASURE_SETTINGS['share']:.0%} of |x_minus|"
+            return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
     elif max(row["left"], row["right"]) <= 0.0:
         return "both levels are 0 or negative, and no pulse continues to run there"
     elif math.isnan(time):

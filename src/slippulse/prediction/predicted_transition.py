@@ -30,7 +30,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     exact_balance_distance and, for the pulse far from the nucleation, exact_largest_velocity and
     exact_half_width.
     """
-    return pd.DataFrame([_row(run, settings["share"]) for run in runs])
+    return pd.DataFrame([_row(run, settings["fraction"]) for run in runs])
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:

@@ -1,1 +1,1 @@
-"""The configuration: checked, expanded into scenes, and what they cost."""
+"""The configuration: it is read and checked, expanded into scenes, and their cost is bounded."""

@@ -1,7 +1,9 @@
 """Division of the runs of a sweep into chunks.
 
-Each chunk gets one run a round, so that neighbours, which cost about the same, are apart. The first
-chunk of a round is random: else one chunk could get all runs with one value of a list.
+The runs are dealt out in rounds, like cards: each chunk gets one run in each round. Neighbouring
+runs cost about the same. Since they are in different chunks, all chunks cost about the same. Each
+round begins with a random chunk, because otherwise one chunk could get all runs with one value of a
+list.
 """
 
 import random
@@ -9,10 +11,14 @@ from collections.abc import Iterator
 
 
 def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
-    """Yield the numbers of the runs, from 0, in a chunk of a sweep, numbered from 1."""
-    for turn, start in enumerate(range(0, runs, chunks)):
-        # Python promises that `random` draws the same numbers in every version, and no more.
-        first = int(chunks * random.Random(turn).random())
-        run = start + (chunk - 1 - first) % chunks
+    """Yield the numbers of the runs in one chunk of a sweep.
+
+    ``chunks`` and ``runs`` are the numbers of all chunks and runs of the sweep. Chunks are numbered
+    from 1, and runs from 0.
+    """
+    for number, first_run in enumerate(range(0, runs, chunks)):
+        # Python only guarantees for `random` that every version gives the same numbers.
+        first_chunk = int(chunks * random.Random(number).random())
+        run = first_run + (chunk - 1 - first_chunk) % chunks
         if run < runs:
             yield run

@@ -1,4 +1,8 @@
-"""Refusal of altered simulations with no run that a figure can draw, before anything runs."""
+"""Refusal of altered simulations of which a figure cannot draw a single run.
+
+The module of a figure lists in DRAWS what it needs of each of its simulations. That is checked
+before anything runs.
+"""
 
 from collections.abc import Callable, Mapping
 
@@ -23,8 +27,8 @@ def _is_balanced(run: Run) -> bool:
     return run.boundary == "stress" and profile.left < 0.0 == profile.right and not profile.steps
 
 
-# What a figure may need of a run, in the words of its DRAWS.
-SCENES: dict[str, Callable[[Run], bool]] = {
+# Conditions on a run, by the words that the DRAWS of figures use for them.
+CONDITIONS: dict[str, Callable[[Run], bool]] = {
     "boundary displacement": lambda run: run.boundary == "displacement",
     "boundary displacement and a level above 0": _is_pulse,
     "boundary displacement and equal levels above 0": _has_equal_levels,
@@ -34,14 +38,17 @@ SCENES: dict[str, Callable[[Run], bool]] = {
 
 
 def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Lines on simulations that a figure cannot draw, by the DRAWS of figures by name."""
+    """Return a line for each simulation that has no run which a figure can draw.
+
+    ``draws`` has the DRAWS of each figure: a condition for each of its simulations.
+    """
     accuracy, simulations = accuracy_of(config), all_simulations(config)
     problems: dict[str, None] = {}
     for figure, needs in draws.items():
-        for name, scene in needs.items():
+        for name, condition in needs.items():
             sweep = resolve(simulations[name], config.model, accuracy)
-            if not any(map(SCENES[scene], runs(sweep))):
-                allowed = f"at least one run with {scene}; or another name for the simulation"
+            if not any(map(CONDITIONS[condition], runs(sweep))):
+                allowed = f"at least one run with {condition}; or another name for the simulation"
                 given = f"simulations.{name}: no run that {figure} can draw"
                 problems[f"{given}; allowed: {allowed}"] = None
     return [*problems]

@@ -1,4 +1,4 @@
-"""Resolved simulations expanded into scenes."""
+"""Expansion of a resolved simulation into the scenes of its runs."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,10 @@ from .runs import runs
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
-    """Scenes of a resolved simulation, or of a chunk, and what each samples; or ValueError."""
+    """Return the scenes of a resolved simulation, or of a chunk, and the samples of each.
+
+    Raises ValueError if a scene is not allowed.
+    """
     scenes = [_scene(simulation, run) for run in runs(simulation)]
     rule = simulation.get("samples")
     if rule is None:
@@ -29,8 +32,10 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
 
 
 def _scene(simulation: Mapping, run: Run) -> Scene:
+    """Return the scene of one run."""
     accuracy, scheme = simulation["accuracy"], simulation["scheme"]
-    # The simulation's own step, or the preset's, cut where it is not stable or accurate.
+    # A simulation without `max_step` takes the step of the preset, or a smaller one if that would
+    # not be stable or accurate.
     friction, largest = friction_from(run.friction), accuracy["max_step"]
     traits = friction.traits
     parameters = run.parameters() | {"friction": friction}
@@ -53,6 +58,7 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
+    """Return the duration of a run in H/c."""
     ((unit, value),) = rule.items()
     if unit == "half_periods":
         value = value * math.pi / math.sqrt(gamma)
@@ -60,7 +66,7 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
         try:
             value *= abs(prestress_balance_position(profile))
         except ValueError as error:
-            # The configuration names levels or profiles, and not `prestress`.
+            # Keys of the configuration do not begin with `prestress`.
             reason = f"{value} times |x_minus|, but {str(error).removeprefix('prestress.')}"
             raise ValueError(f"duration.balance_distances: {reason}") from None
     return float(value)

@@ -1,4 +1,4 @@
-"""Limits of a simulation: refusals of its scenes, and an upper bound on what its runs cost."""
+"""Checks of the scenes of each simulation, and upper bounds on the cost of its runs."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -24,7 +24,10 @@ HARDLY_RESOLVED = 0.5
 
 @np.errstate(all="ignore")
 def simulation_problems(config: Configuration) -> list[str]:
-    """Problems of the scenes of each simulation, on its lattice and the coarsest of its study."""
+    """Return a line for each simulation with a scene that cannot be run.
+
+    The scenes are checked on their own lattice and on the coarsest lattice of the grid study.
+    """
     accuracy, problems = accuracy_of(config), []
     coarsest = max(accuracy["coarser"])
     for name, simulation in all_simulations(config).items():
@@ -48,7 +51,7 @@ def simulation_problems(config: Configuration) -> list[str]:
 
 
 def _units(config: Configuration, name: str) -> str:
-    """What the numbers of a refusal are in, if a scene has a layer."""
+    """Return the units of the numbers in a refusal, or no text if the scene has no layer."""
     scene = config.scenes.get(name)
     if scene is None or scene.layer is None:
         return ""
@@ -59,11 +62,13 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
     """Refuse a pre-stress with which nothing ever moves."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
         if profile.bumps or profile.points or profile.width is None:
-            # The largest pre-stress is at a point, at the peak and the bumps, or around them.
+            # The largest pre-stress is at or near a point of the table, the peak or a bump.
             centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
-            near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
-            around = np.array([x for x, _ in profile.points]) + np.array([[-dx], [0.0], [dx]])
-            blocks = np.round(np.concatenate([near.ravel(), around.ravel()]) / dx) * dx
+            near_gaussians = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
+            table_positions = np.array([x for x, _ in profile.points])
+            near_points = table_positions + np.array([[-dx], [0.0], [dx]])
+            candidates = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
+            blocks = np.round(candidates / dx) * dx
             largest = float(np.max(profile(blocks)))
         else:
             largest = max([profile.peak, *(level for *_, level in profile.intervals)])
@@ -75,21 +80,24 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
-    """Refuse scenes none of which comes near resolving its pulse."""
-    least = HARDLY_RESOLVED * scenes[0].resolved_blocks
-    # Wide pulses come first, so that the first run usually settles it.
+    """Refuse a simulation if the pulse is far from resolved in every scene."""
+    fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
+    # Scenes with wide pulses are tried first, so that one scene is usually enough.
     ordered = sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left))
-    if not any(_pulse_blocks(scene) >= least for scene in ordered):
+    if not any(_pulse_blocks(scene) >= fewest_blocks for scene in ordered):
         widest = max(map(_pulse_blocks, scenes))
         raise ValueError(
             f"resolved_blocks: {scenes[0].resolved_blocks}, while the widest pulse has about"
-            f" {widest:.2g} blocks; allowed: a pulse of at least {least:g} blocks: a smaller"
-            " dx, or a smaller resolved_blocks where single blocks are the point"
+            f" {widest:.2g} blocks; allowed: a pulse of at least {fewest_blocks:g} blocks: a"
+            " smaller dx, or a smaller resolved_blocks if the simulation is about single blocks"
         )
 
 
 def _pulse_blocks(scene: Scene) -> float:
-    """Blocks across the pulse (under a stress boundary, the Gaussian); infinite where unknown."""
+    """Return the number of blocks across the pulse, or infinity if it is not known.
+
+    Under a stress boundary it is the number of blocks across the narrowest Gaussian.
+    """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
     level = max(scene.prestress.left, scene.prestress.right)
@@ -103,7 +111,7 @@ def _pulse_blocks(scene: Scene) -> float:
 
 
 def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
-    """Upper bound on one of the jobs that share a simulation: its runs times its largest run."""
+    """Return an upper bound on the cost of one chunk: the number of its runs times the largest."""
     scenes, samples = expand(promised(corners(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
@@ -112,15 +120,16 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
 
 
 def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
-    """Return a line for each simulation that costs too much, of those that the user has changed."""
-    shipped, here = altered.shipped, altered.here
-    lattice = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
-    before, accuracy, problems = all_simulations(shipped), accuracy_of(here), []
-    for name, simulation in all_simulations(here).items():
-        if not (lattice or altered.simulations[name] or before.get(name) != simulation):
+    """Return a line for each simulation that the user has changed and that costs too much."""
+    shipped = altered.shipped
+    is_lattice_altered = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
+    shipped_simulations, accuracy, problems = all_simulations(shipped), accuracy_of(config), []
+    for name, simulation in all_simulations(config).items():
+        is_altered = altered.simulations[name] or shipped_simulations.get(name) != simulation
+        if not (is_lattice_altered or is_altered):
             continue
-        whole = resolve(simulation, here.model, accuracy)
-        exceeded = bound_of_sweep(whole, simulation.chunks).exceeded(simulation.chunks)
-        if exceeded:
-            problems.append(f"{here.key_of(name)}.{exceeded}")
+        sweep = resolve(simulation, config.model, accuracy)
+        exceeded_limit = bound_of_sweep(sweep, simulation.chunks).exceeded(simulation.chunks)
+        if exceeded_limit:
+            problems.append(f"{config.key_of(name)}.{exceeded_limit}")
     return problems

@@ -5,10 +5,10 @@ from collections.abc import Iterable
 
 
 class ConfigError(ValueError):
-    """Refusal of a configuration: one line a problem, with key, value and what is allowed."""
+    """Refusal of a configuration: a line for each problem, with key, value and what is allowed."""
 
 
 def nearest(name: object, known: Iterable[str]) -> str:
-    """A hint at the known name that was probably meant; empty where none is near."""
-    near = difflib.get_close_matches(str(name)[:80], list(known), n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    """Return a hint at the known name that was probably meant, or no text if none is similar."""
+    similar = difflib.get_close_matches(str(name)[:80], list(known), n=1)
+    return f" (did you mean {similar[0]!r}?)" if similar else ""

@@ -1,4 +1,9 @@
-"""Pre-stress profiles of a configuration: their files, their seeds, and the `Prestress` of each."""
+"""Pre-stress profiles of a configuration.
+
+A profile may name a file, whose points are read into the configuration, or a rough background with
+several seeds, which is expanded into one profile for each seed. Each expanded profile is then a
+`Prestress`.
+"""
 
 import json
 import math
@@ -22,16 +27,17 @@ TABLES = ("points", "file", "rough")
 
 
 def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """An overlay in which each profile with a file also has the points that are in it.
+    """Return an overlay in which each profile that names a file also has the points of the file.
 
-    A relative path starts from ``folder``. ConfigError names the profile, the file and the row.
+    Relative paths are relative to ``folder``. Raises ConfigError with the profile, the file and the
+    row if a file cannot be used.
     """
 
     def read(profile: Any, key: str) -> Any:
         if not isinstance(profile, Mapping) or not isinstance(profile.get("file"), str):
             return profile
         if "points" in profile:
-            # An overlay that was read before has both.
+            # The points of this overlay were read before.
             return profile
         try:
             columns = _columns(folder / profile["file"], in_si="layer" in profile)
@@ -43,7 +49,7 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
 
 
 def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
-    """Positions and stresses of a file, in m and Pa for a scene with a layer."""
+    """Return positions and stresses of a file, in m and Pa for a scene with a layer."""
     if in_si:
         x, stress = read_in_si(path)
         return x.tolist(), stress.tolist()
@@ -52,7 +58,7 @@ def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
 
 
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
-    """An overlay with a change of each scene and of each profile of a simulation."""
+    """Return an overlay in which each scene and each profile of a simulation is changed."""
     changed = dict(overlay)
     scenes, sweeps = overlay.get("scenes"), overlay.get("simulations")
     if isinstance(scenes, Mapping):
@@ -71,11 +77,11 @@ def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
 
 
 def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """The profiles as runs have them: one for each seed, and points without their file."""
-    return [*chain.from_iterable(map(_of_each_seed, profiles))]
+    """Return the profiles of runs: one for each seed, with points and without the file name."""
+    return [*chain.from_iterable(map(_one_for_each_seed, profiles))]
 
 
-def _of_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def _one_for_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     plain = {key: value for key, value in profile.items() if key != "file"}
     if "rough" not in plain:
         yield plain
@@ -86,15 +92,16 @@ def _of_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
 
 
 def prestress_of(profile: Mapping[str, Any]) -> Prestress:
-    """The pre-stress of one expanded profile."""
+    """Return the pre-stress of one expanded profile."""
     if not any(key in profile for key in TABLES):
         return Prestress(**profile)
-    return _table(json.dumps(profile, sort_keys=True))
+    return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 
-# Each run of a sweep asks for its profile, several times while the workflow is planned.
+# The profile of each run is needed several times while the workflow is planned.
 @lru_cache(maxsize=256)
-def _table(text: str) -> Prestress:
+def _prestress_of_table(text: str) -> Prestress:
+    """Return the pre-stress of a profile with a table, given as JSON, which can be cached."""
     profile = json.loads(text)
     x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
     rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
@@ -102,19 +109,19 @@ def _table(text: str) -> Prestress:
 
 
 def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
-    """Number of each expanded profile, from 1, and its seed, NaN if it has none.
+    """Return the number of each expanded profile, from 1, and its seed (NaN if it has none).
 
-    Rough profiles that differ in the seed alone have one number.
+    Rough profiles that differ only in the seed have the same number.
     """
     labels: list[dict[str, float]] = []
-    number, before = 0, None
+    number, previous_shape = 0, None
     for profile in profiles:
         background = dict(profile.get("rough", {}))
         seed = background.pop("seed", math.nan)
         shape = {**profile, "rough": background}
-        if "rough" not in profile or shape != before:
+        if "rough" not in profile or shape != previous_shape:
             number += 1
-        before = shape
+        previous_shape = shape
         labels.append({"profile": number, "seed": float(seed)})
     return labels
 

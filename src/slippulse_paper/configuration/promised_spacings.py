@@ -12,22 +12,26 @@ from .runs import entries
 
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """Add the spacing of each run where an accuracy is promised, or raise ValueError."""
+    """Return a simulation with the spacing of each run, if an accuracy is promised for it.
+
+    Raises ValueError if no accuracy can be promised for its scheme or its friction.
+    """
     promise, scheme = simulation["accuracy"].get("promise"), simulation["scheme"]
     if promise is None:
         return simulation
-    # A grid study does not see the error of another scheme's step.
+    # With other schemes the time step has an error that a grid study does not show.
     check_that(scheme == "localised", "scheme", scheme, "'localised' where accuracy is given")
     if math.isnan(promise):
         return simulation
     laws = simulation.get("friction", [])
-    # The constants hold for it alone. Other laws have pulses without a width, or that diverge.
+    # The constants of `settings_for` hold for Coulomb friction. With other laws a pulse may diverge
+    # or have no width.
     coulomb = all(law["law"] == "coulomb" for law in laws)
     check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
-    for release, prestress, gamma, _, damping_ratio, _, extra_terms in entries(simulation):
-        refuse_extra_terms(extra_terms, "where accuracy is given, or a dx of its own")
-        common |= {"release": release, "gamma": gamma, "damping_ratio": damping_ratio}
-        spacings.append(settings_for(promise, prestress=prestress, **common)["dx"])
+    for entry in entries(simulation):
+        refuse_extra_terms(entry.extra_terms, "where accuracy is given, or a dx of its own")
+        common |= {"release": entry.release, "gamma": entry.gamma, "damping_ratio": entry.damping}
+        spacings.append(settings_for(promise, prestress=entry.prestress, **common)["dx"])
     return {**simulation, "spacings": spacings}

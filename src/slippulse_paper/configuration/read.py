@@ -1,6 +1,8 @@
-"""The configuration read: the shipped file, overlays and the command line, merged and checked.
+"""Reading of the configuration.
 
-Files are YAML 1.2 without tags, anchors, templates (Snakemake obeys them) or keys given twice.
+The shipped file, the overlays and the values of the command line are merged and checked. The files
+are YAML 1.2 without tags, anchors and repeated keys. Templates are refused too, because Snakemake
+would execute them.
 """
 
 import json
@@ -24,24 +26,30 @@ from .limits import simulation_problems
 from .problems import ConfigError, nearest
 from .profiles import with_points_of_files
 from .refusals import dotted, format_problems, problem_line
+from .renamed_keys import with_new_names
 from .schema import Configuration
 
-# The shipped configuration has some 20 kB. An overlay lists what differs, and is never larger.
-LARGEST_FILE = 1_000_000
+# The shipped configuration has about 20 kB, and an overlay lists only what differs from it.
+MAX_FILE_BYTES = 1_000_000
 LIKE_SHIPPED = "allowed: keys and values as in config/config.yaml"
 
 
 def read_config(
     shipped: Mapping,
     overlays: Sequence[Mapping] = (),
-    said: Mapping | None = None,
+    command_line_values: Mapping | None = None,
     every_run: bool = True,
 ) -> Configuration:
-    """Merge shipped values, overlays and those said by --config, and check them; or ConfigError."""
+    """Merge the shipped values, the overlays and the values of ``--config``, and check the result.
+
+    Raises ConfigError with one line for each problem. The runs of all simulations are checked only
+    if ``every_run`` is set, since that takes time.
+    """
     merged = dict(shipped)
-    for overlay in (*overlays, _typed(said or {})):
-        # Those that were read from a file have the points of their own files already.
-        merged = _merge(merged, with_points_of_files(overlay, Path()))
+    for overlay in (*overlays, _typed(command_line_values or {})):
+        # An overlay that was read from a file already has the points of the files that it names.
+        with_points = with_points_of_files(with_new_names(overlay), Path())
+        merged = _merge(merged, with_points)
     sweeps = merged.get("simulations")
     missing = {*shipped["simulations"]} - {*sweeps} if isinstance(sweeps, Mapping) else ()
     for name in sorted(missing):
@@ -61,18 +69,22 @@ def read_config(
 
 
 def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
-    """Lines on texts of the user that no page can show."""
+    """Return a line for each text of the user that cannot be shown on a page."""
     problems, allowed = [], "text with formulas that pandoc reads"
     for name, reading in given.items():
-        known, text = shipped.get(name, {}).get("statement"), reading["statement"]
-        if text != known and not is_readable(text):
+        shipped_text, text = shipped.get(name, {}).get("statement"), reading["statement"]
+        if text != shipped_text and not is_readable(text):
             key = f"published.{name}.statement"
             problems.append(f"{key}: {short_repr(text)}; allowed: {allowed}")
     return problems
 
 
 def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Merge mappings and replace all else; null removes a key, and a misspelt one is refused."""
+    """Merge an overlay into a mapping.
+
+    Mappings are merged, and other values are replaced. The value null removes a key, but is refused
+    for a misspelt key.
+    """
     merged = dict(base)
     for key, value in overlay.items():
         if isinstance(value, Mapping):
@@ -82,18 +94,18 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
             merged[key] = value
         elif key not in merged and nearest(key, merged):
             problem = f"{dotted((*path, key))}: null{nearest(key, merged)}"
-            raise ConfigError(f"{problem}; allowed: null for a key that there is")
+            raise ConfigError(f"{problem}; allowed: null for a key that exists")
         else:
             merged.pop(key, None)
     return merged
 
 
 def _typed(value: Any, path: str = "") -> Any:
-    """Values of the command line, where Snakemake leaves nested numbers text."""
+    """Return values of the command line with numbers instead of the texts that Snakemake leaves."""
     if isinstance(value, Mapping):
         return {key: _typed(entry, f"{path}.{key}".lstrip(".")) for key, entry in value.items()}
     if path == "preset" and isinstance(value, str) and value.isalnum():
-        # A preset such as 01 has a name, not a number.
+        # The name of a preset, such as 01, stays text.
         return value
     if isinstance(value, list):
         return [_typed(entry, path) for entry in value]
@@ -107,22 +119,22 @@ def _typed(value: Any, path: str = "") -> Any:
 
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
-    """Read an overlay, a YAML or JSON file with a mapping; ConfigError names the file."""
+    """Read an overlay: a YAML or JSON file with a mapping. Raises ConfigError with its path."""
     path = Path(path)
     try:
         if path.exists() and not path.is_file():
             raise ConfigError("not a regular file; allowed: a readable YAML file")
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-        if len(data) > LARGEST_FILE:
-            allowed = "what differs from config/config.yaml"
-            raise ConfigError(f"more than {LARGEST_FILE} bytes; allowed: {allowed}")
+            data = file.read(MAX_FILE_BYTES + 1)
+        if len(data) > MAX_FILE_BYTES:
+            allowed = "only the differences from config/config.yaml"
+            raise ConfigError(f"more than {MAX_FILE_BYTES} bytes; allowed: {allowed}")
         overlay = _load(data.decode("utf-8-sig"))
         if not isinstance(overlay, dict) or "__use_yte__" in overlay:
             given = "a template" if isinstance(overlay, dict) else short_repr(overlay)
             given = "empty" if overlay is None else given
             raise ConfigError(f"{given}; allowed: a mapping of keys, as in config/config.yaml")
-        # JSON turns names and dates into text.
+        # A round trip through JSON turns keys and dates into text.
         plain = json.loads(json.dumps(overlay, default=str))
         return with_points_of_files(plain, path.parent)
     except (OSError, ValueError, RecursionError, YAMLError) as error:
@@ -130,7 +142,7 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
 
 
 def _reason(error: Exception) -> str:
-    """Why a file is refused, and what is allowed instead."""
+    """Return the reason why a file is refused, and what is allowed."""
     if isinstance(error, ConfigError):
         return str(error)
     if isinstance(error, OSError):
@@ -142,7 +154,7 @@ def _reason(error: Exception) -> str:
     problem = " ".join(str(getattr(error, "problem", None) or error).split())
     mark = getattr(error, "problem_mark", None)
     if re.search("flow|quoted|simple key", str(getattr(error, "context", ""))):
-        # What is not finished is noticed somewhere below the line where it begins.
+        # The parser notices an unfinished value below the line where the value begins.
         mark = getattr(error, "context_mark", None) or mark
     line = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
@@ -151,7 +163,7 @@ def _reason(error: Exception) -> str:
 
 
 class _PlainComposer(Composer):
-    """Composer that refuses what is not plain data before anything is built from it."""
+    """A composer of YAML that refuses everything except plain data while it parses."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         event, refusal = self.parser.peek_event(), ""
@@ -167,7 +179,7 @@ class _PlainComposer(Composer):
         elif event.implicit[0] and not event.value and parent is not None:
             refusal = "no value; allowed: a value, or null, which removes the key"
             if isinstance(index, ScalarNode):
-                # The event of a value that is missing stands where the next key begins.
+                # The parser reports a missing value at the line of the next key.
                 line, refusal = index.start_mark.line, _missing_value(parent, index)
         if refusal:
             raise ConfigError(f"line {line + 1}: {refusal}")
@@ -175,9 +187,12 @@ class _PlainComposer(Composer):
 
 
 def _missing_value(mapping: MappingNode, key: ScalarNode) -> str:
-    """Refusal of a key without a value, which may be the end of a number with a decimal comma."""
-    before = mapping.value[-1] if mapping.value else (None, None)
-    name, value = (getattr(node, "value", None) for node in before)
+    """Return the refusal of a key without a value.
+
+    In a mapping in braces this key may be the second half of a number with a decimal comma.
+    """
+    previous_entry = mapping.value[-1] if mapping.value else (None, None)
+    name, value = (getattr(node, "value", None) for node in previous_entry)
     is_number = isinstance(value, str) and re.fullmatch(r"[-+]?\d+", value, re.ASCII)
     if mapping.flow_style and is_number and re.match(r"\d", key.value, re.ASCII):
         given = f"{name}: {value},{key.value}"
@@ -186,7 +201,8 @@ def _missing_value(mapping: MappingNode, key: ScalarNode) -> str:
 
 
 def _load(text: str) -> Any:
-    # An older version reads other values: yes is a switch, and 1:30 is 90.
+    """Read YAML 1.2 with plain data."""
+    # A directive could select an older version of YAML, in which yes is a switch and 1:30 is 90.
     if directive := re.match(r"(?:\s*(?:#.*)?\n)*(%.*)", text):
         raise ConfigError(f"{short_repr(directive[1])}; allowed: YAML 1.2, without directives")
     yaml = YAML(typ="safe", pure=True)

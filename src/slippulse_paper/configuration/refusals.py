@@ -1,10 +1,14 @@
-"""Refusals in words: each problem that pydantic reports, as one line about its key."""
+"""Refusals of a configuration in words.
+
+Each problem that pydantic reports becomes one line with the key, the value and the allowed values,
+which are taken from the JSON Schema of the configuration.
+"""
 
 import json
 import re
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
@@ -13,30 +17,30 @@ from slippulse.model.checks import short_repr
 from .problems import nearest
 from .schema import LABEL_WORDS, NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
 
-# A refusal has this number of lines at most: a reader mends a few mistakes at a time.
-LINES = 20
+# Users correct a few mistakes at a time.
+MAX_LINES = 20
 SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 Path = Sequence[str | int]
 json_schema = cache(Configuration.model_json_schema)
 
 
 def format_problems(problems: Sequence[str]) -> str:
-    """The first problems, one a line, and how many more there are."""
-    lines = [*problems[:LINES]]
-    if len(problems) > LINES:
-        lines.append(f"... and {len(problems) - LINES} more")
+    """Return the first problems, one on each line, and the number of further problems."""
+    lines = [*problems[:MAX_LINES]]
+    if len(problems) > MAX_LINES:
+        lines.append(f"... and {len(problems) - MAX_LINES} more")
     return "\n".join(lines)
 
 
 def dotted(path: Path) -> str:
-    """A key as a refusal names it: its path with dots."""
+    """Return the path of a key with dots, as refusals show it."""
     plain = re.compile(r"\w{1,80}", re.ASCII).fullmatch
     parts = [str(part) if plain(str(part)) else short_repr(part) for part in path]
     return ".".join(parts) or "the configuration"
 
 
 def problem_line(problem: Mapping, config: Mapping) -> str:
-    """One error of pydantic about a configuration, as a line."""
+    """Return one error of pydantic about a configuration as a line."""
     kind, path = problem["type"], problem["loc"]
     if kind == "value_error":
         reason = str(problem["ctx"]["error"])
@@ -46,20 +50,21 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if path[-1] == "[key]":
         allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
         return f"{dotted(path[:-2])}: {short_repr(path[-2])}; allowed: {allowed}"
-    known_path, schema, value = _deepest(path, config)
+    entry = _last_known_entry(path, config)
     if kind == "extra_forbidden":
-        known = [*schema["properties"]]
-        allowed = ", ".join(known)
-        hint = nearest(path[-1], known) or _elsewhere(path[-1])
+        known_keys = [*entry.schema["properties"]]
+        allowed = ", ".join(known_keys)
+        hint = nearest(path[-1], known_keys) or _elsewhere(path[-1])
         return f"{dotted(path)}: unknown key{hint}; allowed: {allowed}"
-    allowed = "a finite number" if kind == "finite_number" else words(schema)
-    # Words of YAML, not of Python.
+    allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
+    value = entry.value
+    # Null, true and false are written as in YAML.
     given = json.dumps(value) if value is None or isinstance(value, bool) else short_repr(value)
-    return f"{dotted(known_path)}: {given}; allowed: {allowed}{_remedy(value)}"
+    return f"{dotted(entry.path)}: {given}; allowed: {allowed}{_remedy(value)}"
 
 
 def _elsewhere(key: str | int) -> str:
-    """Hint at the blocks of named entries that have a key, such as gamma."""
+    """Return a hint at the blocks of the configuration that have a key, such as gamma."""
     blocks: dict[str, type[BaseModel]] = {"simulations.NAME": Simulation, "scenes.NAME": NamedScene}
     blocks |= {"model": Model, "measure": Measure}
     places = [f"{block}.{key}" for block, keys in blocks.items() if key in keys.model_fields]
@@ -67,22 +72,31 @@ def _elsewhere(key: str | int) -> str:
 
 
 def _missing_line(path: Path, config: Mapping) -> str:
+    """Return the refusal of a mapping without a required key."""
     line = f"{dotted(path)}: missing; it is required (null removes a key)"
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):
-        # An incomplete new entry may be a misspelt one.
-        _, _, siblings = _deepest(path[:-2], config)
+        # An entry without a required key may be a shipped one with a misspelt name.
+        siblings = _last_known_entry(path[:-2], config).value
         line += nearest(path[-2], {*siblings} - {path[-2]})
     return line
 
 
-def _deepest(path: Path, config: Any) -> tuple[Path, dict[str, Any], Any]:
-    """Path, schema and value of the last entry on a path for which there is one schema."""
+class _Entry(NamedTuple):
+    """An entry of the configuration: its path, the schema for it and its value."""
+
+    path: Path
+    schema: dict[str, Any]
+    value: Any
+
+
+def _last_known_entry(path: Path, config: Any) -> _Entry:
+    """Return the last entry on a path that exists and has a single schema."""
     schema, value = resolved(json_schema()), config
     for depth, part in enumerate(path):
         if isinstance(part, int):
-            # A row of numbers is named with the list that it is in, which says what a row is.
+            # A row of numbers is refused with its list, whose schema describes the rows.
             items = schema.get("items")
             inner = None if "prefixItems" in resolved(items or {}) else items
         else:
@@ -91,13 +105,16 @@ def _deepest(path: Path, config: Any) -> tuple[Path, dict[str, Any], Any]:
             inner = schema.get("properties", {}).get(part, any_name)
         exists = isinstance(value, list) or (isinstance(value, Mapping) and part in value)
         if not isinstance(inner, dict) or not exists:
-            return path[:depth], schema, value
+            return _Entry(path[:depth], schema, value)
         schema, value = resolved(inner), value[part]
-    return path, schema, value
+    return _Entry(path, schema, value)
 
 
 def resolved(schema: dict[str, Any]) -> dict[str, Any]:
-    """The schema behind a reference or an alternative to null; words of the key itself stay."""
+    """Return the schema behind a reference, or the only alternative to null.
+
+    If the key has its own words for the allowed values, the result keeps them.
+    """
     options = _not_null(schema)
     if "$ref" in schema:
         options = [json_schema()["$defs"][schema["$ref"].rpartition("/")[2]]]
@@ -108,7 +125,7 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def words(schema: dict[str, Any]) -> str:
-    """Values that a schema allows, in words."""
+    """Return in words which values a schema allows."""
     schema = resolved(schema)
     kind = schema.get("type")
     if "allowed" in schema:
@@ -129,14 +146,14 @@ def words(schema: dict[str, Any]) -> str:
 
 
 def _not_null(schema: Mapping) -> list[dict[str, Any]]:
-    """The alternatives of a schema other than null."""
+    """Return the alternatives of a schema other than null."""
     return [option for option in schema.get("anyOf", []) if option.get("type") != "null"]
 
 
 def _range(schema: Mapping) -> str:
-    """The limits of a number in words."""
+    """Return the limits of a number in words."""
     given = {key: f"{schema[key]:g}" for key in SIGNS if key in schema}
-    # An exponent is written without zeros in front.
+    # An exponent is written without leading zeros.
     limits = {key: re.sub(r"e\+?(-?)0", r"e\1", limit) for key, limit in given.items()}
     if {*limits} == {"minimum", "maximum"}:
         return f"from {limits['minimum']} to {limits['maximum']}"
@@ -144,7 +161,7 @@ def _range(schema: Mapping) -> str:
 
 
 def _remedy(value: object) -> str:
-    """Advice on text that was meant as a number."""
+    """Return advice if a value is text that was meant as a number."""
     text = value.strip() if isinstance(value, str) else ""
     if re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text, re.ASCII):
         return " (text: write the number without quotes)"

@@ -1,4 +1,8 @@
-"""Resolved simulations: what a rule passes to its job, with everything that the data depend on."""
+"""Resolution of simulations.
+
+A resolved simulation is plain data with everything that the results of a simulation depend on: its
+own keys, the defaults of the model, and the accuracy of the preset. Rules pass it to their jobs.
+"""
 
 import math
 from collections.abc import Mapping
@@ -15,18 +19,18 @@ from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 from .profiles import ends_of_ensembles, expanded, prestress_of
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
-# A scene samples these numbers of times and positions, for its map and its animation.
-TIMES, POSITIONS = 241, 801
-# Levels at which the exact front speed is computed for a table.
-LEVELS = 65
-# Keys of which a scene has one value and a simulation a list.
+# Numbers of sampled times and positions of a scene, for its map and its animation.
+SAMPLED_TIMES, SAMPLED_POSITIONS = 241, 801
+# Number of levels at which the exact front speed is computed for a table of pre-stress.
+FRONT_SPEED_LEVELS = 65
+# Keys that have one value in a scene and a list of values in a simulation.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
-# Lists of a simulation whose smallest and largest values are the most demanding ones.
+# Lists of a simulation for which refusals and costs are largest at the smallest or largest value.
 ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels", *EXTRA_TERMS)
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:
-    """The preset in use; a given `accuracy` replaces its step and order, and is promised."""
+    """Return the numerical parameters of the preset, or those for a given `accuracy`."""
     preset = config.presets[config.preset].plain()
     if config.accuracy is None:
         return preset
@@ -34,7 +38,10 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 
 
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
-    """A simulation with everything that its data depend on, as builtins; chunks do not count."""
+    """Return a simulation as plain data with everything that its results depend on.
+
+    The number of chunks is left out, since results do not depend on it.
+    """
     defaults = Model.model_validate(model).plain()
     defaults |= {key: [defaults[key]] for key in LISTED if key in defaults}
     given = Simulation.model_validate(simulation).plain()
@@ -46,25 +53,28 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
     chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in kept and chosen:
-        # A spacing that the simulation sets itself promises nothing.
+        # No accuracy is promised if the simulation sets its own spacing.
         kept["promise"] = math.nan
     return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
 
 
 def _linear_law(alpha: float) -> Mapping:
-    """The law of a deprecated key."""
+    """Return the law of friction for an entry of the deprecated key `rate_strengthening`."""
     law = LinearRate(alpha) if alpha else COULOMB
     return law.mapping()
 
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:
-    """Simulations by name, the scenes among them."""
+    """Return all simulations by name. Scenes are simulations of one run."""
     scenes = {name: scene_simulation(scene, config.model) for name, scene in config.scenes.items()}
     return {**config.simulations, **scenes}
 
 
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
-    """A scene as a simulation of one run that records everything, up to where its fronts may go."""
+    """Return a scene as a simulation of one run.
+
+    It records everything, and samples all positions that the fronts may reach.
+    """
     layer = scene.layer
     friction_ratio = layer and layer.layer(scene.boundary).friction_ratio
     scene = scene.in_model_units()
@@ -75,7 +85,11 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     given |= {key: [given[key]] for key in LISTED if key in given}
     given["profiles"] = [profile]
     given["duration"] = {"time": scene.duration}
-    given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": float(f"{extent:.4g}")}
+    given["samples"] = {
+        "times": SAMPLED_TIMES,
+        "positions": SAMPLED_POSITIONS,
+        "extent": float(f"{extent:.4g}"),
+    }
     given["record"] = ["fronts", "fields", "samples"]
     if friction_ratio is not None:
         given["friction_ratio"] = friction_ratio
@@ -83,11 +97,12 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
 
 
 def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> float:
-    """Distance from x = 0 up to which a scene is sampled: that which its fronts may reach."""
+    """Return the distance from x = 0 that the fronts of a scene may reach."""
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
     ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
 
     def speeds_at(levels: np.ndarray) -> np.ndarray:
+        """Return a bound on the front speed at some levels."""
         levels = np.minimum(levels, 1.0 - 1e-6)
         fast, speeds = levels > 0.0, np.ones(levels.shape)
         if scene.beta is not None:
@@ -103,12 +118,16 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
     else:
         (expanded_profile,) = expanded([profile])
         table = prestress_of(expanded_profile)
-        # Thousands of exact speeds take seconds. Lines between few of them are above the others.
+        # Exact speeds at all points of a table would take seconds. The speed is a convex function
+        # of the level, and so linear interpolation between a few levels gives an upper bound.
         highest = max([0.0, *(tau for _, tau in table.points)])
-        known = np.linspace(0.0, highest, LEVELS)
-        speeds = speeds_at(known)
+        levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
+        speeds = speeds_at(levels)
         reach = bound_front_reach(
-            table, table.nucleation_reach, scene.duration, lambda tau: np.interp(tau, known, speeds)
+            table,
+            table.nucleation_reach,
+            scene.duration,
+            lambda tau: np.interp(tau, levels, speeds),
         )
     width = scene.width or 0.0
     return farthest_bump + reach + 3.0 * width

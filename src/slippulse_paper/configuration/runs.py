@@ -1,9 +1,9 @@
-"""The runs of a resolved simulation, plain builtins. Every job imports this module."""
+"""The runs of a resolved simulation: all combinations of the values in its lists."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 from slippulse.model.checks import check_that
 from slippulse.model.prestress import Prestress
@@ -14,39 +14,57 @@ from .chunks import runs_of
 from .profiles import TABLES, labels_of, prestress_of
 
 
+class Entry(NamedTuple):
+    """The values of one run, one from each list of a simulation.
+
+    ``dx`` is None if the simulation has no list of spacings. ``damping`` is beta if the simulation
+    has a list of beta, and otherwise the damping ratio.
+    """
+
+    release: str
+    prestress: Prestress
+    gamma: float
+    dx: float | None
+    damping: float
+    law: Mapping[str, Any]
+    extra_terms: Mapping[str, float]
+
+
 def runs(simulation: Mapping) -> Iterator[Run]:
-    """The runs of a resolved simulation, or of a chunk of it, one after the other."""
+    """Yield the runs of a resolved simulation, or of one chunk of it."""
     for index, entry in enumerate(entries(simulation)):
-        release, profile, gamma, given, damping, law, extra_terms = entry
-        dx = _spacing(simulation, profile, gamma, given, index)
-        beta = damping if "beta" in simulation else damping * dx
-        boundary = simulation["boundary"]
-        yield Run(boundary, profile, gamma, dx, beta, release, law, extra_terms)
+        dx = _spacing(simulation, entry, index)
+        yield Run(
+            boundary=simulation["boundary"],
+            prestress=entry.prestress,
+            gamma=entry.gamma,
+            dx=dx,
+            beta=entry.damping if "beta" in simulation else entry.damping * dx,
+            release=entry.release,
+            friction=entry.law,
+            extra_terms=entry.extra_terms,
+        )
 
 
 def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
-    """The parameters of each run by name."""
+    """Yield the parameters of each run by name."""
     for run in runs(simulation):
         yield {**run.parameters(), **vars(run.prestress), "damping_ratio": run.damping_ratio}
 
 
-def entries(simulation: Mapping) -> Iterator[tuple]:
-    """One entry of each list, for each run.
-
-    These are the release rule, the pre-stress, gamma, the spacing or None, the damping, the law of
-    friction, and the coefficients of the extra terms by name.
-    """
+def entries(simulation: Mapping) -> Iterator[Entry]:
+    """Yield the values of each run of a resolved simulation, or of one chunk of it."""
     for release, *shape, gamma, dx, damping, law, extra_terms in _combinations(simulation):
         if "profiles" in simulation:
             profile = prestress_of(shape[0])
         else:
             left, right, width, steps = shape
             profile = Prestress(left, left if right is None else right, width, steps=steps)
-        yield release, profile, gamma, dx, damping, law, extra_terms
+        yield Entry(release, profile, gamma, dx, damping, law, extra_terms)
 
 
 def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
-    """Number and seed of the profile of each run; nothing if no profile has a table."""
+    """Return number and seed of the profile of each run, or an empty list if none has a table."""
     profiles = simulation.get("profiles", [])
     if not any(key in profile for profile in profiles for key in TABLES):
         return []
@@ -55,28 +73,28 @@ def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
 
 
 def _combinations(simulation: Mapping) -> Iterator[tuple]:
-    """The entries of the lists, for each run of a simulation or of a chunk of it."""
+    """Yield the entries of the lists for each run of a simulation, or of one chunk of it."""
     chunk = simulation.get("chunk")
-    wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
+    runs_in_chunk = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
     for number, combination in enumerate(product(*_axes(simulation))):
-        if wanted is None or number in wanted:
+        if runs_in_chunk is None or number in runs_in_chunk:
             yield combination
 
 
 def run_count(simulation: Mapping) -> int:
-    """Number of runs of a resolved simulation, the product of the lengths of its lists."""
+    """Return the number of runs: the product of the lengths of the lists of a simulation."""
     return math.prod(map(len, _axes(simulation)))
 
 
 def _axes(simulation: Mapping) -> list[Sequence]:
-    """The lists whose product the runs are."""
+    """Return the lists of a simulation. Its runs are all combinations of their entries."""
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
     if "profiles" in simulation:
         shapes = [simulation["profiles"]]
     else:
         right, rule = simulation["right"], simulation.get("beyond")
-        # Each level is one step, at the position from which the level holds.
+        # Each level of `beyond` is a step of the pre-stress at the position where it begins.
         steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
         rights = [None] if right == "same" else right
         shapes = [simulation["left"], rights, simulation["width"], steps]
@@ -88,19 +106,21 @@ def _axes(simulation: Mapping) -> list[Sequence]:
     return [releases, *shapes, gamma, dx, damping, laws, extra_terms]
 
 
-def _spacing(
-    simulation: Mapping, profile: Prestress, gamma: float, given: float | None, index: int
-) -> float:
-    """Spacing of a run: fixed, promised, given in a list, or by the rule of the simulation."""
+def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
+    """Return the spacing of the run with a number, from 0.
+
+    It is fixed, promised for an accuracy, given in a list, or follows from the rule in ``spacing``.
+    """
     rule = simulation["spacing"]
     if "fixed" in rule:
         return float(rule["fixed"])
-    spacing = simulation["spacings"][index] if "spacings" in simulation else given
+    spacing = simulation["spacings"][index] if "spacings" in simulation else entry.dx
     if spacing is None:
-        known = profile.width is not None or rule["width_power"] == 0.0
+        width = entry.prestress.width
+        has_width = width is not None or rule["width_power"] == 0.0
         allowed = "0 for a profile without a width"
-        check_that(known, "spacing.width_power", rule["width_power"], allowed)
-        powers = (profile.width or 1.0) ** rule["width_power"] * gamma ** rule["gamma_power"]
+        check_that(has_width, "spacing.width_power", rule["width_power"], allowed)
+        powers = (width or 1.0) ** rule["width_power"] * entry.gamma ** rule["gamma_power"]
         spacing = simulation["accuracy"]["dx"] * rule["scale"] * powers
-    # Twelve digits: a spacing of 0.02 is 0.02 in the data and on a label.
+    # With twelve digits, a spacing of 0.02 is exactly 0.02 in the data and in labels.
     return float(f"{simulation['coarser'] * spacing:.12g}")

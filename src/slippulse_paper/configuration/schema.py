@@ -1,7 +1,7 @@
-"""Every key of the configuration, once: type, range, default, meaning with [unit], origin.
+"""Definition of every key of the configuration: type, range, default, meaning, [unit] and (origin).
 
-The refusals (`refusals`) follow from these, and docs/describe.py makes the JSON Schema and the
-tables of config/README.md from them. A class has no docstring where the key of it says enough.
+Refusals follow from these definitions (`refusals`), and docs/describe.py writes the JSON Schema and
+the tables of config/README.md from them. Classes whose key has a description have no docstring.
 """
 
 from collections.abc import Iterable, Mapping
@@ -36,33 +36,37 @@ class Block(BaseModel):
     )
 
     def given(self) -> dict[str, Any]:
-        """The values that were given, as builtins."""
+        """Return the values that were given, as plain data."""
         return self.model_dump(mode="json", exclude_unset=True)
 
     def plain(self) -> dict[str, Any]:
-        """Given values and defaults, as builtins, without keys that are None."""
+        """Return given values and defaults as plain data, without keys that are None."""
         return self.model_dump(mode="json", exclude_none=True)
 
 
 def key(description: str, default: Any = ..., words: str | None = None, **limits: Any) -> Any:
-    """A key of a mapping; `words` say what it allows where its type does not."""
+    """Return the definition of a key.
+
+    ``words`` describe the allowed values if the type and the limits are not enough.
+    """
     if words:
         limits["json_schema_extra"] = {"allowed": words}
     return Field(default, description=description, **limits)
 
 
 def require(condition: bool, given: str, allowed: str) -> None:
-    """Refuse a key and its value unless a condition holds, and say what is allowed."""
+    """Raise ValueError with a key, its value and what is allowed, unless a condition holds."""
     if not condition:
         raise ValueError(f"{given}; allowed: {allowed}")
 
 
 def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
-    """Refuse a name that is not among the known ones, with a hint at the nearest."""
+    """Raise ValueError if a name is not among ``names``, with a hint at the most similar one."""
     require(name in names, f"{key}: {short_repr(name)}{nearest(name, names)}", allowed)
 
 
 def _all_different(values: list[T]) -> list[T]:
+    """Return a list, or raise an error if it has an entry twice."""
     if len({*map(repr, values)}) < len(values):
         raise PydanticCustomError("different", "an entry twice")
     return values
@@ -90,6 +94,7 @@ LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
+    """Return the mapping of a law of friction, or raise ValueError if there is no such law."""
     friction_from(mapping)
     return mapping
 
@@ -97,9 +102,9 @@ def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
 Friction = Annotated[
     dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
 ]
-# A text for pages and the report, in which formulas and links to the web are all that acts.
+# A text for pages and the report. It may contain formulas and links, but no HTML or scripts.
 Statement = Annotated[str, AfterValidator(harmless)]
-# Rows of numbers, which are lists in YAML.
+# Rows of numbers. They are lists in YAML and tuples here.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
 NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
@@ -121,25 +126,27 @@ RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
 ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "law of friction of sliding blocks, below; by default the model's"
-IN_SI = "a layer; then profile, `duration` and `dx` are in m, Pa and s"
-# Quantity of each number of a scene that is in SI units with a layer.
+IN_SI = "layer in SI units; profile, `duration` and `dx` are then in m, Pa and s"
+# Quantities of the numbers of a scene that are in SI units if the scene has a layer.
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
-KEPT = "what is kept: release and stick times; slip, velocity, acceleration at the end; samples"
-RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
+KEPT = "recorded data: release and stick times; slip, velocity, acceleration at the end; samples"
+RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
 
 class Rough(Block):
-    """A rough background, as `sp.rough` makes it."""
+    """Parameters of a rough background, as in `sp.rough`."""
 
     level: float = key("mean, < 1 [S]")
     deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
-    correlation_length: Positive = key("length above which nothing is correlated [H]")
+    correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
     hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
     spacing: Positive = key("distance of the positions [H]")
-    seed: Seed | Distinct[Seed] = key("which field; a list makes a profile of each", words=SEEDS)
+    seed: Seed | Distinct[Seed] = key(
+        "seed of the random field; a list makes one profile each", words=SEEDS
+    )
 
     def check(self) -> None:
         """Raise ValueError if there is no such background."""
@@ -148,7 +155,7 @@ class Rough(Block):
 
 
 class Profile(Block):
-    """One pre-stress."""
+    """One pre-stress profile."""
 
     left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
     right: float | None = key("level far to the right, without a table [S]", None)
@@ -173,7 +180,7 @@ class Profile(Block):
 
     @model_validator(mode="after")
     def _background(self) -> Self:
-        # A file that was read has its points beside it.
+        # A profile whose file was read has `file` and also `points`.
         tables = self._given_ones("file", "points", "rough")
         if tables == ["file", "points"]:
             tables = ["file"]
@@ -191,7 +198,7 @@ class Profile(Block):
             self.__dict__["width"] = None
         if self.file is not None:
             require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
-        # The numbers of a scene with a layer are checked when they have no unit any more.
+        # The numbers of a scene with a layer are checked after their conversion from SI units.
         if getattr(self, "layer", None) is None:
             self.check_table()
         return self
@@ -214,44 +221,56 @@ class Profile(Block):
 
 
 class Beyond(Block):
-    position: float = key("from here on, away from x = 0 and not there, the level is replaced [H]")
-    levels: Distinct[float] = key("by each of these in turn [S]")
+    position: float = key(
+        "position, not 0, beyond which (away from x = 0) the level is replaced [H]"
+    )
+    levels: Distinct[float] = key("levels that replace it, one in each run [S]")
 
 
 class Duration(Block):
-    time: Positive | None = key("the duration itself [H/c]", None)
-    half_periods: Positive | None = key("in pi/sqrt(gamma); under `displacement`", None)
-    balance_distances: Positive | None = key("in |x_minus|; left level < 0, right 0", None)
+    time: Positive | None = key("the duration [H/c]", None)
+    half_periods: Positive | None = key(
+        "the duration in pi/sqrt(gamma); only under `displacement`", None
+    )
+    balance_distances: Positive | None = key(
+        "the duration in |x_minus|; if the left level is < 0 and the right one 0", None
+    )
 
 
 class SpacingRule(Block):
     """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
 
-    fixed: Spacing | None = key("the spacing, in the grid study too; alone [H]", None)
-    scale: Positive = key("factor of the preset's dx", 1.0)
+    fixed: Spacing | None = key(
+        "the spacing, also in the grid study; without the other keys [H]", None
+    )
+    scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
     width_power: float = key("power of W", 0.0)
-    gamma_power: float = key("power of gamma; under `displacement`", 0.0)
+    gamma_power: float = key("power of gamma; only under `displacement`", 0.0)
 
 
 class Recording(Block):
-    times: int = key("how many, evenly over the duration", ge=2, le=100_000)
-    positions: int = key("how many, from -extent to extent; 1: at x = 0", ge=1, le=100_000)
-    extent: NonNegative = key("how far to each side [H]")
+    times: int = key("number of times, evenly spaced over the duration", ge=2, le=100_000)
+    positions: int = key("number of positions, evenly spaced; 1: x = 0", ge=1, le=100_000)
+    extent: NonNegative = key("largest distance of positions from x = 0 [H]")
 
 
 class Physics(Block):
-    """Keys that a simulation and a scene have in common."""
+    """Keys that simulations and scenes have in common."""
 
-    boundary: Boundary = key("held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
+    boundary: Boundary = key(
+        "condition on top: held displacement (Gamma = 1) or stress (Gamma = 0)"
+    )
     scheme: Scheme | None = key("by default the model's", None)
     resolved_blocks: int | None = key("by default the model's", None, ge=1)
-    max_step: Positive | None = key("by default the preset's, cut to the bound [dx]", None)
+    max_step: Positive | None = key(
+        "largest time step; by default the preset's, or the stable one [dx]", None
+    )
 
     def alone(self, key: str, *others: str) -> None:
-        """Refuse a key that is given with another."""
+        """Raise ValueError if a key is given together with one of the others."""
         given = ", ".join(other for other in others if other in self.model_fields_set)
-        alone = key not in self.model_fields_set or not given
-        require(alone, f"{key}: given with {given}", "one or the other (null removes a key)")
+        is_alone = key not in self.model_fields_set or not given
+        require(is_alone, f"{key}: given with {given}", "one or the other (null removes a key)")
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
@@ -291,26 +310,32 @@ else:
 
 
 class Simulation(PhysicsOfSweep):
-    """A sweep: the product of its lists."""
+    """A sweep: one run for each combination of the entries of its lists."""
 
     left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
-    right: Literal["same"] | Distinct[float] | None = key("on the right [S]", None)
+    right: Literal["same"] | Distinct[float] | None = key(
+        "pre-stress levels on the right [S]", None
+    )
     width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
-    profiles: Distinct[Profile] | None = key("whole profiles, instead of the three above", None)
-    beyond: Beyond | None = key("another level on one side, below", None)
+    profiles: Distinct[Profile] | None = key(
+        "complete profiles, instead of the three keys above", None
+    )
+    beyond: Beyond | None = key("a second level on one side, below", None)
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
     beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
     rate_strengthening: Distinct[float] | None = key(ALPHA, None)
-    duration: Duration = key("how long each run is, in one of three units, below", words=UNITS)
+    duration: Duration = key("duration of each run, in one of three units, below", words=UNITS)
     spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
     dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
     release: Release | Distinct[Release] | None = key("by default the model's", None, RELEASED)
     friction_ratio: NonNegative | None = key("by default the model's", None)
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
-    samples: Recording | None = key("what `record: [fronts, samples]` samples, below", None)
-    chunks: int = key("how many jobs share the sweep, at most a run each", 1, ge=1, le=1000)
+    samples: Recording | None = key(
+        "sampled times and positions for `record: [..., samples]`, below", None
+    )
+    chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
     def _together(self) -> Self:
@@ -337,9 +362,9 @@ class Simulation(PhysicsOfSweep):
 
 
 class LayerKeys(Block):
-    """A layer in SI units; `Layer` of the library says more about each number."""
+    """A layer in SI units; see `Layer` of the library for details."""
 
-    thickness: Positive = key("thickness H, from the interface to what is held on top [m]")
+    thickness: Positive = key("thickness H, from the interface to the held top [m]")
     shear_modulus: Positive = key("shear modulus G [Pa]")
     lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
     poisson_ratio: float | None = key("instead of `lame_parameter`; between -1 and 0.5", None)
@@ -355,15 +380,15 @@ class LayerKeys(Block):
         return self
 
     def layer(self, boundary: str) -> Layer:
-        """The layer, with the condition on top that a boundary condition stands for."""
+        """Return the layer. By default its condition on top is that of a boundary condition."""
         given = {"top": TOP_OF_BOUNDARY[boundary]} | self.plain()
         return Layer(**given)
 
 
 class NamedScene(Profile, PhysicsOfScene):
-    """One run by name, non-dimensional, or in SI units with a layer."""
+    """One run with a name, non-dimensional, or in SI units if it has a layer."""
 
-    title: str = key("above figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
+    title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
     damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
@@ -371,19 +396,19 @@ class NamedScene(Profile, PhysicsOfScene):
     rate_strengthening: float | None = key(ALPHA, None)
     dx: Positive | None = key("block spacing, <= 1; by default the preset's [H]", None)
     release: Release | None = key("by default the model's", None)
-    duration: Positive = key("how long the run is [H/c]")
+    duration: Positive = key("duration of the run [H/c]")
     layer: LayerKeys | None = key(IN_SI, None)
 
     @model_validator(mode="before")
     @classmethod
     def _boundary_of_layer(cls, given: Any) -> Any:
-        """Take the boundary condition from a layer, if it is not given."""
+        """Set the boundary condition from the layer if it is not given."""
         layer = given.get("layer") if isinstance(given, dict) else None
         if not isinstance(layer, dict) or "boundary" in given:
             return given
         top = layer.get("top") or "held"
-        known = isinstance(top, str) and top in BOUNDARY_OF_TOP
-        return given | {"boundary": BOUNDARY_OF_TOP[top]} if known else given
+        is_known = isinstance(top, str) and top in BOUNDARY_OF_TOP
+        return given | {"boundary": BOUNDARY_OF_TOP[top]} if is_known else given
 
     @model_validator(mode="after")
     def _layer(self) -> Self:
@@ -404,11 +429,14 @@ class NamedScene(Profile, PhysicsOfScene):
         return self
 
     def layer_parameters(self) -> dict[str, Any] | None:
-        """The parameters of the layer by name, as builtins; None if the scene has no layer."""
+        """Return the parameters of the layer by name, or None if the scene has no layer."""
         return None if self.layer is None else self.layer.layer(self.boundary).mapping()
 
     def in_model_units(self) -> Self:
-        """The scene without its layer, non-dimensional; ValueError if a stress is not allowed."""
+        """Return the non-dimensional scene without its layer.
+
+        Raises ValueError if a stress is not allowed.
+        """
         if self.layer is None:
             return self
         layer = self.layer.layer(self.boundary)
@@ -416,7 +444,7 @@ class NamedScene(Profile, PhysicsOfScene):
         given: dict[str, Any] = {"layer": None, "gamma": gamma}
         for name, quantity in SI_KEYS.items():
             value = getattr(self, name)
-            # A default is a number of the model already.
+            # Defaults are non-dimensional already.
             if name not in self.model_fields_set or value is None:
                 continue
             if quantity == "stress":
@@ -437,7 +465,7 @@ class NamedScene(Profile, PhysicsOfScene):
         return self
 
     def _background_in_model_units(self, layer: Layer) -> dict[str, Any]:
-        """Steps, points and the rough background of a scene in SI units, non-dimensional."""
+        """Return the steps, points and rough background of a scene in non-dimensional units."""
         given: dict[str, Any] = {
             "steps": [
                 (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
@@ -459,20 +487,20 @@ class NamedScene(Profile, PhysicsOfScene):
 
 
 class Preset(Block):
-    dx: Spacing = key("block spacing where a simulation does not scale it [H]")
-    max_step: Positive = key("largest time step; strong damping may need less [dx]")
+    dx: Spacing = key("block spacing of simulations that do not scale it [H]")
+    max_step: Positive = key("largest time step; strong damping may need a smaller one [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
     coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
         "factors of the spacing in the grid studies", words=FACTORS
     )
-    whole: bool = key("whether studies, ledger and report are made without `everything`", True)
+    whole: bool = key("true: studies, claims and report are made by default", True)
 
     @model_validator(mode="after")
     def _far_apart(self) -> Self:
-        # Between nearly equal spacings a number hardly changes, however large its error is.
+        # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
-        apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
-        require(apart, f"coarser: {self.coarser}", FACTORS)
+        is_far_apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
+        require(is_far_apart, f"coarser: {self.coarser}", FACTORS)
         return self
 
 
@@ -489,21 +517,29 @@ class Model(Block):
 
 
 class Measure(Block):
-    share: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
-    front_window: float = key("last fraction of a path, for the front speed", ge=0.05, lt=1.0)
-    steady_tolerance: Fraction = key("largest change of a steady peak velocity over the last third")
-    trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")
-    still: Fraction = key("slower than this fraction of the largest slip velocity is at rest")
+    fraction: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
+    front_window: float = key(
+        "last fraction of the path, from which the front speed is measured", ge=0.05, lt=1.0
+    )
+    steady_tolerance: Fraction = key(
+        "largest change of the peak velocity of a steady pulse in the last third"
+    )
+    trailing_times: Distinct[Positive] = key(
+        "times at which the trailing edge is tabulated [H/c] (figure)"
+    )
+    still: Fraction = key(
+        "fraction of the largest slip velocity below which the interface is at rest"
+    )
 
 
 class Sketch(Block):
-    strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
+    strip_width: float = key("width of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
 
 
 class Steps(Block):
-    from_: Ratio = key("the first", alias="from")
-    to: Ratio = key("the last, above the first")
-    count: int = key("how many", ge=2, le=10_000)
+    from_: Ratio = key("first value", alias="from")
+    to: Ratio = key("last value, above the first")
+    count: int = key("number of values", ge=2, le=10_000)
 
     @model_validator(mode="after")
     def _upwards(self) -> Self:
@@ -512,15 +548,15 @@ class Steps(Block):
 
 
 class DamageZone(Block):
-    stiffness_ratios: Steps = key("G/G_r")
-    thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
+    stiffness_ratios: Steps = key("values of G/G_r")
+    thickness_ratios: Distinct[Ratio] = key("values of H_r/H, each of which is a curve")
 
 
 class LayerMap(Block):
     gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
     fracture_energy: Distinct[Positive] = key("fracture energies [tau_0^2/(2 gamma)]")
-    cells: int = key("of the grid over the height of the layer", ge=10, le=200)
-    chunks: int = key("how many jobs share the map, at most one per point", 1, ge=1, le=1000)
+    cells: int = key("number of grid cells over the height of the layer", ge=10, le=200)
+    chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
     def _chunks(self) -> Self:
@@ -536,40 +572,42 @@ class Figures(Block):
 
 
 class Claim(Block):
-    tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
+    tolerance: NonNegative | None = key("largest deviation that counts as agreement", None)
     tolerance_exponent: Positive | None = key("largest distance of an exponent from 1", None)
 
 
 class Reading(Block):
-    simulation: str = key("name of the simulation whose run is compared with it")
-    quantity: str = key("which of its measured numbers: a column of the measured table")
-    statement: Statement = key("what was read off (figure)", min_length=1)
+    simulation: str = key("simulation whose run is compared with it")
+    quantity: str = key("measured number, a column of the measured table")
+    statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
-    reading_error: Positive = key("of reading by pixel")
-    arrow: bool = key("whether it is a drawn arrow: the fit is made with and without", False)
+    reading_error: Positive = key("error of the reading, from the pixel size")
+    arrow: bool = key("true for a drawn arrow: fits are made with and without it", False)
 
 
 class Configuration(Block):
     """The whole configuration."""
 
-    preset: str = key("which of `presets` is used", words="the name of a preset")
-    presets: dict[Label, Preset] = key("trades of speed for accuracy, by name", min_length=1)
+    preset: str = key("name of the preset that is used", words="the name of a preset")
+    presets: dict[Label, Preset] = key(
+        "compromises between speed and accuracy, by name", min_length=1
+    )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
         "largest relative numerical error, instead of a preset's spacing and step", None
     )
     # Make and the command line may say yes, on or 1.
-    allow_large: Switch = key("whether simulations above the limits of cost run", False)
-    model: Model = key("for every simulation that does not say otherwise")
-    simulations: dict[Name, Simulation] = key("sweeps by name, each the product of its lists")
+    allow_large: Switch = key("true: simulations above the limits of cost are allowed", False)
+    model: Model = key("default values for all simulations")
+    simulations: dict[Name, Simulation] = key("sweeps by name, with a run for each combination")
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
-    measure: Measure = key("how numbers are read off a run")
-    figures: Figures = key("of figures that draw no simulation")
-    claims: dict[str, Claim] = key("tolerances other than in manuscript/claims.yaml, by claim", {})
+    measure: Measure = key("settings for the measured numbers")
+    figures: Figures = key("settings of figures that show no simulation")
+    claims: dict[str, Claim] = key("tolerances that replace those of manuscript/claims.yaml", {})
     published: dict[Label, Reading] = key("numbers read off a published figure, by name")
     studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
 
     def key_of(self, name: str) -> str:
-        """The key of a simulation or of a scene."""
+        """Return the key of a simulation or a scene."""
         return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
 
     @model_validator(mode="after")
@@ -583,18 +621,18 @@ class Configuration(Block):
             problem = f"scenes.{name}: also the name of a simulation"
             require(name not in self.simulations, problem, "another name")
             others = {*self.scenes} - {name}
-            taken = name == "index" or name.removesuffix("_numbers") in others
-            problem = f"scenes.{name}: another file of that name is there"
-            require(not taken, problem, "neither index nor SCENE_numbers")
-        known = dict(RECORD_FOR)
+            is_taken = name == "index" or name.removesuffix("_numbers") in others
+            problem = f"scenes.{name}: a file of that name exists"
+            require(not is_taken, problem, "neither index nor SCENE_numbers")
+        record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
-            known[f"trailing_edge_{time:g}"] = "fronts"
+            record_for[f"trailing_edge_{time:g}"] = "fronts"
         for name, reading in self.published.items():
             quantity, sweep = reading.quantity, reading.simulation
             key = f"published.{name}"
             check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
-            check_name(f"{key}.quantity", quantity, known, "a column of the measured table")
-            needed, recorded = known[quantity], self.simulations[sweep].record
-            allowed = f"what simulations.{sweep} records; this takes record: [fronts, {needed}]"
+            check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
+            needed, recorded = record_for[quantity], self.simulations[sweep].record
+            allowed = f"what simulations.{sweep} records; it needs record: [fronts, {needed}]"
             require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
         return self

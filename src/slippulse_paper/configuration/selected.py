@@ -1,11 +1,11 @@
-"""Parts of a configuration."""
+"""Selection of the values of a configuration that a job depends on."""
 
 from collections.abc import Iterable, Mapping
 from copy import deepcopy
 
 
 def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
-    """Take the values of some dotted keys of the configuration, nested as there, with additions."""
+    """Return the values of some dotted keys, nested as in the configuration, with additions."""
     values = deepcopy(dict(additions))
     for key in keys:
         target, source = values, config

@@ -16,7 +16,7 @@ NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
     "measured": {"space_time_displacement": [], "space_time_stress": []},
     "studies": ["exact_space_time"],
-    "settings": ["measure.share"],
+    "settings": ["measure.fraction"],
 }
 # Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
@@ -55,7 +55,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
         if panel == "stress":
-            rows.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
+            rows.append(
+                pd.DataFrame([{"role": "fraction", "value": settings["measure"]["fraction"]}])
+            )
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 

@@ -16,7 +16,7 @@ NEEDS = {
     "data": ["arrest"],
     "measured": {"arrest": ["transition"]},
     "studies": ["arrest_path"],
-    "settings": ["measure.share"],
+    "settings": ["measure.fraction"],
 }
 # Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
@@ -35,7 +35,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     numbers = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
         last_release=runs["last_release_time"] / scale,
-        fraction=settings["measure"]["share"],
+        fraction=settings["measure"]["fraction"],
         fraction_time=runs["transition_time"] / scale,
         exact_fraction_time=runs["exact_transition_time"] / scale,
     )

@@ -1,8 +1,9 @@
-"""Records of jobs: what each job wrote, by which sources and settings, and from which files.
+"""Records of jobs: outputs and inputs with their digests, and digests of sources and settings.
 
-Snakemake decides which jobs run. The records add what its own records do not tell: whether a result
-still has the content that its job wrote. The record of a job is ``.records/NAME.json`` in the
-folder of its first output, NAME; a job with outputs in two folders has a record in each.
+Snakemake decides which jobs run, by its own records and the times of files. It does not notice a
+result that was edited by hand. For that, the records here have the digest of everything that a job
+wrote. The record of a job is ``.records/NAME.json`` in the folder of its first output, NAME. A job
+with outputs in two folders has a record in each.
 """
 
 import base64
@@ -21,11 +22,11 @@ FOLDER = ".records"
 
 
 class ChangedFile(RuntimeError):
-    """A file that is not what its job wrote, or that was edited while a job was running."""
+    """Refusal of a file that differs from what its job wrote, or that changed during a job."""
 
 
 class FileState(NamedTuple):
-    """Content of a file, with the size and time that show cheaply that it is unchanged."""
+    """Digest of a file, with its size and time, which show quickly that it is unchanged."""
 
     sha256: str
     size: int
@@ -33,7 +34,12 @@ class FileState(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Record of a job: its outputs in one folder, and its inputs, relative to that folder."""
+    """Record of a job.
+
+    ``code`` and ``configuration`` are the digests of its sources and of all settings. ``outputs``
+    are those in one folder, by name. ``inputs`` has the SHA-256 of each input, by the path relative
+    to that folder.
+    """
 
     step: str
     code: str
@@ -44,7 +50,7 @@ class Record(NamedTuple):
 
 
 def digest_of(value: object) -> str:
-    """Return a short digest of builtins, which does not depend on the order of keys."""
+    """Return a short digest of plain data, which does not depend on the order of keys."""
     text = json.dumps(value, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -61,14 +67,14 @@ def _digest_at(path: str, _size: int, _modified_ns: int) -> str:
 
 
 def state_of(path: str | Path) -> FileState:
-    """Return the state of a file; the content is read once for each size and time."""
+    """Return the state of a file. The content is read only if its size or time has changed."""
     info = os.stat(path)
     digest = _digest_at(os.path.abspath(path), info.st_size, info.st_mtime_ns)
     return FileState(digest, info.st_size, info.st_mtime_ns)
 
 
 def is_unchanged(path: str | Path, state: FileState) -> bool:
-    """Return whether a file has a recorded content; the file is read if size or time differ."""
+    """Return True if a file has a recorded content. It is read only if its time differs."""
     info = os.stat(path)
     if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):
         return True
@@ -76,13 +82,13 @@ def is_unchanged(path: str | Path, state: FileState) -> bool:
 
 
 def record_path(output: str | Path) -> Path:
-    """Return the path of the record that begins with an output."""
+    """Return the path of the record whose first output is given."""
     path = Path(output)
     return path.parent / FOLDER / f"{path.name}.json"
 
 
 def write_json(value: object, path: str | Path) -> None:
-    """Write builtins as JSON that people can read."""
+    """Write plain data as JSON that people can read."""
     write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)
 
 
@@ -112,7 +118,7 @@ def read_record(path: str | Path) -> Record:
 
 
 class RecordedFiles:
-    """The records below a folder of results, and the files that they are about."""
+    """All records in a folder of results, and the state of the recorded files."""
 
     def __init__(self, results: str | Path) -> None:
         self.results = Path(results)
@@ -135,16 +141,16 @@ class RecordedFiles:
     def problems(self) -> Iterator[tuple[str, str]]:
         """Yield each file whose change Snakemake would not notice, with the reason.
 
-        A missing file is no problem here: Snakemake makes it again where it is needed.
+        A missing file is not a problem, since Snakemake makes it again if it is needed.
         """
-        states, known = self.states(), _known_to_snakemake()
+        states, snakemake_files = self.states(), _files_recorded_by_snakemake()
         for path in self.unreadable:
             yield str(path.parent.parent / path.stem), "its record cannot be read"
         for name, state in states.items():
             try:
                 if not is_unchanged(name, state):
                     yield name, "not what its job wrote"
-                elif name not in known:
+                elif name not in snakemake_files:
                     yield name, "Snakemake's own record of it (in .snakemake) is lost"
             except OSError:
                 continue
@@ -158,12 +164,12 @@ class RecordedFiles:
                     break
 
 
-def _known_to_snakemake() -> set[str]:
-    """Return the paths of the files of which Snakemake has a record, which its names encode."""
+def _files_recorded_by_snakemake() -> set[str]:
+    """Return the paths of files with a record of Snakemake, which are encoded in its file names."""
     folder = Path(".snakemake/metadata")
     names = set()
     for path in folder.rglob("*"):
-        # A long name is divided into folders, which begin with @.
+        # Snakemake splits a long name into folders whose names begin with @.
         encoded = "".join(part.removeprefix("@") for part in path.relative_to(folder).parts)
         with suppress(ValueError):
             names.add(base64.urlsafe_b64decode(encoded).decode())
@@ -171,7 +177,7 @@ def _known_to_snakemake() -> set[str]:
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:
-    """Return the seconds that all jobs of each step took in total, from their records."""
+    """Return the total time in seconds of the jobs of each step, from their records."""
     seconds: dict[str, float] = {}
     for record in RecordedFiles(results).records.values():
         seconds[record.step] = round(seconds.get(record.step, 0.0) + record.seconds, 2)
@@ -179,14 +185,14 @@ def job_seconds(results: str | Path) -> dict[str, float]:
 
 
 def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, Record]]:
-    """Check that the results that a job reads are what their jobs wrote.
+    """Check that the inputs of a job still have the content that their jobs wrote.
 
-    Returns the state of each file, and the record of each that has one, by path.
+    Returns the state of each existing file, and the record of each recorded file, by path.
 
     Raises
     ------
     ChangedFile
-        for the first file that is not what its job wrote
+        if a file has another content
     """
     states, records = {}, {}
     for path in paths:
@@ -198,25 +204,26 @@ def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, 
             continue
         records[path] = record
         if record.outputs[Path(path).name].sha256 != states[path].sha256:
-            remedy = "delete it and run again, or run `make replicate`, which renews it"
+            remedy = "delete it and run again, or run `make replicate`, which makes it again"
             raise ChangedFile(f"{path}: not what its job wrote; {remedy}")
     return states, records
 
 
 def check_unchanged(states: Mapping[str, FileState]) -> None:
-    """Raise ChangedFile for the first file that was edited since its state was taken."""
+    """Raise ChangedFile if a file has changed since its state was taken."""
     for path, state in states.items():
         if not is_unchanged(path, state):
             raise ChangedFile(f"{path}: changed while the job was running; run again")
 
 
 def _record_of(path: str) -> Record | None:
-    """Return the record in which a file is named as an output, or None."""
+    """Return the record that has a file among its outputs, or None if there is none."""
     name, folder = Path(path).name, Path(path).parent / FOLDER
     return _records_in(str(folder), _time_of(folder)).get(name)
 
 
 def _time_of(folder: Path) -> int:
+    """Return the time at which a folder was modified, in ns, or 0 if there is no folder."""
     try:
         return folder.stat().st_mtime_ns
     except OSError:
@@ -225,7 +232,10 @@ def _time_of(folder: Path) -> int:
 
 @cache
 def _records_in(folder: str, _modified_ns: int) -> dict[str, Record]:
-    """Return the records of a folder by the names of the outputs beside it."""
+    """Return the record of each output, by its name, from the records in a folder.
+
+    The time of the folder is an argument so that the cache is not used after a change.
+    """
     records: dict[str, Record] = {}
     for path in Path(folder).glob("*.json"):
         try:

@@ -1,9 +1,10 @@
-"""A lock that the system frees when its holder ends, however that happens.
+"""A lock that the system releases when its holder ends, even if the holder is killed.
 
-    python lock.py FILE COMMAND...     waits for the lock, then runs a command
-    python lock.py FILE                fails where somebody holds the lock
+    python lock.py FILE COMMAND...     waits for the lock and then runs a command
+    python lock.py FILE                fails if another process holds the lock
 
-The set-up of the environment uses it too: it needs nothing but Python.
+The set-up of the environment runs this file before any package is installed, and so it imports only
+the standard library.
 """
 
 import errno
@@ -15,13 +16,16 @@ from typing import TextIO
 
 
 def take(path: str | Path, wait: bool = False) -> TextIO | None:
-    """Hold a lock until the returned file is closed; wait for it, or return None if it is held."""
+    """Take a lock, which is held until the returned file is closed.
+
+    If another process holds the lock, wait for it, or return None without ``wait``.
+    """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     file = open(path, "a", encoding="utf-8")  # noqa: SIM115
     try:
         fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except OSError as error:
-        # Some file systems have no locks: there is then no protection.
+        # Other errors mean that the file system has no locks. The run then goes on without one.
         if error.errno in (errno.EAGAIN, errno.EACCES):
             file.close()
             return None
@@ -35,7 +39,7 @@ def main(arguments: list[str]) -> int:
     if not command:
         return int(held is None)
     if held is None:
-        print("Another set-up is at work in this folder: waiting for it", flush=True)
+        print("Another set-up is running in this folder: waiting for it", flush=True)
         held = take(path, wait=True)
     return subprocess.run(command, check=False).returncode
 

@@ -1,4 +1,4 @@
-"""Comparison of the installed packages with the lock."""
+"""Comparison of the installed packages with the versions in requirements.lock."""
 
 import re
 from collections import defaultdict
@@ -8,13 +8,14 @@ from pathlib import Path
 
 
 def package_problem(lock: str | Path) -> str:
-    """Return one line on the first package that is not of the version in a lock, or empty text."""
+    """Return a line on the first package whose version is not in the lock, or no text."""
     pins: defaultdict[str, set[str]] = defaultdict(set)
     text = Path(lock).read_text(encoding="utf-8")
     for name, pinned in re.findall(r"^([\w.-]+)==([^\s;\\]+)", text, re.M):
         pins[name].add(pinned)
     for name, versions in pins.items():
-        # Another system, or another Python, needs other packages: the lock names those of all.
+        # The lock also has packages that only other systems or versions of Python need, and which
+        # are not installed here.
         with suppress(PackageNotFoundError):
             if version(name) not in versions:
                 allowed = f"{' or '.join(sorted(versions))}, as in requirements.lock"

@@ -1,4 +1,7 @@
-"""Provenance of the results, in the only file that holds times; checksums and manifest."""
+"""Provenance of the results, their checksums and a manifest for CODECHECK.
+
+The provenance is the only result that contains times, so that all others can be compared by byte.
+"""
 
 import os
 import platform
@@ -24,7 +27,11 @@ PAPER = {
 
 
 def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """List the values that differ below a key, as shipped and as here; an absent one is None."""
+    """List all values that differ between two configurations, or between their values at a key.
+
+    Each entry has the dotted ``key``, the value in the ``shipped`` configuration, and the value
+    ``here``. The value of an absent key is None.
+    """
     if not (isinstance(shipped, Mapping) and isinstance(config, Mapping)):
         return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
     changed = []
@@ -35,7 +42,7 @@ def changes(shipped: object, config: object, key: str = "") -> list[dict]:
 
 
 def source_files(root: str | Path) -> list[Path]:
-    """List all files that a result may depend on besides the configuration."""
+    """List all files of the project, except the configuration, that a result may depend on."""
     files = [Path(root, "Snakefile")]
     for folder in ("src", "workflow", "manuscript"):
         paths = Path(root, folder).rglob("*")
@@ -44,10 +51,13 @@ def source_files(root: str | Path) -> list[Path]:
 
 
 def git_state(root: str | Path) -> dict | None:
-    """Commit, and files that differ from it; None outside a repository or without git."""
-    # A variable of git would name another repository than the one that these files are in.
-    around = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
-    options = {"stderr": subprocess.DEVNULL, "timeout": 30, "cwd": root, "env": around}
+    """Return the commit and the files that differ from it.
+
+    Returns None outside of a repository, or if git is not installed.
+    """
+    # Environment variables of git could select another repository.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
+    options = {"stderr": subprocess.DEVNULL, "timeout": 30, "cwd": root, "env": environment}
     git = partial(subprocess.check_output, **options)
     try:
         commit = git(["git", "rev-parse", "HEAD"], text=True).strip()
@@ -58,7 +68,7 @@ def git_state(root: str | Path) -> dict | None:
 
 
 def machine_class() -> dict:
-    """Kind of machine, without the name of a host or a user."""
+    """Describe the machine without the name of the host or of the user."""
     cpuinfo = Path("/proc/cpuinfo")
     text = cpuinfo.read_text(encoding="utf-8", errors="replace") if cpuinfo.exists() else ""
     return {
@@ -71,7 +81,10 @@ def machine_class() -> dict:
 
 
 def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
-    """Collect all that the results in ``base`` depend on; shipped is without overlays."""
+    """Collect everything that the results in the folder ``base`` depend on.
+
+    ``config`` is the configuration of the results, and ``shipped`` the one without overlays.
+    """
     versions = {"python": platform.python_version()}
     versions |= {name: version(name) for name in PACKAGES}
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
@@ -91,13 +104,13 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | 
 
 
 def checksums(files: Sequence[str], base: str | Path) -> str:
-    """Write the lines of sha256sum, with paths relative to a folder, in order of the path."""
+    """Return the SHA-256 of files in the format of sha256sum, sorted by the path below ``base``."""
     names = sorted(str(Path(file).relative_to(base)) for file in files)
     return "".join(f"{file_digest(Path(base) / name)}  {name}\n" for name in names)
 
 
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
-    """Write a CODECHECK manifest that lists every output with a comment."""
+    """Return a CODECHECK manifest, which lists every output with a comment."""
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
         comment = COMMENTS.get(path.parts[0], comments.get(path.stem, "result"))
@@ -112,7 +125,8 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 
 
-# How a checker compares an output with one of another machine, by its folder or name.
+# Advice for the comparison with outputs of another machine, by the folder or the name of the
+# output.
 COMPARED = {
     "claims.json": "compare first: the verdicts must be the same",
     "claims.html": "read it",
@@ -123,10 +137,10 @@ COMPARED = {
 }
 COMMENTS = {
     "data": "simulated data, netCDF-4",
-    "measurements": "measured numbers, one row a run",
+    "measurements": "measured numbers, one row for each run",
     "uncertainties": "grid study of every measured number",
     "manuscript": "the replication report",
-    "claims.html": "the same as a table to read",
-    "explorer.html": "a rupture with sliders, the exact solution beside the paper's formulas",
-    "claims.json": "what the paper says, what was measured, the verdict",
+    "claims.html": "the same as a table",
+    "explorer.html": "a rupture with sliders: the exact solution and the paper's formulas",
+    "claims.json": "the statements of the paper, the measured numbers and the verdicts",
 }

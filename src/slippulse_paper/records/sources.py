@@ -1,8 +1,8 @@
 """Source files that a step of the workflow depends on, with their digests.
 
-A step depends on its own module and on every module that this one imports, directly or not, within
-both packages. Their digest is a parameter of the rule, so that Snakemake runs a job again when, and
-only when, one of these files has another content, whatever the time of the file.
+A step depends on its own module and on every module of both packages that this module imports,
+directly or indirectly. The digest of these files is a parameter of the rule. Snakemake therefore
+runs a job again if the content of one of them has changed, but not if only its time has changed.
 """
 
 from collections.abc import Iterable
@@ -17,12 +17,12 @@ from .job_records import digest_of, file_digest
 PACKAGES = ("slippulse", "slippulse_paper")
 SOURCES = Path(__file__).resolve().parents[2]
 PROJECT = SOURCES.parent
-# Packages of other versions may give other results.
+# Results may depend on the versions of the packages.
 LOCK = "requirements.lock"
 
 
 class Sources(NamedTuple):
-    """Files with their SHA-256, by path below the project, and one digest of all."""
+    """Source files: the SHA-256 of each, by its path below the project, and one digest of all."""
 
     digest: str
     files: dict[str, str]
@@ -30,7 +30,7 @@ class Sources(NamedTuple):
 
 @cache
 def _imports() -> grimp.ImportGraph:
-    """Graph of the imports within both packages; a module imports the packages that it is in."""
+    """Return the graph of imports in both packages. Each module also imports its own package."""
     graph = grimp.build_graph(*PACKAGES, cache_dir=None, exclude_type_checking_imports=True)
     for name in graph.modules - {*PACKAGES}:
         graph.add_import(importer=name, imported=name.rpartition(".")[0])
@@ -44,20 +44,20 @@ def _digest(path: str) -> str:
 
 @cache
 def modules_reached(*modules: str) -> frozenset[str]:
-    """Return the full names of modules and of all that they import, with their packages."""
+    """Return the full names of modules and of everything that they import."""
     return frozenset(modules).union(*map(_imports().find_upstream_modules, modules))
 
 
 @cache
 def sources_of(modules: tuple[str, ...], texts: tuple[str, ...] = ()) -> Sources:
-    """Find the sources of a step.
+    """Return the sources of a step.
 
     Parameters
     ----------
     modules : tuple of str
         full names of the modules that the step runs
     texts : tuple of str
-        further files that it reads, as paths below the project: templates and texts
+        paths below the project of other files that it reads, such as templates and texts
     """
     paths = {_path(module) for module in modules_reached(*modules)} | {*texts, LOCK}
     files = {path: _digest(path) for path in sorted(paths)}
@@ -65,7 +65,7 @@ def sources_of(modules: tuple[str, ...], texts: tuple[str, ...] = ()) -> Sources
 
 
 def changed_sources(files: dict[str, str]) -> Iterable[str]:
-    """Yield the paths of sources whose content is no longer the one given by their SHA-256."""
+    """Yield the paths of sources whose content no longer has the given SHA-256."""
     for path, digest in files.items():
         try:
             unchanged = file_digest(PROJECT / path) == digest

@@ -1,4 +1,7 @@
-"""One module a rule of the workflow: ``run(files, outputs, settings)`` reads, calls and writes.
+"""Steps of the workflow: one module for each rule.
 
-A rule depends on all modules that its step imports, and on the data files that these name in FILES.
+Each module has a function ``run(files, outputs, settings)``, which reads the input files, calls the
+code that does the work, and writes the output files. ``files`` and ``outputs`` have paths, or lists
+of paths, by the names that the rule gives them. A job depends on its step and on every module that
+the step imports.
 """

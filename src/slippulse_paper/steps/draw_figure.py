@@ -5,16 +5,18 @@ from importlib import import_module
 from slippulse.data.tables import load_table, save_table
 from slippulse.plotting.style import house_style, save_figure
 
-from .inputs import given
+from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`. Outputs: csv, png, pdf. Settings: figure, values, altered."""
-    module, note = (
-        import_module(f"slippulse_paper.figures.{settings['figure']}"),
-        settings["altered"],
-    )
-    table = module.table(*given(files), settings["values"])
+    """Files: the kinds of `load_inputs`. Outputs: csv, png, pdf.
+
+    Settings: figure (its module), values, altered.
+    """
+    module = import_module(f"slippulse_paper.figures.{settings['figure']}")
+    note = settings["altered"]
+    inputs = load_inputs(files)
+    table = module.table(inputs.data, inputs.tables, settings["values"])
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     drawn = load_table(outputs["csv"]).drop(columns="altered", errors="ignore")
     with house_style():

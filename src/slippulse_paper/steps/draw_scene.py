@@ -13,7 +13,7 @@ from ..report.scene_page import scene_page
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html.
+    """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
 
     Settings: title, altered, layer (parameters of a scene in SI units, or None).
     """

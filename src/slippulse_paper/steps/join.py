@@ -1,4 +1,4 @@
-"""Join one file of each chunk of a simulation: data, or a table of any kind."""
+"""Join the files of the chunks of a simulation, which are data or tables of one kind."""
 
 from slippulse.data.saving import save_dataset
 from slippulse.data.tables import load_table

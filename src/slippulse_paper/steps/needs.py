@@ -1,4 +1,7 @@
-"""Constants that modules of figures, studies and steps declare for the rules of the workflow."""
+"""Constants that the rules of the workflow read from modules of figures, studies and steps.
+
+Examples are NEEDS, the inputs of a figure or study, and DRAWS, its conditions on simulations.
+"""
 
 import ast
 from functools import cache
@@ -15,7 +18,7 @@ def declared(module: str, name: str):
     Returns None if the module does not have the constant.
     """
     text = PACKAGE.joinpath(*module.split(".")).with_suffix(".py").read_text(encoding="utf-8")
-    # Few modules have the constant: only these are parsed.
+    # Parsing is slow, and so only modules that contain the constant are parsed.
     for node in ast.parse(text).body if f"\n{name} = " in text else ():
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
             return ast.literal_eval(node.value)
@@ -23,7 +26,7 @@ def declared(module: str, name: str):
 
 
 def needs_of(folder: str) -> dict[str, dict]:
-    """Read the NEEDS of all modules in a folder that declare them, by the name of the module."""
+    """Read the NEEDS of all modules in a folder that have this constant, by module name."""
     names = sorted(path.stem for path in (PACKAGE / folder).glob("*.py"))
     needs = {name: declared(f"{folder}.{name}", "NEEDS") for name in names}
     return {name: value for name, value in needs.items() if value is not None}

@@ -18,26 +18,32 @@ MODULES = {
     "pulse": "predicted_pulse",
     "transition": "predicted_transition",
 }
-# Formulas are compared to more digits than measured numbers have.
+# Formulas are compared with more digits than measured numbers have.
 DIGITS = 15
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), topics; share, still (of `measure`)."""
-    table = predictions(settings["topics"], [*runs(settings["sweep"])], settings)
+    """Outputs: predicted. Settings: sweep (resolved), topics, fraction and still (of `measure`)."""
+    swept_runs = [*runs(settings["sweep"])]
+    table = predictions(settings["topics"], swept_runs, settings)
     save_table(table, outputs["predicted"], DIGITS)
 
 
-def predictions(topics: Iterable[str], swept: Sequence[Run], settings: Mapping) -> pd.DataFrame:
-    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
+def predictions(
+    topics: Iterable[str], swept_runs: Sequence[Run], settings: Mapping
+) -> pd.DataFrame:
+    """Join the predictions on some topics to a table with one row for each run.
+
+    A number is NaN if the theory does not cover the friction law or an extra term of the run.
+    """
     tables = []
     for topic in topics:
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
-        table = module.predictions(swept, settings)
-        # A number that ignores the friction or an extra term of a run is worse than none.
-        known = [
-            one.friction["law"] in module.LAWS and not used_extra_terms(one.extra_terms)
-            for one in swept
+        table = module.predictions(swept_runs, settings)
+        # A number that ignores the friction or an extra term of a run would be misleading.
+        is_covered = [
+            swept_run.friction["law"] in module.LAWS and not used_extra_terms(swept_run.extra_terms)
+            for swept_run in swept_runs
         ]
-        tables.append(table[known].reindex(table.index))
+        tables.append(table[is_covered].reindex(table.index))
     return pd.concat(tables, axis=1)

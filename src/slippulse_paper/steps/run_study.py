@@ -4,10 +4,12 @@ from importlib import import_module
 
 from slippulse.data.tables import save_table
 
-from .inputs import given
+from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`. Outputs: table. Settings: study (its module), values."""
+    """Files: the kinds of `load_inputs`. Outputs: table. Settings: study (its module), values."""
     study = import_module(f"slippulse_paper.studies.{settings['study']}")
-    save_table(study.table(*given(files), settings["values"]), outputs["table"])
+    inputs = load_inputs(files)
+    table = study.table(inputs.data, inputs.tables, settings["values"])
+    save_table(table, outputs["table"])

@@ -12,7 +12,8 @@ from slippulse.simulation.sweep import solve_sweep
 from ..configuration.expand import expand
 from ..configuration.runs import profile_labels
 
-# Module and function by scheme: an edit of the theory re-runs exact solutions alone.
+# Module and function for each scheme. A job depends only on the solver that it runs, so that an
+# edit of the theory runs only the exact solutions again.
 SOLVERS = {
     "localised": "slippulse.solver.solution:solve_on_lattice",
     "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
@@ -21,14 +22,20 @@ SOLVERS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data. Settings: simulation, solver (of SOLVERS), sweep, threads, progress."""
+    """Outputs: data. Settings: simulation, solver (from SOLVERS), sweep, threads, progress."""
     solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)
-    how = settings["threads"], settings.get("progress")
-    data = solve_sweep(solve, scenes, samples, sweep["record"], *how)
+    data = solve_sweep(
+        solve,
+        scenes,
+        samples,
+        record=sweep["record"],
+        threads=settings["threads"],
+        progress=settings.get("progress"),
+    )
     data = labelled(data, profile_labels(sweep), sweep["record"])
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
-        flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
+        flagged = f"{flags[kind]} of {len(scenes)} runs have the flag {kind} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
     save_dataset(described(data), outputs["data"])

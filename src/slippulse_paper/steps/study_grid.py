@@ -31,7 +31,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         tables[factor] = measured_table(data, settings["measure"])
     measured = load_table(files["finest"])
     if any("chunk" in sweep for sweep in sweeps.values()):
-        # A column of fractions may have integers alone, of which -0 has lost its sign.
+        # In one chunk a column of fractions may contain only integers. Read as integers, -0 would
+        # lose its sign.
         fractions = measured.select_dtypes("integer").columns.difference([*PARAMETERS, *LABELS])
         measured = load_table(files["finest"], dict.fromkeys(fractions, float))
     keys = [*PARAMETERS, *(name for name in LABELS if name in measured)]
@@ -39,7 +40,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
         uncertainties = judge_promises(
-            uncertainties, measured, promise, settings["measure"]["share"]
+            uncertainties, measured, promise, settings["measure"]["fraction"]
         )
         sys.stderr.write(f"  {name}: {summarise_promises(uncertainties, promise)}\n")
     save_table(uncertainties, outputs["uncertainties"])

@@ -1,14 +1,14 @@
-"""Libraries that most steps use, loaded once for all workers of a run."""
+"""Libraries that most steps use. They are loaded once for all workers of a run."""
 
 # ruff: noqa: F401
 import gc
 import os
 
-# Jobs run side by side: the linear algebra of each keeps to one core.
+# Several jobs run at the same time, and so the linear algebra of each uses one core.
 os.environ["OMP_NUM_THREADS"] = "1"
-# Figures are files in the house style, whatever display and style the user has chosen.
+# Figures do not depend on the display and the style that the user has chosen.
 os.environ |= {"MPLBACKEND": "agg", "MATPLOTLIBRC": os.devnull}
-# Results carry no date, and some libraries cannot be loaded if this one is not a number.
+# Results contain no date, and some libraries cannot be loaded if this variable is not a number.
 os.environ.pop("SOURCE_DATE_EPOCH", None)
 
 import h5py
@@ -19,6 +19,7 @@ import xarray
 
 # The first function that is compiled loads most of numba.
 numba.njit(lambda: 0)()
-# The workers share memory that none of them touches; few objects that jobs make are in cycles.
+# Garbage collection would write to memory that the workers share, and so copy it. It may be rare,
+# since few objects of jobs form cycles.
 gc.freeze()
 gc.set_threshold(50_000)

@@ -1,8 +1,8 @@
 """Worker processes that run the jobs of a workflow one after another.
 
-A job of this workflow lasts about a second, and a new Python process needs more than that to load
-the libraries. Workers load them once: a draft of 50 jobs takes 75 processor seconds with them, and
-145 with Snakemake's ``script:``. They are forked from a process that has loaded the libraries.
+A job of this workflow takes about a second, and a new Python process needs longer than that to load
+the libraries. The workers are forked from a process that has loaded them once. A draft of 50 jobs
+takes 75 processor seconds with workers, and 145 with Snakemake's ``script:``.
 """
 
 import multiprocessing
@@ -18,25 +18,29 @@ from threading import Lock, Thread
 from .job import Job, JobFailed, run_job
 
 LIBRARIES = "slippulse_paper.steps.worker_libraries"
-# The fork server listens on a socket in this folder; the system takes paths of up to 107 bytes.
-LONGEST_TEMPORARY_FOLDER = 70
+# The fork server listens on a socket in the temporary folder. The system allows socket paths of up
+# to 107 bytes, of which the name of the socket takes the rest.
+MAX_TEMPORARY_FOLDER_BYTES = 70
 
 
 class WorkerPool:
-    """Runs jobs in worker processes that are reused from one job to the next. Thread-safe."""
+    """A pool of worker processes that are reused between jobs. Thread-safe."""
 
     def __init__(self) -> None:
         self._executor: ProcessPoolExecutor | None = None
-        self._turn = Lock()
+        self._executor_lock = Lock()
 
     def start(self, workers: int) -> None:
-        """Start the first of some workers, which loads the libraries before a job comes."""
-        # If that is impossible, the first job says why.
+        """Start the first worker, which loads the libraries before the first job.
+
+        ``workers`` is the largest number of workers.
+        """
+        # If no process can be started, the first job reports the reason.
         with suppress(EOFError, OSError):
             self._submit(workers, os.getpid)
 
     def run(self, job: Job, workers: int) -> None:
-        """Run a job in one of some workers. Raises JobFailed with the reason in one line."""
+        """Run a job in one of at most ``workers`` processes. Raises JobFailed with the reason."""
         try:
             self._submit(workers, run_job, job).result()
         except BrokenProcessPool:
@@ -49,7 +53,7 @@ class WorkerPool:
             raise JobFailed("stopped") from None
 
     def _submit(self, workers: int, function, *arguments) -> Future:
-        with self._turn:
+        with self._executor_lock:
             if self._executor is None:
                 self._executor = _new_executor(workers)
             return self._executor.submit(function, *arguments)
@@ -63,26 +67,27 @@ def run_here(job: Job) -> None:
 
 
 def _new_executor(workers: int) -> ProcessPoolExecutor:
-    # Each worker would load the main program again, which is Snakemake, and needs nothing of it.
+    # Otherwise each worker would load the main program, Snakemake, which it does not need.
     vars(sys.modules["__main__"]).update(__spec__=None, __file__=None)
-    short = len(os.fsencode(tempfile.gettempdir())) <= LONGEST_TEMPORARY_FOLDER
-    # Some libraries of other systems do not survive a fork.
+    is_short = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
+    # On other systems some libraries fail after a fork.
     context = multiprocessing.get_context(
-        "forkserver" if short and sys.platform == "linux" else "spawn"
+        "forkserver" if is_short and sys.platform == "linux" else "spawn"
     )
     context.set_forkserver_preload([LIBRARIES])
-    return ProcessPoolExecutor(workers, context, initializer=_begin)
+    return ProcessPoolExecutor(workers, context, initializer=_prepare_worker)
 
 
-def _begin() -> None:
-    """Let a worker end at once when the user stops the run, or when its parent has ended."""
+def _prepare_worker() -> None:
+    """Make a worker end at once if the user stops the run or if its parent process ends."""
     from . import worker_libraries  # noqa: F401
 
     signal.signal(signal.SIGINT, lambda *_: sys.exit("stopped"))
-    Thread(target=_end_with_parent, daemon=True).start()
+    Thread(target=_kill_after_parent, daemon=True).start()
 
 
-def _end_with_parent() -> None:
+def _kill_after_parent() -> None:
+    """Wait until the parent process has ended, and then kill this process."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -10,21 +10,24 @@ from ..claims.findings import findings
 from ..claims.paper_claims import all_claims, finite
 from ..records.job_records import write_json
 from ..report.claims_page import claims_page
-from .inputs import given
+from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`; texts, statements. Outputs: json, findings, html."""
+    """Files: the kinds of `load_inputs`, texts, statements. Outputs: json, findings, html.
+
+    Settings: claims, published, measure, damping_ratio, altered.
+    """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]
-    _, tables = given(files)
-    steady = settings["measure"]["steady_tolerance"]
-    evidence = Evidence(tables, texts["claims"], steady, settings["published"])
+    tables = load_inputs(files).tables
+    steady_tolerance = settings["measure"]["steady_tolerance"]
+    evidence = Evidence(tables, texts["claims"], steady_tolerance, settings["published"])
     claims = all_claims(evidence, texts["over_choices"], sentences)
-    beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
+    further_findings = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])
-    write_json(beside, outputs["findings"])
+    write_json(further_findings, outputs["findings"])
     paths = files["measured"] + files["predicted"] + files["uncertainties"] + files["studies"]
     folder = Path(outputs["html"]).parent
     links = [Path(path).relative_to(folder).as_posix() for path in paths]
-    write_text(claims_page(claims, settings["altered"], beside, links), outputs["html"])
+    write_text(claims_page(claims, settings["altered"], further_findings, links), outputs["html"])

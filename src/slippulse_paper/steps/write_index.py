@@ -1,4 +1,4 @@
-"""Write the page that leads to all results, with their provenance, checksums and manifest."""
+"""Write the page with links to all results, and the provenance, checksums and manifest."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ..records.sources import PROJECT
 from ..report.index_page import index_page
 from ..report.texts import read_captions
 
-# Headings of figures, by how the names of these begin.
+# Headings of groups of figures, by the first part of the names of the figures.
 HEADINGS = {
     "fig": "The figures of the paper",
     "study_": "Beyond the paper",
@@ -24,11 +24,11 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, titles), outputs["manifest"])
-    facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
-    write_json(facts, outputs["provenance"])
+    origin = provenance(PROJECT, settings["config"], settings["shipped"], base)
+    write_json(origin, outputs["provenance"])
     galleries = {}
-    for start, heading in HEADINGS.items():
-        names = [name for name in settings["figures"] if name.startswith(start)]
+    for prefix, heading in HEADINGS.items():
+        names = [name for name in settings["figures"] if name.startswith(prefix)]
         if names:
             galleries[heading] = names
     write_text(index_page(base, files, galleries, settings["scenes"]), outputs["html"])

@@ -12,7 +12,7 @@ from slippulse.data.files import write_text
 from ..claims.claim_texts import read_text
 from ..report.document import write_html, write_pdf
 from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
-from .inputs import given
+from .inputs import load_inputs
 
 NEEDS = {
     "measured": {
@@ -28,29 +28,32 @@ HEAD += "from the run of the shipped one."
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: html and pdf, lists with a file for each document; verdicts."""
+    """Files: see `inputs_of`. Outputs: html and pdf (a file for each document), verdicts.
+
+    Settings: figures, config.
+    """
     inputs = inputs_of(files, settings)
-    # The writers wait for processes of their own, and so overlap.
+    # Each writer waits for a separate process, and so threads are enough to run them at once.
     with ThreadPoolExecutor() as pool:
-        writings = []
+        pending = []
         for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
             text = execute(inputs.manuscript / f"{document}.md", inputs)
             for write, path in zip((write_html, write_pdf), paths, strict=True):
-                writings.append(pool.submit(write, text, inputs.manuscript, path))
-    for writing in writings:
-        writing.result()
+                pending.append(pool.submit(write, text, inputs.manuscript, path))
+    for future in pending:
+        future.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
     write_text(f"{HEAD}\n" + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
 
 
 def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
-    """Read all that the report is written from."""
+    """Read everything that the report is written from."""
     return Inputs(
         config=settings["config"],
         shipped=read_text(files["shipped"]),
         claims=json.loads(Path(files["claims"]).read_text(encoding="utf-8")),
         findings=json.loads(Path(files["findings"]).read_text(encoding="utf-8")),
-        tables=given(files)[1],
+        tables=load_inputs(files).tables,
         figures=settings["figures"],
         figures_folder=Path(files["figures"][0]).resolve().parent,
         manuscript=Path(files["sources"][0]).resolve().parent,
@@ -59,15 +62,19 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
 
 
 def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
-    """Make the names of a document's cells for a notebook, which shows Markdown below the cell."""
+    """Return the names that the cells of a document use, for a notebook.
+
+    ``show`` gets Markdown; by default it is displayed below the cell.
+    """
     if show is None:
         from IPython.display import Markdown, display
 
         def show(markdown: str) -> None:
             display(Markdown(markdown))
 
-    here = Path.cwd()
-    project = next(path for path in (here, *here.parents) if (path / "config/config.yaml").exists())
+    folder = Path.cwd()
+    ancestors = (folder, *folder.parents)
+    project = next(path for path in ancestors if (path / "config/config.yaml").exists())
     results = project / "results"
     folders = {"measured": "measurements", "predicted": "predictions"}
     needed = NEEDS | {"predicted": NEEDS["measured"]}

@@ -1,4 +1,4 @@
-"""Write the list of scenes."""
+"""Write the page that lists all scenes."""
 
 from slippulse.data.files import write_text
 

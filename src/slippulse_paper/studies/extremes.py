@@ -98,7 +98,7 @@ def measured(case: Case, window: float) -> Outcome:
     if case.quantity == "releases":
         # A run without a release is flagged, which is the expected outcome here.
         return Outcome(float(run.attrs["releases"]), block_updates=run.attrs["block_updates"])
-    settings = {"front_window": window, "share": COVERED_FRACTION, "trailing_times": ()}
+    settings = {"front_window": window, "fraction": COVERED_FRACTION, "trailing_times": ()}
     numbers = measured_row(run, settings)
     flags = [numbers["run_flags"], numbers.get("transition_state", "")]
     if case.quantity in PULSE_QUANTITIES:
