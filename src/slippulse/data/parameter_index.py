@@ -84,13 +84,18 @@ class ParameterIndex(xr.Index):
         return True
 
     def isel(self, indexers: Mapping[Any, Any]) -> Self | None:
-        """Return the index of some runs; None for a single one, which has no dimension."""
+        """Return the index of the runs at some row numbers, which xarray calls an indexer.
+
+        Returns None if the result has no dimension ``point`` to index: for a single run, and for
+        row numbers along another dimension.
+        """
         rows = indexers["point"]
         if isinstance(rows, xr.Variable):
             if rows.dims != ("point",):
                 return None
             rows = rows.values
-        if np.ndim(rows) == 0 and not isinstance(rows, slice):
+        is_single_run = np.ndim(rows) == 0 and not isinstance(rows, slice)
+        if is_single_run:
             return None
         return type(self)({name: values[rows] for name, values in self.values.items()})
 
@@ -107,15 +112,23 @@ class ParameterIndex(xr.Index):
         return IndexSelResult({"point": np.flatnonzero(chosen)})
 
     def _matches(self, name: Hashable, label: Any, nearest: bool) -> np.ndarray:
-        """Return True for each run whose parameter is a value, one of several, or in a slice."""
+        """Return a mask of the runs that a label selects by their values of one parameter.
+
+        A label is one value, several values, or a slice, which includes both of its ends. Numbers
+        match up to rounding, or, if ``nearest`` is True, the nearest number that occurs matches.
+        """
         values = self.values[name]
         if isinstance(label, slice):
-            above = True if label.start is None else values >= label.start
-            below = True if label.stop is None else values <= label.stop
-            return np.broadcast_to(np.logical_and(above, below), values.shape)
+            matches = np.ones(values.shape, dtype=bool)
+            if label.start is not None:
+                matches &= values >= label.start
+            if label.stop is not None:
+                matches &= values <= label.stop
+            return matches
+        has_numbers = values.dtype.kind in "if"
         matches = np.zeros(values.shape, dtype=bool)
         for value in np.atleast_1d(np.asarray(label)).tolist():
-            if values.dtype.kind not in "if" or isinstance(value, str):
+            if not has_numbers or isinstance(value, str):
                 matches |= values == value
                 continue
             if nearest:

@@ -21,20 +21,22 @@ STALLED_WAIT_FRACTION = 0.03
 
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
-    """Return the transition under a displacement boundary, by the first stick and by the slip.
+    """Return time and length of the transition under a displacement boundary, by two definitions.
 
-    In the paper the transition occurs when the slip at x = 0 reaches 2 tau/gamma. The names with
-    "background" use the pre-stress of the level for tau (NaN if the two levels differ), the names
-    with "nucleation" use the pre-stress at x = 0. Both are NaN if the equation has an extra term.
+    The first definition is the first stick. The second one is printed in the paper: the slip at
+    x = 0 reaches 2 tau/gamma. Its numbers are returned for two values of tau. Names that end in
+    "background" use the pre-stress far from the nucleation, and are NaN if this differs between
+    left and right. Names that end in "nucleation" use the pre-stress at x = 0. All numbers of the
+    second definition are NaN if the equation of motion has an extra term.
     """
-    numbers = first_stick(run)
+    transition = first_stick(run)
     has_one_level = run.attrs["left"] == run.attrs["right"]
     background = run.attrs["left"] if has_one_level else np.nan
     for name, tau in (("background", background), ("nucleation", run.attrs["peak"])):
         time = slip_time(run, 2.0 * tau / gamma_without_extra_terms(run.attrs))
-        numbers[f"slip_time_{name}"] = time
-        numbers[f"slip_length_{name}"] = between_fronts(run, time)
-    return numbers
+        transition[f"slip_time_{name}"] = time
+        transition[f"slip_length_{name}"] = between_fronts(run, time)
+    return transition
 
 
 def first_stick(run: AnyRun) -> dict[str, float]:

@@ -473,7 +473,7 @@ def _check_table(x: np.ndarray) -> None:
         allowed = f">= {x[row - 2]:.10g}, the x of the row before"
         check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
     for row in (np.flatnonzero(x[2:] == x[:-2]) + 3)[:1].tolist():
-        allowed = "one x in at most 2 rows, which are a jump"
+        allowed = "one x in at most 2 rows, between which the pre-stress jumps"
         check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
 
 

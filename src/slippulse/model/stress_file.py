@@ -116,7 +116,7 @@ def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTab
             body = body[1:]
     positions = [_number(row, names, x_column) for row in body]
     values = [_number(row, names, tau_column) for row in body]
-    _check_rows([row.number for row in body], positions, values)
+    _check_rows([row.number for row in body], positions)
     return StressTable(positions, values, x_unit, tau_unit)
 
 
@@ -195,8 +195,12 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
     return value
 
 
-def _check_rows(rows: Sequence[int], x: Sequence[float], prestress: Sequence[float]) -> None:
-    """Raise StressFileError if there are fewer than two rows, or positions are not in order."""
+def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
+    """Raise StressFileError if there are fewer than two rows, or if positions are not in order.
+
+    ``rows`` are the row numbers in the file, for the message. Positions increase from row to row;
+    two rows, but not three, may have the same position, at which the pre-stress jumps.
+    """
     if len(rows) < 2:
         count = "one row" if rows else "no row"
         raise StressFileError(f"{count} of numbers; allowed: at least 2, from left to right")
@@ -206,7 +210,7 @@ def _check_rows(rows: Sequence[int], x: Sequence[float], prestress: Sequence[flo
             allowed = f">= {before:.10g}, the position in the row before"
             raise StressFileError(f"row {rows[index]}: {x[index]:.10g}; allowed: {allowed}")
         if index > 1 and x[index] == before == x[index - 2]:
-            allowed = "a position in at most 2 rows, which are a jump"
+            allowed = "a position in at most 2 rows, between which the pre-stress jumps"
             raise StressFileError(f"row {rows[index]}: {x[index]:.10g}; allowed: {allowed}")
 
 
@@ -230,7 +234,7 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
     if len(positions) != len(values):
         allowed = "equally many"
         raise StressFileError(f"{len(positions)} and {len(values)} values; allowed: {allowed}")
-    _check_rows(range(1, len(values) + 1), positions, values)
+    _check_rows(range(1, len(values) + 1), positions)
     units = [str(data[name].attrs.get("units", "")) for name in (x_name, tau_name)]
     return StressTable(positions, values, units[0], units[1])
 

@@ -92,17 +92,20 @@ def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the slipped part with a margin, within the sampled positions.
+    They enclose the released blocks (all blocks if none was released) with a margin. If released
+    blocks reach beyond the sampled positions, the range ends there at the last sample.
     """
-    slipped = run["x"].values[np.isfinite(run["release_time"].values)]
-    slipped = slipped if slipped.size else run["x"].values
-    margin = max(MARGIN_FRACTION * (slipped[-1] - slipped[0]), run.attrs["dx"])
-    if run.sizes.get("sample_position", 0) < 2:
-        return float(slipped[0] - margin), float(slipped[-1] + margin)
+    released = run["x"].values[np.isfinite(run["release_time"].values)]
+    drawn = released if released.size else run["x"].values
+    margin = max(MARGIN_FRACTION * (drawn[-1] - drawn[0]), run.attrs["dx"])
+    sample_count = run.sizes.get("sample_position", 0)
+    if sample_count < 2:
+        return float(drawn[0] - margin), float(drawn[-1] + margin)
     first, last = run["sample_position"].values[[0, -1]]
-    margin = max(margin, 3.0 * (last - first) / max(1, run.sizes["sample_position"] - 1))
-    lower = slipped[0] - margin if slipped[0] > first else first
-    upper = slipped[-1] + margin if slipped[-1] < last else last
+    # The margin is at least three intervals between samples wide.
+    margin = max(margin, 3.0 * (last - first) / (sample_count - 1))
+    lower = drawn[0] - margin if drawn[0] > first else first
+    upper = drawn[-1] + margin if drawn[-1] < last else last
     return float(lower), float(upper)
 
 

@@ -192,8 +192,12 @@ def _nucleation_width(prestress: Prestress) -> float:
 
 
 def _spacings_with_springs(demand: Demand) -> list[float]:
-    """Return the largest spacing for each number of a scene with leaf springs."""
+    """Return the largest spacing that each measured quantity allows, in a scene with leaf springs.
+
+    Each error is a constant times a power of dx, and is solved for dx.
+    """
     nucleation = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
+    # The part of the errors of T_trans and L_trans that the nucleation causes, divided by dx.
     start_error = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation
     spacings = [nucleation / MIN_BLOCKS, demand.error / start_error]
     for level in demand.levels:
@@ -202,14 +206,19 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
         speed = cached_front_speed(level, demand.damping_ratio, demand.release)
         # In the limit dx -> 0, damping affects the pulse only through the front speed.
         width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
+        spacings.append(width / MIN_BLOCKS)
+        # The thickness of the boundary layer that damping makes at the front, in blocks.
         layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
         # The error of the front speed is this constant times (dx/width)^2.
-        constant = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
-        spacings += [width / MIN_BLOCKS, width * math.sqrt(demand.error / constant)]
-        spacings.append(demand.error / (start_error + SLOW_FRONT_ERROR / width))
+        speed_error = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
+        spacings.append(width * math.sqrt(demand.error / speed_error))
+        # The errors of T_trans and L_trans are this constant times dx.
+        transition_error = start_error + SLOW_FRONT_ERROR / width
+        spacings.append(demand.error / transition_error)
         if demand.fields:
-            constant = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
-            spacings.append(demand.error * width / constant)
+            # The errors of pulse width, slip and peak velocity are this constant times dx/width.
+            pulse_error = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
+            spacings.append(demand.error * width / pulse_error)
     return spacings
 
 

@@ -48,7 +48,11 @@ def shift_polynomial(derivatives, lowest, last, top, s):
 
 @kernel_function(inline=True)
 def velocity_at(w, i, top, s):
-    """Return the velocity of a block at a time s after the step began."""
+    """Return the velocity of block i at a time s after the step began.
+
+    ``w`` holds the time derivatives of slip at the start of the step, up to derivative ``top``. The
+    Taylor series of the velocity begins with derivative 1 and is summed by Horner's rule.
+    """
     value = w[top, i]
     for k in range(top - 1, 0, -1):
         value = w[k, i] + s * RECIPROCALS[k] * value
@@ -101,19 +105,25 @@ def hold_block(centre, w, offset, block, now, top):
 def change_weakening(centre, motion, law_kink, block, now, top):
     """Change the slope of a block's friction at a kink of its law.
 
-    ``centre`` receives the time derivatives of the change of slip. Returns the change of the time
-    derivative of friction times velocity.
+    Friction falls by the slope times its argument, which is the slip or the slip rate (see
+    `LawKink`). A change of the slope therefore changes derivative k of slip by itself times
+    derivative k - 2 of the argument. ``centre`` receives these changes. Friction is continuous at
+    the kink, so derivative 2 does not change.
+
+    Returns the change of the time derivative of the power of friction (friction times velocity).
     """
     if law_kink is not None:
         for k in range(1, top + 1):
             centre[k] = motion.w[k, block]
         shift_polynomial(centre, np.int64(1), top, top, now)
-        velocity, before = centre[VELOCITY], motion.weakening_slope[block]
+        velocity, slope_before = centre[VELOCITY], motion.weakening_slope[block]
         switch_weakening(motion, law_kink, block)
-        change = motion.weakening_slope[block] - before
+        slope_change = motion.weakening_slope[block] - slope_before
+        # From the highest derivative down, because lower ones are read before they are overwritten.
         for k in range(top, 2, -1):
-            centre[k] = change * centre[k - 2 + law_kink.rate]
+            centre[k] = slope_change * centre[k - 2 + law_kink.rate]
         centre[ACCELERATION] = 0.0
+        # The time derivative of friction changes by minus the change of derivative 3 of slip.
         return -centre[3] * velocity
     return 0.0
 

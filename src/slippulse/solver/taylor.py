@@ -224,7 +224,14 @@ def set_velocities_at_early_end(motion, scratch, h, order):
 
 @inlined_kernel
 def take_event(medium, motion, segments, scratch, history, event, instant, h):
-    """Let one event happen and count it. Returns False if a velocity is not finite."""
+    """Let one event happen, and add it to the history, to the energy losses and to the counters.
+
+    event : `Event`, its time counted from the start of the step
+    instant : the time of the event since the start of the run
+    h : duration of the step
+
+    Returns False if a velocity is not finite.
+    """
     top = motion.w.shape[0] - 1
     step_events, tally = scratch.step_events, history.tally
     block, is_stick = event.block, event.is_stick
@@ -244,12 +251,15 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
+    # The viscous loss is beta/dx times the sum of (v_{i+1} - v_i)^2 over pairs of neighbours. On a
+    # mirrored lattice each pair counts twice, and each block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
     weight = 2.0 if medium.is_mirrored and block > 1 else 1.0
     work_slope_change = weight * medium.dx * effect.work_slope_change
     add_slope_change(step_events.work_slope_changes, work_slope_change, event.time)
+    # Keep the blocks that changed, for a step that ends early.
     n = step_events.count.n
     step_events.first[n], step_events.last[n] = effect.first, effect.last
     step_events.stuck_block[n] = block if is_stick else -1

@@ -81,7 +81,16 @@ class SteadyPulse:
 def pulse_at_speed(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
-    """Return the steady pulse (`theory.steady_pulse`) behind a front of a given speed."""
+    """Return the steady pulse (`theory.steady_pulse`) behind a front of a given speed.
+
+    With xi = x - v t, the equation of motion inside the pulse is
+
+        beta v u''' + (v^2 - 1) u'' - alpha v u' + gamma u = tau_0.
+
+    Its solution oscillates as exp(p xi) cos(q xi) around u = tau_0/gamma, where p +- i q is the
+    complex pair of roots of the characteristic polynomial. The pulse ends after half a wavelength,
+    pi/q. Raises ValueError if the roots are not complex, or if a number overflows.
+    """
     check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)
     tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
@@ -93,8 +102,8 @@ def pulse_at_speed(
             q = float(np.sqrt(gamma / inertia - p**2))
         else:
             roots = np.roots([beta * v, inertia, -alpha * v, gamma])
-            pair = roots[np.argmax(roots.imag)]
-            p, q = float(pair.real), float(pair.imag)
+            complex_root = roots[np.argmax(roots.imag)]
+            p, q = float(complex_root.real), float(complex_root.imag)
         width = np.pi / q
         slip = tau0 / gamma * (1.0 + np.exp(-p * width))
         amplitude = v * tau0 * np.hypot(p, q) / gamma
@@ -104,12 +113,7 @@ def pulse_at_speed(
         if not all(0.0 < size < math.inf for size in (width, slip, peak)):
             raise OverflowError
     except (ArithmeticError, ValueError):
-        place, critical = f"at gamma = {gamma:.6g}", critical_rate_strengthening(gamma, v)
-        message = f"speed: {v:.6g} {place}; allowed: values whose pulse can be computed"
-        if abs(alpha) > 0.5 * critical:
-            allowed = f"less than {critical:.6g} in size {place}, speed = {v:.6g} without beta"
-            message = f"rate_strengthening: {alpha!r}; allowed: {allowed}, or no pulse is steady"
-        raise ValueError(message) from None
+        raise ValueError(_reason_for_no_pulse(gamma, v, alpha)) from None
     return SteadyPulse(
         tau0=tau0,
         gamma=gamma,
@@ -123,6 +127,17 @@ def pulse_at_speed(
         wavenumber=q,
         rate_strengthening=alpha,
     )
+
+
+def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) -> str:
+    """Return the message of an error: the rate strengthening is too large, or else the speed."""
+    critical = critical_rate_strengthening(gamma, speed)
+    place = f"at gamma = {gamma:.6g}"
+    if abs(rate_strengthening) > 0.5 * critical:
+        allowed = f"less than {critical:.6g} in size {place}, speed = {speed:.6g} without beta"
+        refused = f"rate_strengthening: {rate_strengthening!r}"
+        return f"{refused}; allowed: {allowed}, or no pulse is steady"
+    return f"speed: {speed:.6g} {place}; allowed: values whose pulse can be computed"
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:

@@ -370,17 +370,21 @@ def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
 
 
 def _bessel(z: np.ndarray, order: int) -> np.ndarray:
-    """Return J0(sqrt z) or its derivative of order 1 or 2, from scipy's Bessel functions."""
+    """Return f(z) = J0(sqrt z), or its derivative of order 1 or 2, from scipy's Bessel functions.
+
+    For negative z, f(z) = I0(sqrt(-z)).
+    """
     root = np.maximum(np.sqrt(np.abs(z)), 1e-9)
-    outside = np.where(z < 0.0, root, 0.0)
-    even = np.where(z >= 0.0, j0(root), i0(outside))
+    # I0 and I1 would overflow at the square root of a large positive z, where they are not needed.
+    root_of_negative = np.where(z < 0.0, root, 0.0)
+    value = np.where(z >= 0.0, j0(root), i0(root_of_negative))
     if order == 0:
-        return even
-    slope = np.where(z >= 0.0, -j1(root), -i1(outside)) / (2.0 * root)
+        return value
+    slope = np.where(z >= 0.0, -j1(root), -i1(root_of_negative)) / (2.0 * root)
     if order == 1:
         return slope
-    # The second derivative follows from Bessel's equation, z f'' + f' + f/4 = 0. Near 0, where its
-    # terms cancel, it is a series.
+    # The second derivative follows from Bessel's equation, z f'' + f' + f/4 = 0. Near z = 0, where
+    # the terms of this equation cancel, the Taylor series is used.
     small = np.abs(z) < 0.1
     series = (1.0 - z / 12.0 * (1.0 - z / 32.0 * (1.0 - z / 60.0 * (1.0 - z / 96.0)))) / 32.0
-    return np.where(small, series, -(slope + 0.25 * even) / np.where(small, 1.0, z))
+    return np.where(small, series, -(slope + 0.25 * value) / np.where(small, 1.0, z))

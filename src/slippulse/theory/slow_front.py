@@ -207,35 +207,50 @@ class FreeBoundary:
         self.known_integral = self.weight.sum(axis=1) if self.has_unit_kernel else np.zeros(0)
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
-        """Return the step to subtract from positions, or None if the front would be unstable."""
+        """Return the step of Newton's method, which is to be subtracted from the positions x.
+
+        None if the front would be unstable: in some row, the integral of the equation would grow if
+        the front moved further.
+        """
         if self.has_unit_kernel:
             return self.newton_step_with_unit_kernel(x)
+        kernel, kernel_slope = self.kernel_and_slope(x)
+        # The integral over the known curve, from the entry of each row to x0.
+        crossed = self.t_plus_x.size
+        known = (self.weight * kernel[:, :crossed]).sum(axis=1)
+        known_slope = (self.weight * kernel_slope[:, :crossed]).sum(axis=1)
+        # The integral over the chunk, from x0 to each position X, is the sum of two: with a kernel
+        # of 1, which is exact, and with the kernel minus 1, for which
+        # Int tau (K - 1) dX = Int tau (K - 1) dX/ds ds is computed from the nodes.
+        prestress_integral, tau = self.crossed_by_front(x)
+        slope_of_integral = tau + known_slope
+        if not np.all(slope_of_integral < 0.0):
+            return None
+        dx_ds = NODES_TO_DERIVATIVES @ x
+        excess = NODES_TO_INTEGRALS * (kernel[:, crossed:] - 1.0)
+        residual = known + prestress_integral + excess @ (tau * dx_ds)
+        # The matrix is the derivative of the residual of each row with respect to the positions at
+        # all nodes. A position changes tau and dX/ds at its node, the kernel of its own row, and
+        # the kernel between its node and the other rows, by the opposite amount.
+        by_dx_ds = (excess * tau) @ NODES_TO_DERIVATIVES
+        by_tau = excess * (NODES_TO_DERIVATIVES @ tau)
+        by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, crossed:] * (tau * dx_ds)
+        matrix = by_dx_ds + by_tau - by_kernel
+        matrix += np.diag(slope_of_integral + by_kernel.sum(axis=1))
+        return np.linalg.solve(matrix, residual)
+
+    def kernel_and_slope(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the kernel E J0, [row, node], and its derivative with respect to X of the row."""
         k, alpha = self.front.stiffness, self.front.alpha
         eta = self.t_minus_x + 2.0 * x
         d_eta = eta[:, None] - np.append(self.t_plus_x, eta)
         z = k * self.d_xi * d_eta
-        kernel = kernel_function(k, z, z)
-        lasting = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
-        # The kernel of each row, and its derivative with respect to the position of the row.
-        value = lasting * kernel(0)
-        slope = 2.0 * k * lasting * kernel(1) * self.d_xi - 0.5 * alpha * value
-        crossed = self.t_plus_x.size
-        by_entries = (self.weight * value[:, :crossed]).sum(axis=1)
-        growth = (self.weight * slope[:, :crossed]).sum(axis=1)
-        # The integral from x0 to each position, in two parts: with a kernel of 1, which is exact,
-        # and with the difference of the kernel from 1, at the nodes.
-        area, tau = self.crossed_by_front(x)
-        fall = tau + growth
-        if not np.all(fall < 0.0):
-            return None
-        # The derivative of the integral at one node with respect to the positions at all nodes.
-        excess, slopes = NODES_TO_INTEGRALS * (value[:, crossed:] - 1.0), NODES_TO_DERIVATIVES @ x
-        turn = NODES_TO_INTEGRALS * slope[:, crossed:] * (tau * slopes)
-        matrix = (
-            (excess * tau) @ NODES_TO_DERIVATIVES + excess * (NODES_TO_DERIVATIVES @ tau) - turn
-        )
-        matrix += np.diag(fall + turn.sum(axis=1))
-        return np.linalg.solve(matrix, by_entries + area + excess @ (tau * slopes))
+        bessel = kernel_function(k, z, z)
+        exponential = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
+        kernel = exponential * bessel(0)
+        # The derivative of eta with respect to X is 2.
+        slope = 2.0 * k * exponential * bessel(1) * self.d_xi - 0.5 * alpha * kernel
+        return kernel, slope
 
     def newton_step_with_unit_kernel(self, x: np.ndarray) -> np.ndarray | None:
         """Return the step of Newton's method if the kernel is 1."""

@@ -109,27 +109,35 @@ class StickSearch:
         return VelocitySamples(x, time, velocity.reshape(time.shape))
 
     def _zeros_next_to_minima(self, samples: VelocitySamples, first: np.ndarray) -> np.ndarray:
-        """Return zeros next to positive minima, or NaN where there is none.
+        """Return the first zero of du/dt in a dip between samples, for each row; NaN if none.
 
-        Only columns before the first one below 0 are searched.
+        A sample is a minimum if it is lower than the sample before it, and not higher than the one
+        after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
+        are positive, this is repeated around the lowest of them. ``first`` has the column of the
+        first sample at or below 0 in each row; later minima are ignored.
         """
-        out = np.full(samples.x.shape, np.nan)
+        first_zeros = np.full(samples.x.shape, np.nan)
         change = np.diff(samples.velocity, axis=1)
-        lowest = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
-        lowest &= samples.time[:, 2:] > samples.time[:, 1:-1]
-        rows, before = np.nonzero(lowest & (np.arange(1, change.shape[1]) < first[:, None]))
-        low, high = samples.time[rows, before], samples.time[rows, before + 2]
+        # Column j of the masks belongs to sample j + 1, the middle one of three.
+        is_minimum = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
+        # Samples at the end of a row may repeat the final time.
+        is_minimum &= samples.time[:, 2:] > samples.time[:, 1:-1]
+        is_before_first = np.arange(1, change.shape[1]) < first[:, None]
+        # A row occurs once for each of its minima.
+        rows, before = np.nonzero(is_minimum & is_before_first)
+        start, end = samples.time[rows, before], samples.time[rows, before + 2]
         for _ in range(2 if rows.size else 0):
-            fine = self._sample(samples.x[rows], np.linspace(low, high, FINE_PARTS + 1, axis=1))
-            below = np.argmax(fine.velocity <= 0.0, axis=1)
-            hits = np.flatnonzero(below)
-            zeros = self._zeros_in_steps(fine, hits, below[hits])
-            out[rows[hits]] = np.fmin(out[rows[hits]], zeros)
+            fine = self._sample(samples.x[rows], np.linspace(start, end, FINE_PARTS + 1, axis=1))
+            # The first fine sample is positive, so column 0 means that no sample is at or below 0.
+            column = np.argmax(fine.velocity <= 0.0, axis=1)
+            with_zero = np.flatnonzero(column)
+            zeros = self._zeros_in_steps(fine, with_zero, column[with_zero])
+            first_zeros[rows[with_zero]] = np.fmin(first_zeros[rows[with_zero]], zeros)
             positive = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
-            middle = np.clip(np.argmin(fine.velocity[positive], axis=1), 1, FINE_PARTS - 1)
+            lowest = np.clip(np.argmin(fine.velocity[positive], axis=1), 1, FINE_PARTS - 1)
             rows = rows[positive]
-            low, high = fine.time[positive, middle - 1], fine.time[positive, middle + 1]
-        return out
+            start, end = fine.time[positive, lowest - 1], fine.time[positive, lowest + 1]
+        return first_zeros
 
     def _zeros_in_steps(
         self, samples: VelocitySamples, rows: np.ndarray, columns: np.ndarray
