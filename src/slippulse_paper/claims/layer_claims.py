@@ -91,7 +91,10 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 
 
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
-    """Judge stability where the fracture energy is below the energy that the layer releases."""
+    """Judge that pulses are steady if the fracture energy is below the energy that is released.
+
+    Fracture energies are divided by the energy that the layer releases, so that the limit is 1.
+    """
     points = evidence.tables["layer_map"]
     brittle = points[points["fracture_energy"] < 1.0]
     tough = points[points["fracture_energy"] > 1.0]
@@ -101,11 +104,11 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     further["dying with more fracture energy than is released"] = float(
         (tough["outcome"] == "dying").sum()
     )
-    decided = [_holds(outcome) for outcome in brittle["outcome"]]
+    decided = [_is_steady(outcome) for outcome in brittle["outcome"]]
     return Qualitative(decided=decided, further=further)
 
 
-def _holds(outcome: str) -> bool | None:
+def _is_steady(outcome: str) -> bool | None:
     """Return True if pulses from both sides settle; None if one of them was not tested."""
     return {"steady": True, "growing": False, "dying": False}.get(outcome)
 

@@ -39,16 +39,21 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
 
 
 def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
-    """In every ensemble pulses come to differ from each other, die, or become cracks."""
+    """Judge that a rough pre-stress changes the pulses under a stress boundary, in all ensembles.
+
+    The pulses of an ensemble have changed if their velocities differ, with a relative standard
+    deviation above the tolerance, or if one of them has died.
+    """
     rows = ensembles(evidence, "stress")
-    spread = rows["velocity_deviation"] / rows["velocity_mean"]
-    changed = (spread > evidence.tolerance(id)) | (rows["deaths"] > 0)
-    smallest = rows.loc[rows["deviation"].idxmin()]
+    velocity_spread = rows["velocity_deviation"] / rows["velocity_mean"]
+    changed = (velocity_spread > evidence.tolerance(id)) | (rows["deaths"] > 0)
+    # The ensemble with the smoothest pre-stress is shown with the claim.
+    smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {
-        "smallest deviation": smallest["deviation"],
-        "spread of its velocities": float(spread[smallest.name]),
-        "its cracks": smallest["cracks"],
-        "its deaths": smallest["deaths"],
+        "smallest deviation": smoothest["deviation"],
+        "spread of its velocities": float(velocity_spread[smoothest.name]),
+        "its cracks": smoothest["cracks"],
+        "its deaths": smoothest["deaths"],
     }
     return Qualitative(decided=[*changed], further=further)
 

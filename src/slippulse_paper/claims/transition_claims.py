@@ -231,7 +231,11 @@ def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
-    """Judge the exponents of T and L as powers of their estimates; the worse of the two counts."""
+    """Judge if the transition scales like the paper's estimates of its time T and its length L.
+
+    T and L of the runs are fitted as powers of their estimates, and the exponent should be 1. The
+    claim is judged by T or L, whichever has its exponent farther from 1.
+    """
     displacement = boundary == "displacement"
     columns = ("left", "gamma") if displacement else ("left",)
 
@@ -240,7 +244,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
             symbol: exponent(tables, quantity, f"estimated_{quantity}", columns)
             for quantity, symbol in SYMBOLS.items()
         }
-        symbol = max(exponents, key=lambda name: abs(exponents[name][0] - 1.0))
+        distances = {symbol: abs(value - 1.0) for symbol, (value, _) in exponents.items()}
+        symbol = max(distances, key=lambda name: distances[name])
         measured, uncertainty = map(np.atleast_1d, exponents[symbol])
         return Equation(
             tolerance=evidence.tolerance(id),

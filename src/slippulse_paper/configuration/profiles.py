@@ -127,8 +127,12 @@ def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
 
 
 def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return expanded profiles with the first and the last seed of each ensemble only."""
-    numbers = [label["profile"] for label in labels_of(profiles)]
-    last = dict(zip(numbers, range(len(numbers)), strict=True))
-    first = dict(zip(reversed(numbers), reversed(range(len(numbers))), strict=True))
-    return [profiles[index] for index in sorted({*first.values(), *last.values()})]
+    """Return the expanded profiles without the seeds between the first and the last of an ensemble.
+
+    A profile without seeds is kept.
+    """
+    indices: dict[float, list[int]] = {}
+    for index, label in enumerate(labels_of(profiles)):
+        indices.setdefault(label["profile"], []).append(index)
+    ends = {index for ensemble in indices.values() for index in (ensemble[0], ensemble[-1])}
+    return [profiles[index] for index in sorted(ends)]

@@ -5,6 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from slippulse.model.prestress import Prestress
@@ -71,27 +72,26 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
+    """Draw the final regimes, and velocity profiles of numbered regimes on the right.
+
+    Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma. Panels
+    b and c show planes of the pre-stress on the left and on the right, one for each boundary.
+    """
     figure = Figure(figsize=(PAGE_WIDTH, 5.0), layout="constrained")
     left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
     above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
     symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
+    # The number of a profile is also written next to its regime in the plane.
     numbers = {}
     for number, rows in zip(NUMBERS, profiles, strict=False):
-        numbers[tuple(rows[["boundary", "regime"]].iloc[0])] = f"{number} "
+        boundary, regime = rows[["boundary", "regime"]].iloc[0]
+        numbers[boundary, regime] = f"{number} "
     panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
-    for line, plane, letter, (boundary, title) in panels:
+    for equal_levels, plane, letter, (boundary, title) in panels:
         rows = table[table["boundary"] == boundary]
-        areas = rows[rows["role"] == "area"].groupby(["series", "regime"])[["left", "right"]].mean()
-        for level in (-0.5, 0.5):
-            # The regime of equal levels is that of the quadrant with this centre.
-            regime = areas[areas.eq(level).all(axis="columns")].index[0][1]
-            colour, text = LOOKS[regime]
-            line.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
-            look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
-            line.annotate(text.replace("\n", " "), (level, 1.02), **look)
-        draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
+        draw_regimes_of_equal_levels(equal_levels, rows[rows["role"] == "area"])
+        draw_runs(equal_levels, rows[rows["role"] == "symmetric"], "gamma")
         draw_plane(plane, rows[rows["role"].isin(["area", "line"])], numbers)
         draw_runs(plane, rows[rows["role"] == "run"], "right")
         plane.set_title(title, loc="center")
@@ -101,13 +101,33 @@ def draw(table: pd.DataFrame) -> Figure:
     symmetric[1].set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
     panel_letter(symmetric[0], "a")
     draw_profiles(strips, profiles)
+    legend_below(figure, legend_entries(table), 3)
+    return figure
+
+
+def legend_entries(table: pd.DataFrame) -> list[Line2D]:
+    """Return one legend entry for each kind of mark that the table of runs needs."""
     faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
     look = MARK | {"marker": "o"}
     handles = [entry(label, markerfacecolor=face, **look) for label, face in faces.items()]
     if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
-    legend_below(figure, handles, 3)
-    return figure
+    return handles
+
+
+def draw_regimes_of_equal_levels(axes: Axes, areas: pd.DataFrame) -> None:
+    """Colour and label the regimes of a negative and of a positive pre-stress on both sides.
+
+    They are the regimes of the two quadrants of the plane in which both levels have the same sign.
+    """
+    centres = areas.groupby(["series", "regime"])[["left", "right"]].mean()
+    for level in (-0.5, 0.5):
+        has_this_centre = centres.eq(level).all(axis="columns")
+        _, regime = centres[has_this_centre].index[0]
+        colour, text = LOOKS[regime]
+        axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
+        look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
+        axes.annotate(text.replace("\n", " "), (level, 1.02), **look)
 
 
 def tint(colour: str) -> tuple[float, ...]:
@@ -116,12 +136,19 @@ def tint(colour: str) -> tuple[float, ...]:
 
 
 def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> None:
-    """Draw the regimes as areas, and as lines where one level is 0, each with one label."""
+    """Draw the regimes of the plane of pre-stress on the left and on the right.
+
+    A regime fills a quadrant, a narrow area, or a line on which one level is 0. Narrow areas and
+    lines occur twice, as mirror images, and only those with the lower level on the left are
+    labelled. numbers has the numbers of the regimes whose velocity profiles are drawn, by boundary
+    and regime.
+    """
     look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
     for (role, _), part in rows.groupby(["role", "series"], sort=False):
         boundary, regime = part[["boundary", "regime"]].iloc[0]
         corners = part[["left", "right"]].to_numpy()
-        (left, right), (colour, text) = corners.mean(axis=0), LOOKS[regime]
+        left, right = corners.mean(axis=0)
+        colour, text = LOOKS[regime]
         text = numbers.get((boundary, regime), "") + text
         if role == "line":
             axes.plot(*corners.T, color=colour, linewidth=3.0, solid_capstyle="butt", gid=regime)
@@ -129,9 +156,11 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
                 axes.text(left, -0.1, text, **look)
             continue
         axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
-        if len(corners) == 4:
+        is_quadrant = len(corners) == 4
+        if is_quadrant:
             axes.text(left, right + 0.1 if right > 0.0 else right, text, **look)
         elif left < right:
+            # A narrow area along a border has its label outside, with a line to it.
             line = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
             axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **look)
     ticks = (-1, 0, 1)

@@ -2,12 +2,15 @@
 that becomes a single pulse.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.data.point import point
+from slippulse.data.points import AnyRun
 from slippulse.measurement.front_paths import front_position
 from slippulse.plotting import space_time, style
 from slippulse.plotting.style import BLACK, ORANGE, PAGE_WIDTH, PURPLE, TEXT_OUTLINE, Look
@@ -28,29 +31,32 @@ PANELS = {"displacement": "a", "stress": "b"}
 COLUMNS = ["panel", "role", "series", "time", "position", "value"]
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of the first run of both sweeps, with these additional roles.
+class RuptureExtent(NamedTuple):
+    """The position of the left front and the rupture length, at one time."""
 
-    exact_front, exact_trailing : edges of the exact solution
-    measured, paper, last_release : both fronts (series) at a time, and their distance (value)
-    fraction : part of |x_minus| that the left front has covered at T_trans, with the stress held
+    time: float
+    left: float
+    length: float
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Return the space-time rows of the first run of each sweep, with these additional roles.
+
+    exact_front, exact_trailing : front and trailing edge of the exact solution
+    measured, paper, last_release : a transition or arrest, with its time, the positions of the left
+        and the right front (series), and the rupture length between them (value)
+    fraction : the fraction of |x_minus| that the left front has covered at T_trans (stress boundary
+        only)
     """
     parts = []
     for panel in PANELS:
         name = f"space_time_{panel}"
-        run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
-        rows, numbers = [space_time.run_table(run)], tables[name].iloc[0]
-        time, length = numbers["transition_time"], numbers["transition_length"]
-        transitions = {"measured": (time, front_position(run, time, "right") - length, length)}
-        length = numbers["paper_transition_length"]
-        transitions["paper"] = (numbers["paper_transition_time"], -0.5 * length, length)
-        if "last_release_time" in numbers:
-            names = ("last_release_time", "last_release_distance", "last_release_length")
-            time, distance, length = numbers[[*names]]
-            transitions["last_release"] = (time, -distance, length)
-        for role, (time, left, length) in transitions.items():
+        run = point(data[name], 0)
+        rows = [space_time.run_table(run)]
+        for role, (time, left, length) in ruptures(run, tables[name].iloc[0]).items():
             ends = {"series": ["left", "right"], "position": [left, left + length]}
             rows.append(pd.DataFrame(ends).assign(role=role, time=time, value=length))
+        exact = tables["exact_space_time"].query("simulation == @name")
         for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time")):
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
@@ -60,6 +66,23 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             )
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
+
+
+def ruptures(run: AnyRun, measured: pd.Series) -> dict[str, RuptureExtent]:
+    """Return the extent of the rupture at its transition and arrest, by role (see `table`)."""
+    time, length = measured["transition_time"], measured["transition_length"]
+    left = front_position(run, time, "right") - length
+    extents = {"measured": RuptureExtent(time, left, length)}
+    # The estimates of the paper have no position, and are drawn symmetric about x = 0.
+    length = measured["paper_transition_length"]
+    extents["paper"] = RuptureExtent(measured["paper_transition_time"], -0.5 * length, length)
+    if "last_release_time" in measured:
+        extents["last_release"] = RuptureExtent(
+            time=measured["last_release_time"],
+            left=-measured["last_release_distance"],
+            length=measured["last_release_length"],
+        )
+    return extents
 
 
 def draw(table: pd.DataFrame) -> Figure:

@@ -99,24 +99,28 @@ def window(run: xr.Dataset) -> tuple[float, float]:
 
 
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
-    """Return names and sample indices of the drawn instants.
+    """Return the name of each drawn instant, and the index of its sample in time.
 
-    They are the start, half of the time of the first stick, the first stick, and two later ones at
-    which all sliding blocks are in view.
+    The instants are the start, half of the time of the first stick, the first stick, the last
+    instant at which no block outside of the view has slipped, and one halfway to it.
     """
     low, high = window(run)
     x, velocity = run["sample_position"].values, run["sample_velocity"].values
     slip = run["sample_slip"].values
-    in_view = ~(slip[:, (x <= low) | (x >= high)] > 0.0).any(axis=1)
-    last = int(np.flatnonzero(in_view)[-1])
+    is_outside = (x <= low) | (x >= high)
+    slipped_outside = (slip[:, is_outside] > 0.0).any(axis=1)
+    last = int(np.flatnonzero(~slipped_outside)[-1])
     stuck = (slip > 0.0) & (velocity <= 0.0)
-    # A run in which no block sticks remains a crack until it ends.
+    # If no block sticks, the run remains a crack until the last instant.
     stick = int(np.argmax(stuck.any(axis=1))) if stuck[: last + 1].any() else last
-    sides = sum(bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0))
-    ending = ("arrested", "pulse", "two pulses")[sides] if stuck[last, x == 0.0].all() else "crack"
+    last_name = "crack"
+    if stuck[last, x == 0.0].all():
+        is_sliding = [bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0)]
+        last_name = ("arrested", "pulse", "two pulses")[sum(is_sliding)]
     later = (stick + last) // 2
-    # Instants that fall on the same sample keep the last name.
-    names = {0: "start", stick // 2: "crack", stick: "first stick", later: "later", last: ending}
+    # If two instants fall on the same sample, the name of the later one is kept.
+    names = {0: "start", stick // 2: "crack", stick: "first stick", later: "later"}
+    names[last] = last_name
     return [(name, sample) for sample, name in sorted(names.items())]
 
 

@@ -114,16 +114,21 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
 
 
 def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
-    """Draw the slip of pulses that enter another pre-stress, and of those in a uniform one."""
+    """Draw the slip that pulses leave behind, as a function of position.
+
+    A pulse with a dotted line passes from the pre-stress ``before`` to tau_0 on its way. A pulse
+    with a solid line has the same pre-stress all the way.
+    """
     for (tau0, before), rows in steps.groupby(["tau0", "before"]):
         rows = rows.sort_values("sample_position")
-        uniform = tau0 == before
-        look: Look = {"color": style.colour("tau_0", tau0), "linestyle": "-" if uniform else ":"}
-        label = rf"$\tau_0 = {tau0:g}$" if uniform else rf"${before:g}$, then ${tau0:g}$"
-        look |= {"marker": "o", "label": label} | ({} if uniform else OPEN_MARKER)
+        look: Look = {"color": style.colour("tau_0", tau0), "marker": "o"}
+        if tau0 == before:
+            look |= {"linestyle": "-", "label": rf"$\tau_0 = {tau0:g}$"}
+        else:
+            look |= {"linestyle": ":", "label": rf"${before:g}$, then ${tau0:g}$"} | OPEN_MARKER
         axes.plot(rows["sample_position"], rows["pulse_slip"], **look)
     axes.set(xlabel=r"position $x/H$", ylabel=r"slip left behind")
-    axes.set_title(style.conditions(True, gamma=round(float(steps["gamma"].iloc[0]), 3)))
+    axes.set_title(style.conditions(held=True, gamma=round(float(steps["gamma"].iloc[0]), 3)))
     axes.set_ylim(0.8 * steps["pulse_slip"].min(), 1.02 * steps["pulse_slip"].max())
     axes.legend(loc="lower right", fontsize=SMALL_TEXT, ncols=2)
 

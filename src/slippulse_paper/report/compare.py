@@ -146,17 +146,24 @@ def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.
 def _list_runs(
     result: Comparison, name: str, tables: Tables, joined: JoinedRuns, varying: list[str]
 ) -> None:
-    """Record how many runs are joined, and list the runs of one folder alone."""
-    only: dict[str, list[str]] = {}
-    for side, table, rows in zip(("new", "old"), tables, joined[3:], strict=True):
-        only[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
-        which = "this" if side == "new" else "the other"
-        result.other += [f"{name}: only in {which} tree: {run}" for run in only[side]]
+    """Record in the result how many runs were joined, and which runs are in one folder only.
+
+    name : file name of the table
+    tables : the table of the new folder and the table of the old folder
+    varying : parameters that describe a run
+    """
+    unmatched: dict[str, list[str]] = {}
+    for side, tree, table, rows in (
+        ("new", "this", tables[0], joined.only_new),
+        ("old", "the other", tables[1], joined.only_old),
+    ):
+        unmatched[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
+        result.other += [f"{name}: only in {tree} tree: {run}" for run in unmatched[side]]
     counts = {"same": len(joined.same), "altered": len(joined.altered)}
-    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **only})
-    if counts["altered"]:
-        many = counts["altered"] > 1
-        pairs = f"{counts['altered']} pairs of runs differ" if many else "1 pair of runs differs"
+    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **unmatched})
+    altered = counts["altered"]
+    if altered:
+        pairs = "1 pair of runs differs" if altered == 1 else f"{altered} pairs of runs differ"
         result.other.append(f"{name}: {pairs} in {', '.join(joined.keys)}")
 
 

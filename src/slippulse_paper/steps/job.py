@@ -83,7 +83,10 @@ def run_job(job: Job) -> None:
 def _write_records(
     job: Job, configuration: str, input_states: Mapping[str, FileState], seconds: float
 ) -> None:
-    """Write one record for each folder with outputs of a job; only the first has its seconds."""
+    """Write a record of the job into each folder that has some of its outputs.
+
+    Only the first record has the computing time, so that a sum over all records counts it once.
+    """
     folders: dict[Path, list[str]] = {}
     for output in map(Path, _paths(job.outputs)):
         folders.setdefault(output.parent, []).append(output.name)

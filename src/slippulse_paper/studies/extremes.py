@@ -128,14 +128,16 @@ def drift(run: xr.Dataset, quantity: str) -> float:
     times, distances = front_path(run)
     x, last = run["x"].values, distances[-1]
 
-    def number(start: float, end: float) -> float:
+    def mean_on_part(start: float, end: float) -> float:
+        """Return the mean slip or front speed between two fractions of the path."""
         if quantity == "slip drift":
+            # Slip still grows close to the front, which is at the end of the path.
             left_behind = (x > start * last) & (x < (end - 0.01) * last)
             return float(np.mean(run["slip"].values[left_behind]))
         part = (distances > start * last) & (distances < end * last)
         return float(np.polyfit(times[part], distances[part], 1)[0])
 
-    return number(0.9, 1.0) / number(0.2, 0.3) - 1.0
+    return mean_on_part(0.9, 1.0) / mean_on_part(0.2, 0.3) - 1.0
 
 
 def single_precision_error(case: Case) -> float:

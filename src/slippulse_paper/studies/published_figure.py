@@ -87,9 +87,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def readings_of(published: dict, simulation: str) -> pd.DataFrame:
-    """Return the readings of one simulation as a table, one row per reading."""
+    """Return the numbers that were read off one panel of the published figure, one row for each.
+
+    published : readings of all panels by name, from the configuration
+    simulation : name of the simulation that reproduces the panel
+
+    ``drawn`` is the number, and ``arrow`` is True if it is the length of an arrow in the panel.
+    """
     rows = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
     rows = rows[rows["simulation"] == simulation].rename(columns={"value": "drawn"})
+    # Readings that are no arrows do not have this key, so that the table has NaN.
     rows["arrow"] = rows["arrow"].eq(True)
     return rows[["reading", "drawn", "quantity", "reading_error", "arrow"]]
 
