@@ -17,6 +17,7 @@ from slippulse_paper.configuration.read import read_config
 from slippulse_paper.report.manuscript import DOCUMENTS, execute, names_for
 from slippulse_paper.report.texts import read_captions
 from slippulse_paper.steps import write_report
+from slippulse_paper.steps.inputs import LoadedInputs
 from slippulse_paper.text.numerals import with_uncertainty
 
 # Pages of the report; the supplement may be longer.
@@ -158,7 +159,8 @@ def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path,
     for name, content in contents.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
     monkeypatch.chdir(results)
-    monkeypatch.setattr(write_report, "given", lambda files: ({}, inputs.tables))
+    loaded = LoadedInputs({}, inputs.tables)
+    monkeypatch.setattr(write_report, "load_inputs", lambda files: loaded)
     names = names_for(inputs, print, DOCUMENTS[0])
     assert set(write_report.by_hand(DOCUMENTS[0], print)) == set(names)
 

@@ -10,8 +10,8 @@ from pathlib import Path
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
 # Workers, too, run the code of this project, even if another version is installed or on PYTHONPATH.
 sys.path.insert(0, str(PROJECT / "src"))
-os.environ["PYTHONPATH"] = os.pathsep.join(
-    filter(None, [str(PROJECT / "src"), os.environ.get("PYTHONPATH")])
+os.environ.update(
+    PYTHONPATH=os.pathsep.join(filter(None, [str(PROJECT / "src"), os.getenv("PYTHONPATH")]))
 )
 
 from slippulse_paper.claims.claim_texts import read_entries
