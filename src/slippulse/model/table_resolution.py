@@ -30,7 +30,7 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     rms_loss = float(np.sqrt(np.mean(losses**2)))
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst = int(np.argmax(losses))
-        key = f"prestress.points {tau[worst]:g} between blocks at x"
+        key = f"prestress.points: the blocks miss the stress {tau[worst]:g} at x"
         allowed = (
             f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
         )

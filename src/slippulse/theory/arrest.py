@@ -62,8 +62,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         """Return the entry of the characteristic that ends on the left front at a position."""
         last, balance = self.end - 1e-9, partial(integral, self.prestress, position)
         if balance(last) <= 0.0:
-            limit = f"x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
-            raise ValueError(f"position: {position!r}; allowed: farther from {limit}")
+            limit = f"x_minus = {self.balance_position:.10g}, the limit of the left front"
+            raise ValueError(f"position: {position!r}; allowed: a position farther from {limit}")
         return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:

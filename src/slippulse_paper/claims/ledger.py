@@ -175,12 +175,12 @@ class Ledger:
         return next(rows, None)
 
     def listed(self, id: str, words: str) -> str:
-        """List the further numbers of a claim with keys "WORDS: NAME", each with its NAME."""
+        """List the further numbers of a claim with keys "WORDS: NAME", with NAME in italics."""
         parts = []
         for key, value in self(id).further.items():
             start, colon, name = key.partition(": ")
             if colon and words in start:
-                parts.append(f"{number(value)} {name}")
+                parts.append(f"{number(value)} *{name}*")
         return "; ".join(parts)
 
     def count(self, *verdicts: str) -> int:

@@ -140,7 +140,11 @@ class Rough(Block):
     level: float = key("mean, < 1 [S]")
     deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
     correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
-    hurst: float = key("roughness at short lengths: 0 is rougher, 1 smoother", ge=0.0, le=1.0)
+    hurst: float = key(
+        "Hurst exponent: 0 is the roughest profile at short lengths, 1 the smoothest",
+        ge=0.0,
+        le=1.0,
+    )
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
     spacing: Positive = key("distance of the positions [H]")
@@ -505,8 +509,13 @@ class Preset(Block):
 
 
 class Model(Block):
-    damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
-    release: Release = key("`total`: damping counts at release (figure); `elastic`: not (printed)")
+    damping_ratio: NonNegative = key(
+        "beta/dx; the paper states beta = 1e-3, and its figure 4 allows dx = 0.01"
+    )
+    release: Release = key(
+        "force at which a block is released: `total` includes the damping, as in the authors' "
+        "code; `elastic` does not, as printed"
+    )
     scheme: Scheme = key(
         "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
@@ -568,7 +577,7 @@ class LayerMap(Block):
 class Figures(Block):
     fig01_system_sketch: Sketch = key("the sketch of the system")
     fig07_damage_zone: DamageZone = key("the damage zone")
-    study_layer: LayerMap = key("the map of stability of the layer in the plane")
+    study_layer: LayerMap = key("the stability map of the two-dimensional layer")
 
 
 class Claim(Block):

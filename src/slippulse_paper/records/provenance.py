@@ -131,8 +131,8 @@ COMPARED = {
     "claims.json": "compare first: the verdicts must be the same",
     "claims.html": "read it",
     "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",
-    "measurements": "equal within the uncertainties of the table in uncertainties/",
-    "studies": "equal to a relative 1e-6",
+    "measurements": "numbers must agree within the uncertainties listed in uncertainties/",
+    "studies": "numbers must agree to a relative 1e-6",
     "manuscript": "read it; its numbers follow from the tables",
 }
 COMMENTS = {
