@@ -19,6 +19,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
+from typing import TextIO
 
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "src"))
@@ -66,13 +67,17 @@ def full_target(target: str) -> str:
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
 
 
-def clean_up_after_kill() -> None:
-    """Remove the unfinished files of a killed run. Exit if another run uses this folder."""
+def clean_up_after_kill() -> TextIO:
+    """Remove the unfinished files of a killed run. Exit if another run uses this folder.
+
+    Returns a lock, which refuses another run that make starts. Snakemake itself holds the second
+    lock while it runs jobs.
+    """
     from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
 
-    lock = take(STATE / "slippulse.lock")
-    if lock is None:
+    started_by_make, lock = take(STATE / "slippulse-make.lock"), take(STATE / "slippulse.lock")
+    if started_by_make is None or lock is None:
         sys.exit("Another run is using this folder: wait for it, or stop it.")
     locks = [*STATE.glob("locks/*.lock")]
     if locks:
@@ -80,6 +85,7 @@ def clean_up_after_kill() -> None:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
     lock.close()
+    return started_by_make
 
 
 def changed_results() -> dict[str, str]:
@@ -190,7 +196,7 @@ def replicate(given: Mapping[str, str]) -> int:
     ):
         line = "To compare these results with the new ones, stop now, copy them, and start again: "
         print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
-    clean_up_after_kill()
+    lock = clean_up_after_kill()
     cores = ["--cores", given.get("CORES") or "2"]
     changed = options_for_changed_results(options, targets)
     run = Run([*cores, *options, *changed, "--", *targets])
@@ -208,6 +214,7 @@ def replicate(given: Mapping[str, str]) -> int:
     for number in SIGNALS:
         signal.signal(number, stop)
     code = run.wait()
+    lock.close()
     if code == 0:
         last_run = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
         last_run["targets"] = ["everything"] if "everything" in targets else []

@@ -62,11 +62,10 @@ try:
     ALTERED = None
     if OVERLAYS or GIVEN:
         ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
-        if workflow.is_main_process and not CONFIG.allow_large:
-            if problems := cost_problems(CONFIG, ALTERED):
-                raise ConfigError("\n".join(problems))
+    if ALTERED and workflow.is_main_process:
+        problems = [] if CONFIG.allow_large else cost_problems(CONFIG, ALTERED)
         draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs_of("figures")}
-        if problems := drawing_problems(CONFIG, draws):
+        if problems := problems or drawing_problems(CONFIG, draws):
             raise ConfigError("\n".join(problems))
     if CONFIG.claims:
         read_entries(PROJECT / "manuscript/claims.yaml", CONFIG.given()["claims"])

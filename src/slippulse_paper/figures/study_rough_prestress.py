@@ -9,11 +9,14 @@ from slippulse.plotting import style
 from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN_MARKER, PAGE_WIDTH, SMALL_TEXT, Look
 
 NEEDS = {"studies": ["rough_prestress"]}
-table = style.as_given
-
 KEYS = ["level", "deviation", "correlation_length", "hurst"]
 COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY)
 HEAD = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Return the table of the study; the balance is NaN if it is not reached within the table."""
+    return style.as_given(data, tables, settings).replace(np.inf, np.nan)
 
 
 def draw(table: pd.DataFrame) -> Figure:
