@@ -1,6 +1,7 @@
 """If SLIPPULSE_NUDGED is set, change all inputs of the exact theory in their last digits."""
 
 import dataclasses
+import math
 import os
 
 import numpy as np
@@ -15,6 +16,8 @@ def nudged(value, rng: np.random.Generator):
 
     The value may be a number, an array, a tuple of these, or a pre-stress.
     """
+    if isinstance(value, Prestress) and value.points:
+        return nudged_table(value, rng)
     if isinstance(value, Prestress):
         names = [field.name for field in dataclasses.fields(value) if field.name != "peak"]
         moved = {name: nudged(getattr(value, name), rng) for name in names}
@@ -29,6 +32,23 @@ def nudged(value, rng: np.random.Generator):
     units = rng.integers(1, 5, value.shape) * rng.choice([-1.0, 1.0], value.shape)
     moved = np.where(value == 0.0, 0.0, value + units * np.spacing(value))
     return moved if moved.ndim else float(moved)
+
+
+def nudged_table(prestress: Prestress, rng: np.random.Generator) -> Prestress:
+    """Return a table with moved points.
+
+    Equal distances from x = 0 move alike, so that jumps and symmetry stay, and so does a value of 1
+    or more, which nucleates.
+    """
+    distances, values = {}, {}
+    for x, tau in prestress.points:
+        distances.setdefault(abs(x), nudged(abs(x), rng))
+        values.setdefault((abs(x), tau), tau if tau >= 1.0 else nudged(tau, rng))
+    points = tuple(
+        (math.copysign(distances[abs(x)], x), values[abs(x), tau]) for x, tau in prestress.points
+    )
+    ends = {"left": points[0][1], "right": points[-1][1]}
+    return dataclasses.replace(prestress, points=points, **ends)
 
 
 @pytest.fixture(autouse=True)
