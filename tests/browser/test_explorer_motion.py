@@ -18,7 +18,8 @@ const keep = (list) => window.shifts.push(...list.getEntries().map((entry) => en
 new PerformanceObserver(keep).observe({ type: "layout-shift", buffered: true });
 """
 LARGEST_SHIFT = 0.01
-ABOVE_100 = re.compile(r"^(10[1-9]|1[1-9]\d|[2-9]\d\d|\d{4,})(\.\d*)?$")
+# Without 1000, the value at the end, from which playing starts again.
+ABOVE_100 = re.compile(r"^(10[1-9]|1[1-9]\d|[2-9]\d\d)(\.\d*)?$")
 both_widths = pytest.mark.parametrize("page", [(400, "light"), (1440, "light")], indirect=True)
 reading = lambda page: page.locator("#reading").text_content()
 time_of = lambda page: float(page.locator("#time").input_value())
