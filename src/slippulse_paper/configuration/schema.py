@@ -184,11 +184,11 @@ class Profile(Block):
 
     @model_validator(mode="after")
     def _background(self) -> Self:
-        # A profile whose file was read has `file` and also `points`.
-        tables = self._given_ones("file", "points", "rough")
+        tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
+            # The points were read from the file.
             tables = ["file"]
-        levels = self._given_ones("left", "right")
+        levels = self._given_keys("left", "right")
         if not tables:
             missing = [name for name in ("left", "right") if name not in levels]
             allowed = "levels on both sides, or points, file or rough"
@@ -207,7 +207,8 @@ class Profile(Block):
             self.check_table()
         return self
 
-    def _given_ones(self, *names: str) -> list[str]:
+    def _given_keys(self, *names: str) -> list[str]:
+        """Return those of some keys that have a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
@@ -270,18 +271,19 @@ class Physics(Block):
         "largest time step; by default the preset's, or the stable one [dx]", None
     )
 
-    def alone(self, key: str, *others: str) -> None:
+    def refuse_together(self, key: str, *others: str) -> None:
         """Raise ValueError if a key is given together with one of the others."""
-        given = ", ".join(other for other in others if other in self.model_fields_set)
-        is_alone = key not in self.model_fields_set or not given
-        require(is_alone, f"{key}: given with {given}", "one or the other (null removes a key)")
+        given_others = [other for other in others if other in self.model_fields_set]
+        are_together = key in self.model_fields_set and bool(given_others)
+        problem = f"{key}: given with {', '.join(given_others)}"
+        require(not are_together, problem, "one or the other (null removes a key)")
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
         if getattr(self, "layer", None) is None:
             self._check_gamma()
-        self.alone("beta", "damping_ratio")
-        self.alone("rate_strengthening", "friction")
+        self.refuse_together("beta", "damping_ratio")
+        self.refuse_together("rate_strengthening", "friction")
         return self
 
     def _check_gamma(self) -> None:
@@ -294,14 +296,19 @@ class Physics(Block):
 
 
 def _with_extra_terms(lists: bool) -> type[Physics]:
-    """Return `Physics` with a key for each extra term of the equation: a list, or a number."""
+    """Return `Physics` with a key for each extra term of the equation.
+
+    The value of a key is a number, or a list of numbers if ``lists`` is set.
+    """
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
         number: Any = int if "integer" in term.bounds else float
         value: Any = Annotated[number, Field(**limits)]
+        value_or_list: Any = Distinct[value] if lists else value
         meaning = f"{term.meaning}; by default {term.default:g}"
-        keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
+        # Pydantic takes the type and the definition of each key.
+        keys[name] = (value_or_list | None, key(meaning, None))
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
 
 
@@ -343,18 +350,20 @@ class Simulation(PhysicsOfSweep):
 
     @model_validator(mode="after")
     def _together(self) -> Self:
-        self.alone("profiles", "left", "right", "width", "beyond")
-        self.alone("dx", "spacing")
-        rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
-        levels = self.left is not None and self.right is not None
-        require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
-        alone = rule == {"fixed"} or "fixed" not in rule
-        require(alone, "spacing.fixed: given with others", "alone")
+        self.refuse_together("profiles", "left", "right", "width", "beyond")
+        self.refuse_together("dx", "spacing")
+        has_levels = self.left is not None and self.right is not None
+        has_profile = has_levels or self.profiles is not None
+        require(has_profile, "left, right: missing", "lists, or profiles")
+        rule_keys = self.spacing.model_fields_set
+        is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
+        require(is_consistent, "spacing.fixed: given with others", "alone")
+        units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
-            require("gamma_power" not in rule, "spacing.gamma_power: given", only)
+            require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
         if "samples" in self.record:
             allowed = "times, positions and extent when record has 'samples'"
@@ -477,16 +486,19 @@ class NamedScene(Profile, PhysicsOfScene):
             ]
         }
         if self.points is not None:
-            x, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x = layer.convert_from_si(x_in_metres, "length")
             tau = layer.table_from_pascal("points", stress)
-            columns = layer.convert_from_si(x, "length").tolist(), tau.tolist()
-            given["points"] = [*zip(*columns, strict=True)]
+            given["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
-            changed = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
-            changed["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            deviation = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            converted = {
+                "level": layer.level_from_pascal("rough.level", self.rough.level),
+                "deviation": deviation,
+            }
             for name in ("correlation_length", "start", "stop", "spacing"):
-                changed[name] = layer.convert_from_si(getattr(self.rough, name), "length")
-            given["rough"] = self.rough.model_copy(update=changed)
+                converted[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+            given["rough"] = self.rough.model_copy(update=converted)
         return given
 
 
@@ -627,21 +639,29 @@ class Configuration(Block):
             allowed = "'localised' where accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
-            problem = f"scenes.{name}: also the name of a simulation"
-            require(name not in self.simulations, problem, "another name")
-            others = {*self.scenes} - {name}
-            is_taken = name == "index" or name.removesuffix("_numbers") in others
-            problem = f"scenes.{name}: a file of that name exists"
-            require(not is_taken, problem, "neither index nor SCENE_numbers")
+            self._check_scene_name(name)
+        for name, reading in self.published.items():
+            self._check_reading(f"published.{name}", reading)
+        return self
+
+    def _check_scene_name(self, name: str) -> None:
+        """Raise ValueError if a scene has the name of a simulation or of another file."""
+        problem = f"scenes.{name}: also the name of a simulation"
+        require(name not in self.simulations, problem, "another name")
+        other_names = {*self.scenes} - {name}
+        is_taken = name == "index" or name.removesuffix("_numbers") in other_names
+        problem = f"scenes.{name}: a file of that name exists"
+        require(not is_taken, problem, "neither index nor SCENE_numbers")
+
+    def _check_reading(self, key: str, reading: Reading) -> None:
+        """Raise ValueError if the number that a reading is compared with is not measured."""
+        # The kind of data that each measured column needs.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
             record_for[f"trailing_edge_{time:g}"] = "fronts"
-        for name, reading in self.published.items():
-            quantity, sweep = reading.quantity, reading.simulation
-            key = f"published.{name}"
-            check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
-            check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
-            needed, recorded = record_for[quantity], self.simulations[sweep].record
-            allowed = f"what simulations.{sweep} records; it needs record: [fronts, {needed}]"
-            require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
-        return self
+        quantity, simulation = reading.quantity, reading.simulation
+        check_name(f"{key}.simulation", simulation, self.simulations, "a name under simulations")
+        check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
+        needed, recorded = record_for[quantity], self.simulations[simulation].record
+        allowed = f"what simulations.{simulation} records; it needs record: [fronts, {needed}]"
+        require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
