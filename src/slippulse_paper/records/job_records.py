@@ -64,6 +64,10 @@ def file_digest(path: str | Path) -> str:
 
 @cache
 def _digest_at(path: str, _size: int, _modified_ns: int) -> str:
+    """Return the SHA-256 of a file.
+
+    Its size and time are arguments so that the cache is not used after a change.
+    """
     return file_digest(path)
 
 
@@ -75,7 +79,7 @@ def state_of(path: str | Path) -> FileState:
 
 
 def is_unchanged(path: str | Path, state: FileState) -> bool:
-    """Return True if a file has a recorded content. It is read only if its time differs."""
+    """Return True if a file has a recorded content. The file is read only if its time differs."""
     info = os.stat(path)
     if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):
         return True
@@ -144,7 +148,7 @@ class RecordedFiles:
         states = {}
         for path, record in self.records.items():
             for name, state in record.outputs.items():
-                states[str(path.parent.parent / name)] = state
+                states[str(_recorded_folder(path) / name)] = state
         return states
 
     def problems(self) -> Iterator[tuple[str, str]]:
@@ -152,25 +156,43 @@ class RecordedFiles:
 
         A missing file is not a problem, since Snakemake makes it again if it is needed.
         """
-        states, snakemake_files = self.states(), _files_recorded_by_snakemake()
         for path in self.unreadable:
-            yield str(path.parent.parent / path.stem), "its record cannot be read"
-        # Most of the time goes into digests of the files, which threads compute in parallel.
-        with ThreadPoolExecutor() as threads:
-            unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
-        for name, is_recorded in zip(states, unchanged, strict=True):
-            if not is_recorded:
-                yield name, "not what its job wrote"
-            elif name not in snakemake_files and Path(name).is_file():
-                yield name, "Snakemake's own record of it (in .snakemake) is lost"
+            yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
+        states = self.states()
+        yield from _changed_files(states)
         for path, record in self.records.items():
-            folder = path.parent.parent
-            for name, digest in record.inputs.items():
-                source = os.path.normpath(folder / name)
-                if source in states and states[source].sha256 != digest:
-                    for output in record.outputs:
-                        yield str(folder / output), f"made from another {source}"
-                    break
+            folder = _recorded_folder(path)
+            changed_input = _changed_input(record, folder, states)
+            if changed_input is not None:
+                for output in record.outputs:
+                    yield str(folder / output), f"made from another {changed_input}"
+
+
+def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]:
+    """Yield each file that has no longer its recorded content, and files unknown to Snakemake."""
+    snakemake_files = _files_recorded_by_snakemake()
+    # Most of the time goes into digests of the files, which threads compute in parallel.
+    with ThreadPoolExecutor() as threads:
+        unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
+    for name, is_recorded in zip(states, unchanged, strict=True):
+        if not is_recorded:
+            yield name, "not what its job wrote"
+        elif name not in snakemake_files and Path(name).is_file():
+            yield name, "Snakemake's own record of it (in .snakemake) is lost"
+
+
+def _changed_input(record: Record, folder: Path, states: Mapping[str, FileState]) -> str | None:
+    """Return an input that has been written again since the job read it, or None."""
+    for name, digest in record.inputs.items():
+        path = os.path.normpath(folder / name)
+        if path in states and states[path].sha256 != digest:
+            return path
+    return None
+
+
+def _recorded_folder(record: Path) -> Path:
+    """Return the folder with the files that a record is about."""
+    return record.parent.parent
 
 
 def _files_recorded_by_snakemake() -> set[str]:
@@ -227,8 +249,9 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
-    name, folder = Path(path).name, Path(path).parent / FOLDER
-    return _records_in(str(folder), _time_of(folder)).get(name)
+    folder = Path(path).parent / FOLDER
+    records = _records_in(str(folder), _time_of(folder))
+    return records.get(Path(path).name)
 
 
 def _time_of(folder: Path) -> int:
