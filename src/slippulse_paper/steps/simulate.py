@@ -34,8 +34,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         progress=settings.get("progress"),
     )
     data = labelled(data, profile_labels(sweep), sweep["record"])
-    flags = Counter(filter(None, data["run_flags"].values))
-    for kind in sorted(flags):
-        flagged = f"{flags[kind]} of {len(scenes)} runs have the flag {kind} (in run_flags)"
+    flags = [flag for flag in data["run_flags"].values if flag]
+    for flag, count in sorted(Counter(flags).items()):
+        flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
     save_dataset(described(data), outputs["data"])

@@ -22,7 +22,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     sentences = read_text(files["statements"])["statements"]
     tables = load_inputs(files).tables
     steady_tolerance = settings["measure"]["steady_tolerance"]
-    evidence = Evidence(tables, texts["claims"], steady_tolerance, settings["published"])
+    readings = settings["published"]
+    evidence = Evidence(tables, texts["claims"], steady_tolerance, readings)
     claims = all_claims(evidence, texts["over_choices"], sentences)
     further_findings = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])

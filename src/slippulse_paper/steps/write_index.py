@@ -24,8 +24,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, titles), outputs["manifest"])
-    origin = provenance(PROJECT, settings["config"], settings["shipped"], base)
-    write_json(origin, outputs["provenance"])
+    facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
+    write_json(facts, outputs["provenance"])
     galleries = {}
     for prefix, heading in HEADINGS.items():
         names = [name for name in settings["figures"] if name.startswith(prefix)]
