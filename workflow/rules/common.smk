@@ -318,9 +318,7 @@ if workflow.is_main_process and not IS_MODULE:
 # The chunks of each sweep that is divided. Their names contain the number of chunks, so that files
 # of another division are not used.
 CHUNKS = {
-    name: chunk_names(name, sweep.chunks)
-    for name, sweep in SIMULATIONS.items()
-    if sweep.chunks > 1
+    name: chunk_names(name, sweep.chunks) for name, sweep in SIMULATIONS.items() if sweep.chunks > 1
 }
 # The chunks of each study that is divided.
 STUDY_CHUNKS = {}
