@@ -44,11 +44,12 @@ def nudged_table(prestress: Prestress, rng: np.random.Generator) -> Prestress:
     for x, tau in prestress.points:
         distances.setdefault(abs(x), nudged(abs(x), rng))
         values.setdefault((abs(x), tau), tau if tau >= 1.0 else nudged(tau, rng))
-    points = tuple(
-        (math.copysign(distances[abs(x)], x), values[abs(x), tau]) for x, tau in prestress.points
-    )
-    ends = {"left": points[0][1], "right": points[-1][1]}
-    return dataclasses.replace(prestress, points=points, **ends)
+    points = []
+    for x, tau in prestress.points:
+        moved_x = math.copysign(distances[abs(x)], x)
+        points.append((moved_x, values[abs(x), tau]))
+    (_, left), *_, (_, right) = points
+    return dataclasses.replace(prestress, points=tuple(points), left=left, right=right)
 
 
 @pytest.fixture(autouse=True)
