@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -148,9 +148,7 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
 
     Whenever a run ends by itself, its results are compared with those of a quiet run.
     """
-    chance, harmed = random.Random(seed), prepare(folder / "harmed")
-    stopped, compared = Counter(), 0
-    quiet = prepare(folder / "quiet")
+    quiet, harmed = prepare(folder / "quiet"), prepare(folder / "harmed")
     began = time.monotonic()
     assert start(quiet, targets).wait(timeout=1200) == 0, output_of(quiet)
     duration = time.monotonic() - began
@@ -158,7 +156,9 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
     assert len(expected) >= 3 * len(targets)
     # Every file is a target, so that each file that is removed is made again.
     targets = [f"results/{name}" for name in expected]
-    while True:
+    chance, stopped, comparisons = random.Random(seed), Counter(), 0
+    has_finished = False
+    while not has_finished:
         # The way that was used least comes next.
         way = min(WAYS_TO_STOP, key=stopped.__getitem__)
         run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
@@ -170,19 +170,28 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
             stopped[way] += stop(run, harmed, way, chance)
             assert run.returncode or digests(harmed) == expected
             continue
-        assert run.returncode == 0, output_of(harmed)[-4000:]
-        differing = dict(digests(harmed).items() ^ expected.items())
-        assert not differing, f"files that differ from a quiet run: {sorted(differing)}"
-        compared += 1
-        if is_last:
-            break
-        # Some of the files are removed, so that the next runs have work.
-        first, step = chance.randrange(3), chance.choice((1, 3))
-        for name in sorted(expected)[first::step]:
-            (harmed / "results" / name).unlink()
+        check_results(run, harmed, expected)
+        comparisons += 1
+        has_finished = is_last
+        if not has_finished:
+            remove_some(harmed, expected, chance)
     counts = ", ".join(f"{count} by {way}" for way, count in stopped.items())
-    same_files = f"{len(expected)} files the same, byte by byte, {compared} times"
+    same_files = f"{len(expected)} files the same, byte by byte, {comparisons} times"
     return f"{stops} stops survived ({counts}); {same_files}"
+
+
+def check_results(run: subprocess.Popen, folder: Path, expected: dict[str, str]) -> None:
+    """Assert that a run has ended well, with the expected results."""
+    assert run.returncode == 0, output_of(folder)[-4000:]
+    differing = dict(digests(folder).items() ^ expected.items())
+    assert not differing, f"files that differ from a quiet run: {sorted(differing)}"
+
+
+def remove_some(folder: Path, names: Iterable[str], chance: random.Random) -> None:
+    """Remove all results or a third of them, so that the next runs have work."""
+    first, step = chance.randrange(3), chance.choice((1, 3))
+    for name in sorted(names)[first::step]:
+        (folder / "results" / name).unlink()
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.composer import Composer
 from ruamel.yaml.constructor import DuplicateKeyError
-from ruamel.yaml.error import YAMLError
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.events import Event, ScalarEvent
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
@@ -178,11 +178,18 @@ def _reason(error: Exception) -> str:
         return f"not text (byte {error.start}); allowed: YAML in UTF-8"
     if isinstance(error, RecursionError):
         return f"nested too deeply; {LIKE_SHIPPED}"
-    problem = " ".join(str(getattr(error, "problem", None) or error).split())
-    mark = getattr(error, "problem_mark", None)
-    if re.search("flow|quoted|simple key", str(getattr(error, "context", ""))):
+    if isinstance(error, MarkedYAMLError):
+        return _reason_of_parser(error)
+    return f"not YAML ({' '.join(str(error).split())[:120]}); {LIKE_SHIPPED}"
+
+
+def _reason_of_parser(error: MarkedYAMLError) -> str:
+    """Return the reason why the parser refuses a file, with the line."""
+    problem = " ".join((error.problem or str(error)).split())
+    mark = error.problem_mark
+    if error.context_mark and re.search("flow|quoted|simple key", error.context or ""):
         # The parser notices an unfinished value below the line where the value begins.
-        mark = getattr(error, "context_mark", None) or mark
+        mark = error.context_mark
     line = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
         return f"{line}{problem.partition(' with value')[0]}; allowed: each key once"
@@ -203,11 +210,11 @@ class _PlainComposer(Composer):
             refusal = f"tag {short_repr(str(event.tag))}; allowed: no tags"
         elif is_key and not isinstance(event, ScalarEvent):
             refusal = "a collection as a key; allowed: text"
-        elif _is_missing(event) and isinstance(index, ScalarNode):
-            # The parser reports a missing value at the line of the next key.
-            line, refusal = index.start_mark.line, _missing_value(parent, index)
         elif _is_missing(event) and parent is not None:
-            refusal = f"no value; {VALUE_ALLOWED}"
+            refusal = _missing_value(parent, index)
+            if isinstance(index, ScalarNode):
+                # The parser reports a missing value at the line of the next key.
+                line = index.start_mark.line
         if refusal:
             raise ConfigError(f"line {line + 1}: {refusal}")
         return super().compose_node(parent, index)
@@ -218,10 +225,17 @@ def _is_missing(event: Event) -> bool:
     return isinstance(event, ScalarEvent) and event.implicit[0] and not event.value
 
 
-def _missing_value(mapping: MappingNode, key: ScalarNode) -> str:
-    """Return the refusal of a key without a value.
+def _missing_value(parent: Any, key: Any) -> str:
+    """Return the refusal of an entry without a value; in a list it has no key but a number."""
+    if not isinstance(key, ScalarNode):
+        return f"no value; {VALUE_ALLOWED}"
+    return _decimal_comma(parent, key) or f"{key.value}: no value; {VALUE_ALLOWED}"
 
-    In a mapping in braces this key may be the second half of a number with a decimal comma.
+
+def _decimal_comma(mapping: MappingNode, key: ScalarNode) -> str:
+    """Return the refusal of a number with a decimal comma, or no text if there is none.
+
+    In a mapping in braces, the parser takes the second half of such a number for a key.
     """
     previous_entry = mapping.value[-1] if mapping.value else (None, None)
     previous_key, previous_value = (getattr(node, "value", None) for node in previous_entry)
@@ -229,7 +243,7 @@ def _missing_value(mapping: MappingNode, key: ScalarNode) -> str:
         given = f"{previous_key}: {previous_value},{key.value}"
         suggestion = f"{previous_value}.{key.value}"
         return f"{given}; allowed: numbers with a point (write {suggestion})"
-    return f"{key.value}: no value; {VALUE_ALLOWED}"
+    return ""
 
 
 def _is_integer(value: Any) -> bool:

@@ -110,7 +110,6 @@ def _axes(simulation: Mapping) -> dict[str, Sequence]:
     """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
-    coefficients = [simulation.get(name, [term.default]) for name, term in EXTRA_TERMS.items()]
     return {
         "release": releases,
         **_prestress_axes(simulation),
@@ -118,10 +117,14 @@ def _axes(simulation: Mapping) -> dict[str, Sequence]:
         "dx": simulation.get("dx", [None]),
         "damping": simulation.get("beta", simulation["damping_ratio"]),
         "law": simulation.get("friction", [{"law": "coulomb"}]),
-        "extra_terms": [
-            dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)
-        ],
+        "extra_terms": _extra_terms(simulation),
     }
+
+
+def _extra_terms(simulation: Mapping) -> list[dict[str, float]]:
+    """Return all combinations of the coefficients of extra terms, each by name."""
+    coefficients = [simulation.get(name, [term.default]) for name, term in EXTRA_TERMS.items()]
+    return [dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)]
 
 
 def _prestress_axes(simulation: Mapping) -> dict[str, Sequence]:
