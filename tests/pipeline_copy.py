@@ -92,10 +92,10 @@ def snakemake(
 
     ``overlay`` is a path or several paths, and ``environment`` has additional variables.
     """
-    options = ["--cores", str(cores)]
+    all_options = [*command, "--cores", str(cores)]
     if overlay:
         overlays = [overlay] if isinstance(overlay, str | Path) else overlay
-        options += ["--configfile", *overlays]
+        all_options += ["--configfile", *overlays]
     variables = {name: value for name, value in os.environ.items() if name not in VARIABLES_OF_MAKE}
     defaults = {
         "cwd": folder,
@@ -105,7 +105,7 @@ def snakemake(
         "timeout": 1200,
         "check": False,
     }
-    return subprocess.run([*command, *options, *arguments], **(defaults | process_options))
+    return subprocess.run(all_options + [*arguments], **(defaults | process_options))
 
 
 def made(folder: Path, *arguments, **options) -> subprocess.CompletedProcess:
