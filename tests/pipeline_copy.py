@@ -105,7 +105,8 @@ def snakemake(
         "timeout": 1200,
         "check": False,
     }
-    return subprocess.run(all_options + [*arguments], **(defaults | process_options))
+    all_options += arguments
+    return subprocess.run(all_options, **(defaults | process_options))
 
 
 def made(folder: Path, *arguments, **options) -> subprocess.CompletedProcess:
