@@ -156,8 +156,8 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
     assert len(expected) >= 3 * len(targets)
     # Every file is a target, so that each file that is removed is made again.
     targets = [f"results/{name}" for name in expected]
-    chance, stopped, comparisons = random.Random(seed), Counter(), 0
-    has_finished = False
+    chance, stopped = random.Random(seed), Counter()
+    comparisons, has_finished = 0, False
     while not has_finished:
         # The way that was used least comes next.
         way = min(WAYS_TO_STOP, key=stopped.__getitem__)

@@ -5,6 +5,7 @@ A scene is solved several times, for example mirrored or scaled, and all solutio
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import chain
 
 import numpy as np
 
@@ -180,7 +181,7 @@ class ComparedScene:
 
     def __init__(self, scene: HardScene, positions: int = 16) -> None:
         self.scene, rupture = scene, scene.rupture()
-        front_ends = [end.x for pair in rupture.front_ends for end in pair]
+        front_ends = [end.x for end in chain.from_iterable(rupture.front_ends)]
         self.x = np.linspace(min(front_ends), max(front_ends), positions + 2)[1:-1]
         self.times = scene.duration * np.array([0.35, 0.65, 0.95])
         self.answers = Answers(scene, rupture, self.x, self.times)
@@ -191,20 +192,20 @@ class ComparedScene:
 
     def check(self, other: Answers) -> None:
         """Assert that the results of two solutions agree while both hold, and are possible."""
-        own, end = self.answers, self.scene.duration
+        answers, end = self.answers, self.scene.duration
         allowed = AGREEMENT * end
-        horizon = np.minimum(np.minimum(own.horizon, other.horizon), end) * (1.0 - AGREEMENT)
+        horizon = np.minimum(np.minimum(answers.horizon, other.horizon), end) * (1.0 - AGREEMENT)
         for name in ("release", "stick"):
-            own_times = np.minimum(getattr(own, name), horizon)
+            times = np.minimum(getattr(answers, name), horizon)
             other_times = np.minimum(getattr(other, name), horizon)
-            np.testing.assert_allclose(other_times, own_times, rtol=0.0, atol=allowed, err_msg=name)
-        limit = min(own.limit, other.limit, end) * (1.0 - AGREEMENT)
-        difference = min(other.first_stick, limit) - min(own.first_stick, limit)
+            np.testing.assert_allclose(other_times, times, rtol=0.0, atol=allowed, err_msg=name)
+        limit = min(answers.limit, other.limit, end) * (1.0 - AGREEMENT)
+        difference = min(other.first_stick, limit) - min(answers.first_stick, limit)
         assert abs(difference) <= allowed, "first stick"
-        allowed_slip = AGREEMENT * max(1.0, np.nanmax(np.abs(own.slip), initial=0.0))
-        assert np.nanmax(np.abs(own.slip - other.slip), initial=0.0) <= allowed_slip, "slip"
-        for answers in (own, other):
-            check_possible(answers, allowed, allowed_slip)
+        allowed_slip = AGREEMENT * max(1.0, np.nanmax(np.abs(answers.slip), initial=0.0))
+        assert np.nanmax(np.abs(answers.slip - other.slip), initial=0.0) <= allowed_slip, "slip"
+        for each_solution in (answers, other):
+            check_possible(each_solution, allowed, allowed_slip)
 
 
 def check_possible(answers: Answers, allowed: float, allowed_slip: float) -> None:

@@ -131,11 +131,11 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Sequence]:
     """Return the lists of a simulation that give its pre-stress, by name."""
     if "profiles" in simulation:
         return {"profile": simulation["profiles"]}
-    right, beyond = simulation["right"], simulation.get("beyond")
+    right, replacement = simulation["right"], simulation.get("beyond")
     steps: list[tuple] = [()]
-    if beyond is not None:
+    if replacement is not None:
         # Each level is a step of the pre-stress at the position where it begins.
-        steps = [((beyond["position"], level),) for level in beyond["levels"]]
+        steps = [((replacement["position"], level),) for level in replacement["levels"]]
     return {
         "left": simulation["left"],
         "right": [SAME] if right == SAME else right,
