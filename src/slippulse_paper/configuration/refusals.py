@@ -149,17 +149,22 @@ def _schema_of_key(schema: Mapping, key: str) -> Any:
 
 
 def resolved(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema behind a reference, or the only alternative to null.
+    """Return the schema that a reference leads to, or the only alternative to null.
 
-    If the key has its own words for the allowed values, the result keeps them.
+    Other schemas are returned as they are. If the key has its own words for the allowed values, the
+    result keeps them.
     """
-    options = _not_null(schema)
+    alternatives = _not_null(schema)
     if "$ref" in schema:
-        options = [json_schema()["$defs"][schema["$ref"].rpartition("/")[2]]]
-    if len(options) != 1:
+        # A reference has the form #/$defs/NAME.
+        name = schema["$ref"].rpartition("/")[2]
+        target = json_schema()["$defs"][name]
+    elif len(alternatives) == 1:
+        target = alternatives[0]
+    else:
         return schema
-    key_words = {"allowed": schema["allowed"]} if "allowed" in schema else {}
-    return resolved(options[0]) | key_words
+    result = resolved(target)
+    return {**result, "allowed": schema["allowed"]} if "allowed" in schema else result
 
 
 def words(schema: dict[str, Any]) -> str:
@@ -198,9 +203,11 @@ def _not_null(schema: Mapping) -> list[dict[str, Any]]:
 
 def _range(schema: Mapping) -> str:
     """Return the limits of a number in words."""
-    given = {key: f"{schema[key]:g}" for key in LIMIT_SIGNS if key in schema}
-    # An exponent is written without leading zeros.
-    limits = {key: re.sub(r"e\+?(-?)0", r"e\1", limit) for key, limit in given.items()}
+    limits = {}
+    for key in LIMIT_SIGNS:
+        if key in schema:
+            # Exponents are written without plus signs and leading zeros.
+            limits[key] = re.sub(r"e\+?(-?)0", r"e\1", f"{schema[key]:g}")
     if {*limits} == {"minimum", "maximum"}:
         return f"from {limits['minimum']} to {limits['maximum']}"
     return " and ".join(f"{LIMIT_SIGNS[key]} {limit}" for key, limit in limits.items())

@@ -84,6 +84,7 @@ def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
     profiles = simulation.get("profiles", [])
     if not any(TABLES.intersection(profile) for profile in profiles):
         return []
+    # With labels in place of the profiles, each combination has the label of its profile.
     labelled = {**simulation, "profiles": labels_of(profiles)}
     return [values["profile"] for values in _combinations(labelled)]
 

@@ -83,6 +83,7 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     alternatives = dict(ALTERNATIVE_TEXT.findall(text))
 
     def with_alternative_text(image: re.Match) -> str:
+        """Return the beginning of a call of image() in Typst, with the alternative text."""
         alternative = alternatives[Path(image[1]).stem]
         # JSON and Typst write a string in the same way.
         return f"{image[0]}, alt: {json.dumps(alternative, ensure_ascii=False)}"

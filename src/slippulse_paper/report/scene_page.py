@@ -70,11 +70,16 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
         shown["width"] = "no Gaussian at x = 0"
         shown.pop("peak", None)
     if "friction" in shown:
-        law = read_recorded_law(attributes)
-        words = [law.pop("law").replace("_", " ")]
-        words += [f"{key} = {setting(value)}" for key, value in law.items()]
-        shown["friction"] = ", ".join(words)
+        shown["friction"] = _friction_text(attributes)
     return shown
+
+
+def _friction_text(attributes: Mapping) -> str:
+    """Return the friction law with its parameters, such as "linear rate, alpha = 0.3"."""
+    law = read_recorded_law(attributes)
+    parts = [law.pop("law").replace("_", " ")]
+    parts += [f"{name} = {setting(value)}" for name, value in law.items()]
+    return ", ".join(parts)
 
 
 def _profile_text(attributes: Mapping, layer: Layer | None) -> str:

@@ -24,7 +24,10 @@ DIGITS = 15
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), topics, fraction and still (of `measure`)."""
+    """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
+
+    The settings also have the topics, and the values ``fraction`` and ``still`` of `measure`.
+    """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)
     save_table(table, outputs["predicted"], DIGITS)

@@ -22,7 +22,11 @@ SOLVERS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data. Settings: simulation, solver (from SOLVERS), sweep, threads, progress."""
+    """Write the ``data`` of the resolved simulation ``sweep`` in the settings.
+
+    The settings also have the name of the simulation, the solver (one of SOLVERS), the number of
+    threads, and a function that reports the progress.
+    """
     solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)
     data = solve_sweep(

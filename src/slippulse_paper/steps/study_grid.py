@@ -18,7 +18,11 @@ from ..configuration.runs import profile_labels
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: finest. Outputs: uncertainties, coarser. Settings: solver, sweeps, measure."""
+    """Write the tables ``uncertainties`` and ``coarser`` of a simulation.
+
+    The file ``finest`` has its measurements. The settings have the solver, the settings
+    ``measure``, and the resolved simulation for each factor of the spacing (``sweeps``).
+    """
     name, sweeps = settings["simulation"], settings["sweeps"]
     solve = resolve_name(settings["solver"])
     coarser_tables = {}

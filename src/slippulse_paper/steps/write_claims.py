@@ -14,9 +14,11 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: the kinds of `load_inputs`, texts, statements. Outputs: json, findings, html.
+    """Write ``json`` with the claims, ``findings``, and the page ``html``.
 
-    Settings: claims, published, measure, damping_ratio, altered.
+    The files are tables of the kinds of `load_inputs`, and ``texts`` and ``statements`` of the
+    manuscript. The settings have the keys ``claims``, ``published`` and ``measure`` of the
+    configuration, the damping ratio, and the list of altered values.
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]

@@ -32,9 +32,10 @@ VERDICTS_COMMENT = (
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: see `inputs_of`. Outputs: html and pdf (a file for each document), verdicts.
+    """Write ``html`` and ``pdf`` of each document, and the file ``verdicts``.
 
-    Settings: figures, config.
+    The files are those that `inputs_of` reads. The settings have the names of the figures and the
+    configuration ``config``.
     """
     inputs = inputs_of(files, settings)
     folder = inputs.manuscript
