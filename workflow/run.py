@@ -213,6 +213,7 @@ def end_on_signals(run: Run) -> None:
     """Make this process end its run with one line when it gets a signal."""
 
     def stop(number: int, _frame: object) -> None:
+        """End the run, and ignore further signals meanwhile."""
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         run.end()

@@ -128,12 +128,14 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
 
 
 def _schema_of_row(schema: Mapping) -> Any:
-    """Return the schema for the entries of a list, or None for rows of numbers.
+    """Return the schema for the entries of a list, or None if there is none.
 
-    A row of numbers is refused with its list, whose schema describes the rows.
+    It is also None for rows of numbers: a row is refused with its list, whose schema describes the
+    rows.
     """
-    items = schema.get("items", {})
-    return None if "prefixItems" in resolved(items) else items
+    items = schema.get("items")
+    has_rows = items is not None and "prefixItems" in resolved(items)
+    return None if has_rows else items
 
 
 def _schema_of_key(schema: Mapping, key: str) -> Any:

@@ -183,7 +183,11 @@ class Profile(Block):
     rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
 
     @model_validator(mode="after")
-    def _background(self) -> Self:
+    def _check_background(self) -> Self:
+        """Raise ValueError unless a profile has either levels or one table.
+
+        A table without a width gets no Gaussian.
+        """
         tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
             # The points were read from the file.
@@ -279,7 +283,8 @@ class Physics(Block):
         require(not are_together, problem, "one or the other (null removes a key)")
 
     @model_validator(mode="after")
-    def _physics(self) -> Self:
+    def _check_physics(self) -> Self:
+        """Raise ValueError for keys that the boundary condition or another key excludes."""
         if getattr(self, "layer", None) is None:
             self._check_gamma()
         self.refuse_together("beta", "damping_ratio")
@@ -287,6 +292,7 @@ class Physics(Block):
         return self
 
     def _check_gamma(self) -> None:
+        """Raise ValueError if gamma is missing, or given although there are no leaf springs."""
         gamma = getattr(self, "gamma", None)
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
@@ -349,7 +355,8 @@ class Simulation(PhysicsOfSweep):
     chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _together(self) -> Self:
+    def _check_together(self) -> Self:
+        """Raise ValueError for keys that are missing or exclude each other."""
         self.refuse_together("profiles", "left", "right", "width", "beyond")
         self.refuse_together("dx", "spacing")
         has_levels = self.left is not None and self.right is not None
@@ -388,7 +395,8 @@ class LayerKeys(Block):
     top: Top | None = key("held (displacement) or stress; by default as `boundary`", None)
 
     @model_validator(mode="after")
-    def _known_layer(self) -> Self:
+    def _check_layer(self) -> Self:
+        """Raise ValueError if there is no such layer."""
         self.layer("displacement")
         return self
 
@@ -424,7 +432,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return given | {"boundary": BOUNDARY_OF_TOP[top]} if is_known else given
 
     @model_validator(mode="after")
-    def _layer(self) -> Self:
+    def _check_in_model_units(self) -> Self:
+        """Raise ValueError if the scene is not allowed in the units of the model."""
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
             require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
@@ -472,7 +481,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return self.model_copy(update=given)
 
     @model_validator(mode="after")
-    def _one_seed(self) -> Self:
+    def _check_one_seed(self) -> Self:
+        """Raise ValueError if a scene has several seeds, since it is one run."""
         seed = self.rough.seed if self.rough is not None else 0
         require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
         return self
@@ -512,7 +522,8 @@ class Preset(Block):
     whole: bool = key("true: studies, claims and report are made by default", True)
 
     @model_validator(mode="after")
-    def _far_apart(self) -> Self:
+    def _check_factors(self) -> Self:
+        """Raise ValueError if the spacings of the grid study are too close to each other."""
         # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
         is_far_apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
@@ -563,7 +574,8 @@ class Steps(Block):
     count: int = key("number of values", ge=2, le=10_000)
 
     @model_validator(mode="after")
-    def _upwards(self) -> Self:
+    def _check_order(self) -> Self:
+        """Raise ValueError if the last value is not above the first one."""
         require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
         return self
 
@@ -580,7 +592,8 @@ class LayerMap(Block):
     chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _chunks(self) -> Self:
+    def _check_chunks(self) -> Self:
+        """Raise ValueError if there are more chunks than points of the map."""
         points = len(self.gamma) * len(self.fracture_energy)
         require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
         return self
@@ -632,7 +645,8 @@ class Configuration(Block):
         return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
 
     @model_validator(mode="after")
-    def _names(self) -> Self:
+    def _check_names(self) -> Self:
+        """Raise ValueError for names that are unknown or used twice."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme

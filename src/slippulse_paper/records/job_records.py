@@ -109,7 +109,8 @@ def write_record(record: Record, folder: str | Path) -> None:
     """Write the record of the outputs of a job in one folder."""
     content = record._asdict()
     content["outputs"] = {name: state._asdict() for name, state in record.outputs.items()}
-    write_json(content, record_path(Path(folder, next(iter(record.outputs)))))
+    first_output, *_ = record.outputs
+    write_json(content, record_path(Path(folder, first_output)))
 
 
 def read_record(path: str | Path) -> Record:

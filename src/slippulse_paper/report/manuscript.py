@@ -152,9 +152,11 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         return f"[{text}](../claims.html#{id})"
 
     def deviation_of(id: str) -> str:
+        """Return the deviation of a claim as a percentage, with a link to the claim."""
         return cite(id, percent(ledger(id).deviation))
 
     def measured_of(id: str) -> str:
+        """Return the measured number of a claim, with a link to the claim."""
         return cite(id, ledger(id).measured_text())
 
     names: dict[str, object] = {

@@ -232,8 +232,9 @@ def edges(study: pd.DataFrame) -> str:
     for row in study.to_dict("records"):
         outcome = str(row["verdict"])
         if outcome == "flagged":
-            # The name of the flag is the first word of the message.
-            outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
+            # The message begins with the name of the flag and a comma.
+            flag, _, _ = str(row["message"]).partition(",")
+            outcome += f": {flag.replace('_', ' ')}"
         error = "" if pd.isna(row["error"]) else number(row["error"], 2)
         tolerance = "" if pd.isna(row["tolerance"]) else number(row["tolerance"], 2)
         value, quantity = plain(row["value"]), plain(row["quantity"])

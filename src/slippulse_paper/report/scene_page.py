@@ -86,6 +86,7 @@ def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
     """Describe steps, bumps and points of the pre-stress in words."""
 
     def write(value: float, quantity: str) -> str:
+        """Return a number as text, with its unit if there is a layer."""
         if layer is None:
             return setting(value)
         return _with_unit(layer.convert_to_si(value, quantity), quantity)

@@ -15,9 +15,11 @@ class Prose(Environment):
     """Rules of the expressions: an attribute or an entry of None is None."""
 
     def getattr(self, obj: object, attribute: str) -> object:
+        """Return an attribute of an object, or None if the object is None."""
         return None if obj is None else super().getattr(obj, attribute)
 
     def getitem(self, obj: object, argument: object) -> object:
+        """Return an entry of an object, or None if the object is None."""
         return None if obj is None else super().getitem(obj, argument)
 
 
