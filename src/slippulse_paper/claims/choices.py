@@ -79,15 +79,15 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
         is_open_choice = combination.fraction != LAST_RELEASE_FRACTION
         if is_open_choice and combination.result["deviation"] is not None:
             compared.append(combination)
-    found = []
+    single_changes = []
     for before, after in permutations(compared, 2):
         names = before.choice | after.choice
         changed = [name for name in names if before.choice.get(name) != after.choice.get(name)]
         if len(changed) == 1 and changed[0] in CHOICE_WORDS:
             exact = before.choice.get("solution") == "exact"
             size = abs(before.result["deviation"] - after.result["deviation"])
-            found.append(Change(changed[0], before, after, exact, size))
-    return found
+            single_changes.append(Change(changed[0], before, after, exact, size))
+    return single_changes
 
 
 def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
@@ -148,7 +148,8 @@ class OverChoices(Claim):
         settings, unsure : the choices and values of the first combination in doubt, which is one
             with a caveat if there is one
         """
-        holding, failing, last = [], [], []
+        holding, failing = [], []
+        last = []
         for combination in self.combinations:
             deviation, holds = combination.result["deviation"], combination.result["holds"]
             if holds is True:

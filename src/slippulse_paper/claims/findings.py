@@ -27,7 +27,7 @@ def findings(
     damping_ratio : that of the figures, which expressions may use
     entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
-    found = []
+    all_findings = []
     for id, entry in entries.items():
         # An entry has expressions over several tables.
         expressions = entry.get("numbers", [])
@@ -36,8 +36,8 @@ def findings(
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
         tables = [row["table"] for row in expressions]
         source = ", ".join([*tables, *entry.get("source", [])])
-        found.append({"id": id, "numbers": values, "text": text, "source": source})
-    return found
+        all_findings.append({"id": id, "numbers": values, "text": text, "source": source})
+    return all_findings
 
 
 def all_numbers(

@@ -29,7 +29,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     fewest_blocks = two_way["sliding_at_once"].min()
     is_wide = bool(fewest_blocks > 1.0)
     # Each boundary condition counts as one case, and is undecided if none of its runs is a pulse.
-    decided = [True if len(pulses) > 0 else None for pulses in (two_way, one_way)]
+    decided = [None if two_way.empty else True, None if one_way.empty else True]
     return Qualitative(
         decided=decided,
         condition=is_wide,

@@ -244,9 +244,9 @@ def draw_leaf_springs(axes: Axes, rest: np.ndarray, centre: np.ndarray, ground: 
     It leads from the plate above the position at rest to the block.
     """
     along = np.linspace(0.0, 1.0, 15)
-    # A cubic polynomial from 0 to 1 whose slope is 0 at both ends.
-    bending = along**2 * (3.0 - 2.0 * along)
     plate, top_of_block = ground + PLATE_HEIGHT, ground + BLOCK_HEIGHT
-    x = rest[:, np.newaxis] + (centre - rest)[:, np.newaxis] * bending
+    displacement = (centre - rest)[:, np.newaxis]
+    # A cubic polynomial whose slope is 0 at both ends.
+    x = rest[:, np.newaxis] + displacement * along**2 * (3.0 - 2.0 * along)
     y = plate + (top_of_block - plate) * along
     axes.plot(x.T, y, color=BLUE, linewidth=0.9, gid="leaf springs")

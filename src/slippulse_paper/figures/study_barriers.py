@@ -153,14 +153,14 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         colour = style.colour("tau_0", tau0)
         axes.plot(-rows["barrier"], rows["exact"], color=colour, label=rf"$\tau_0 = {tau0:g}$")
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
-        for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
+        runs_of_level = finest[finest["tau0"] == tau0]
+        for gamma, runs in runs_of_level.groupby("gamma"):
             depth = runs["measured"] * np.sqrt(gamma / CURVE_GAMMA)
             axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN_MARKER)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
-        axes.plot(
-            [], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN_MARKER
-        )
+        label = rf"lattice, $\gamma = {gamma:g}$"
+        axes.plot([], [], marker, color="0.3", label=label, **OPEN_MARKER)
     axes.set(xscale="log", yscale="log", ylim=(0.25, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{CURVE_GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))

@@ -36,11 +36,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     across = data["pulses_across_a_step"]
     for number in range(across.sizes["point"]):
         parts.append(lattice_slip(point(across, number), exact).assign(role="lattice"))
-    beyond = data["regimes_beyond"]
+    under_stress = data["regimes_beyond"]
     # The runs with the lowest level on the left have the narrowest pulse.
-    left_levels = beyond["left"].values
+    left_levels = under_stress["left"].values
     for index in np.flatnonzero(left_levels == left_levels.min()):
-        parts.append(largest_velocities(point(beyond, int(index))).assign(role="velocity"))
+        velocities = largest_velocities(point(under_stress, int(index)))
+        parts.append(velocities.assign(role="velocity"))
     return pd.concat(parts, ignore_index=True)
 
 

@@ -33,7 +33,10 @@ NUCLEATION_DISTANCE = 20.0
 BARRIER_CENTRE = 25.0
 BARRIER_WIDTH = 2.0
 # Verdicts that a case may be expected to get.
-RIGHT, FLAGGED, REFUSED, STOPPED = "right", "flagged", "refused", "stopped"
+RIGHT = "right"
+FLAGGED = "flagged"
+REFUSED = "refused"
+STOPPED = "stopped"
 NOT_OFFERED = "not offered"
 SINGLE_PRECISION: Any = np.float32
 # Duration, in units of the exact time, of a run that measures when something happens.

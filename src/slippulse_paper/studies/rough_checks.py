@@ -37,11 +37,13 @@ EXACT_SEEDS = 2
 EXACT_DURATION = 12.0
 EXACT_SPACINGS = (0.05, 0.025)
 COMPARED_BLOCK_DISTANCE = 0.25
-# Part memory: seeds, and the Gaussian bump (position, height and width). It ends this many widths
-# from its centre. The slip is compared at these distances beyond its end, in units of the memory.
+# Part memory: seeds, and the Gaussian bump, which ends some widths from its position.
 BUMP_SEEDS = 10
-BUMP_POSITION, BUMP_HEIGHT, BUMP_WIDTH = 15.0, 0.1, 1.0
+BUMP_POSITION = 15.0
+BUMP_HEIGHT = 0.1
+BUMP_WIDTH = 1.0
 BUMP_REACH_IN_WIDTHS = 3.0
+# The slip is compared at these distances beyond the end of the bump, in units of the memory.
 RELATIVE_DISTANCES = np.linspace(0.1, 1.4, 14)
 
 # One rough pre-stress of the configuration, with its seed.

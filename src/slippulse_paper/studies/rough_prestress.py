@@ -164,7 +164,8 @@ def local_state(ensemble: Ensemble) -> dict[str, float]:
     slips_by_run, levels_by_run = [], []
     slownesses, exact_mean_slownesses = [], []
     for run in ensemble.runs:
-        x, prestress, release_time = run["x"], run["prestress"], run["release_time"]
+        x, prestress = run["x"], run["prestress"]
+        release_time = run["release_time"]
         is_settled = (x > memory) & np.isfinite(run["stick_time"])
         slips_by_run.append(run["slip"][is_settled] / pulse.slip)
         levels_by_run.append(prestress[is_settled] / level)

@@ -193,15 +193,15 @@ def title(table: pd.DataFrame) -> str:
     return rf"{style.conditions(has_springs)}, ${SYMBOLS[column]} = {values}$"
 
 
-def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> None:
-    """Draw the pre-stress of coloured runs in an inset.
+def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length: float) -> None:
+    """Draw the pre-stress of runs in an inset, each in the colour of its column colour.
 
-    ``widths`` is the half-length of its axis, in widths of the widest Gaussian.
+    ``half_length`` is that of the axis, in widths of the widest Gaussian.
     """
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     # Tables of pre-stress without a Gaussian have no width.
     runs = runs[np.isfinite(runs["width"])]
-    x = np.linspace(-widths, widths, 161) * runs["width"].max()
+    x = np.linspace(-half_length, half_length, 161) * runs["width"].max()
     for run in runs.drop_duplicates(["left", "right", "width"]).itertuples():
         tau = Prestress(run.left, run.right, run.width)(x)
         inset.plot(x, tau, color=run.colour, linewidth=0.8)
