@@ -148,8 +148,9 @@ class OverChoices(Claim):
         settings, unsure : the choices and values of the first combination in doubt, which is one
             with a caveat if there is one
         """
-        holding, failing = [], []
-        last = []
+        holding: list[float | None] = []
+        failing: list[float | None] = []
+        last: list[float] = []
         for combination in self.combinations:
             deviation, holds = combination.result["deviation"], combination.result["holds"]
             if holds is True:

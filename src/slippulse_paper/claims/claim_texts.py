@@ -46,7 +46,10 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
 
 
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
-    """Return the ids of the claims and checks that test a sentence."""
+    """Return the ids of the claims and checks that test a sentence of the paper.
+
+    Each entry lists the ids of the sentences that it tests.
+    """
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 

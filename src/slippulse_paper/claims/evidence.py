@@ -60,14 +60,16 @@ def agreed_answers(first: Iterable, second: Iterable) -> list[bool | None]:
 
 
 def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertain:
-    """Return a value and its grid uncertainty from the values that lattices of each spacing give.
+    """Return a value and its grid uncertainty, from one value for each lattice.
 
-    The uncertainty of an exact solution, which is a single table, is 0.
+    ``values`` begins with that of the finest lattice. The uncertainty of an exact solution, which
+    is a single table, is 0.
     """
     if len(tables) == 1:
         return values[0], 0.0
     if tables[0].empty:
         return values[0], NAN
+    # Spacings of the coarser lattices, divided by that of the finest.
     factors = [float(table["factor"].dropna().iloc[0]) for table in tables[1:]]
     study = grid_study(values, factors)
     return study.value, study.uncertainty
@@ -140,12 +142,18 @@ class Evidence:
         return [table[has_no_flag] for table in tables]
 
     def assign(self, simulation: str, columns: Callable[[pd.DataFrame], dict]) -> None:
-        """Add columns that are computed from the others on each lattice."""
+        """Add columns to the runs of a simulation, on each lattice.
+
+        columns : function that computes the new columns, by name, from the table of a lattice
+        """
         tables = self._lattices[simulation]
         self._lattices[simulation] = [table.assign(**columns(table)) for table in tables]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Return runs on three lattices; the condition is evaluated on the finest."""
+        """Return the runs of some simulations as three tables, the finest lattice first.
+
+        where : condition over columns that selects runs, evaluated on the finest lattice
+        """
         selected = []
         for name in simulations:
             tables = self._lattices[name]
@@ -216,7 +224,10 @@ class Evidence:
         return decided
 
     def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain:
-        """Return median and largest deviation from exact theory of values at spacing 0."""
+        """Return the median and the largest deviation of a quantity from exact theory.
+
+        The deviation of a run is |value/exact - 1|, with the value extrapolated to spacing 0.
+        """
         table = self.finest(simulation)
         ratio = ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}")
         deviation = (ratio - 1.0).abs()

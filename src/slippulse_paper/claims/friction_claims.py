@@ -87,7 +87,11 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
-    """Compare width and slip at the strongest rate dependences with those at constant friction."""
+    """Judge whether other laws change width and slip of pulses by more than the tolerance.
+
+    Pulses with the strongest rate dependences are compared with those at constant friction and at
+    the same level of pre-stress. Front speeds under slip weakening are quoted, too.
+    """
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
     # The column over_critical has the rate dependence, divided by the critical one.
     sizes = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in PULSE_SIZES]]

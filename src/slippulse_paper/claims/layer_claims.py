@@ -47,8 +47,13 @@ def change(rows: pd.DataFrame, part: str, quantity: str) -> pd.Series:
 
 
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
-    """Return the distance that a front runs while its shear front comes down from the top."""
-    return np.sqrt(2.0 * pulses["speed"] ** 2 / pulses.index.get_level_values("gamma") - 1.0)
+    """Return the distance that a front runs while its shear front comes down from the top.
+
+    Shear waves have the speed sqrt(gamma/2). The shear front of a source that moves along the top
+    at the speed v is a straight line. It meets the fault at sqrt(2 v^2/gamma - 1) behind the source.
+    """
+    gamma = pulses.index.get_level_values("gamma")
+    return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:

@@ -109,7 +109,10 @@ class Entry(SimpleNamespace):
 
     def _spread(self) -> list[str]:
         """Return how many runs a number has, their spread, and how many are left out."""
-        parts = [f"{self.runs} runs"] if self.runs and self.kind != "qualitative" else []
+        parts = []
+        # The measured value of a qualitative claim is a number of runs already.
+        if self.runs and self.kind != "qualitative":
+            parts.append(f"{self.runs} runs")
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
             parts.append(f"90 % of them deviate by at most {ninety}, the worst by {largest}")
@@ -122,9 +125,11 @@ class Counts(Entry):
     """A qualitative claim, shown as numbers of runs."""
 
     def predicted_text(self) -> str:
+        """Return the number of runs, in all of which the statement should hold."""
         return f"all of {self.predicted:.0f}"
 
     def measured_text(self) -> str:
+        """Return the numbers of runs in which it holds, fails or is undecided."""
         total = self.held + self.failed + self.undecided
         parts = [f"{self.held} of {total}"]
         if self.failed:
@@ -150,6 +155,7 @@ class ReadOff(Entry):
     """Readings from a figure, shown as a chi-square."""
 
     def predicted_text(self) -> str:
+        """Return the degrees of freedom, which are the expectation of chi-square."""
         degrees = "degree" if self.predicted == 1 else "degrees"
         return f"{self.predicted:.0f} {degrees} of freedom"
 

@@ -70,6 +70,7 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
         decided += evidence.agreed(sweep, rule.where, holds, rule.decidable, rule.ends)
+    # Additional numbers for the table of claims: expressions, and counts of regimes.
     table = evidence.tables[rule.sweeps[0]]
     further = {words: float(value_of(table, number)) for words, number in rule.numbers.items()}
     for words, condition in rule.counted.items():
@@ -223,7 +224,10 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
 
 
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether different pre-stress makes different pulses in a region of zero pre-stress."""
+    """Judge whether different pre-stress makes different pulses in a region of zero pre-stress.
+
+    Each pair of runs must have different pulses, in peak velocity or in half-width.
+    """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
     # The smallest nonzero damping ratio is that of the figures; without damping the lattice rings.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]

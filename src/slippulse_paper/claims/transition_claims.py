@@ -128,11 +128,14 @@ def transitions(evidence: Evidence) -> list[Runs]:
 
 @cache
 def arrests(evidence: Evidence) -> list[Runs]:
-    """Return runs under held stress, measured when the left front has covered part of |x_minus|."""
+    """Return runs under a stress boundary, measured when the left front counts as arrested.
+
+    Exact solutions count as arrested when the left front has covered a fraction of |x_minus|, and
+    lattices at their last release.
+    """
     judged = []
     for choice, (rows,) in exact_runs(evidence, "stress"):
         judged.append(Runs(choice, [widest_at_each_level(rows, COLUMNS_BY_CRITERION[FIRST_STICK])]))
-    # Lattices are measured at their last release.
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
@@ -317,7 +320,10 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the left front takes longer than at speed 1 in each run."""
+    """Judge whether the left front takes longer to its arrest than at speed 1, in each run.
+
+    The paper estimates the time by this speed, and says that it underestimates the time.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
         # At speed 1 the time equals the distance. Only the two finest lattices are compared.
@@ -330,8 +336,12 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
             return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
         def extra_verdict(tolerance: float) -> str:
-            # The tolerance 0 sets no limit. The earlier tolerance limited how much longer it takes.
-            return takes_longer(tolerance if tolerance > 0.0 else np.inf).verdict()
+            """Return the verdict with a limit; the tolerance 0 sets none.
+
+            The earlier tolerance of the claim limited how much longer the front may take.
+            """
+            limit = tolerance if tolerance > 0.0 else np.inf
+            return takes_longer(limit).verdict()
 
         return replace(takes_longer(np.inf), extra_verdict=extra_verdict)
 

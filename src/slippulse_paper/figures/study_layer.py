@@ -62,13 +62,17 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the pulses at one level of pre-stress, with their change from a coarser grid.
 
+    A station is a position on the fault at which a pulse is measured. The last one counts.
+
     rows : rows of the part pulse of the study, for all levels, grids and stations
     """
     rows = rows.sort_values("cells")
     # The level at which most fracture energies have been run.
     level = rows["tau0"].mode().iloc[0]
     rows = rows[rows["tau0"] == level]
-    by_pulse = rows[rows["station"] == rows["station"].max()].groupby(PULSE_COLUMNS)
+    at_last_station = rows[rows["station"] == rows["station"].max()]
+    # The rows of a pulse are in the order of their grids, the finest last.
+    by_pulse = at_last_station.groupby(PULSE_COLUMNS)
     finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS)
     second_finest = by_pulse.nth(-2).set_index(PULSE_COLUMNS)
     changes = (finest[QUANTITIES] - second_finest[QUANTITIES]).abs().add_prefix("change_of_")

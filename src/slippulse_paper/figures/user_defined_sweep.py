@@ -98,6 +98,7 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     varying = [column for column in different if runs[column].nunique() > 1]
 
     def rank(column: str) -> tuple[bool, int]:
+        """Return a key that sorts numbers before texts, and then by the number of values."""
         is_number = runs[column].dtype.kind == "f"
         return not is_number, -runs[column].nunique()
 

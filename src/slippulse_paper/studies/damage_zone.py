@@ -32,10 +32,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
     """Return the stress drop by ratio of stiffness, for one thickness of the rock.
 
-    The damage zone has the thickness 1 and the shear modulus 1, and so does the displacement.
+    The slip, and the thickness and shear modulus of the damage zone, are 1.
     """
-    rock_modulus = 1.0 / stiffness_ratios
-    drop = damage_zone_stress_drop(1.0, 1.0, rock_modulus, 1.0, thickness)
+    drop = damage_zone_stress_drop(
+        slip=1.0,
+        shear_modulus=1.0,
+        rock_shear_modulus=1.0 / stiffness_ratios,
+        thickness=1.0,
+        rock_thickness=thickness,
+    )
     columns = {"thickness_ratio": thickness, "stiffness_ratio": stiffness_ratios}
     return pd.DataFrame({"role": "curve"} | columns | {"stress_drop": drop})
 
@@ -45,9 +50,15 @@ def displacements(slip: float) -> pd.DataFrame:
 
     The top of the rock has the imposed displacement.
     """
+    # A displacement of the top relative to the fault makes a stress as large as the drop that
+    # theory gives for a slip of this size.
     stress = float(
         damage_zone_stress_drop(
-            IMPOSED_DISPLACEMENT - slip, 1.0, 1.0 / STIFFNESS_RATIO, 1.0, ROCK_THICKNESS
+            slip=IMPOSED_DISPLACEMENT - slip,
+            shear_modulus=1.0,
+            rock_shear_modulus=1.0 / STIFFNESS_RATIO,
+            thickness=1.0,
+            rock_thickness=ROCK_THICKNESS,
         )
     )
     # Both layers have the same stress, so strains are inversely proportional to the moduli.

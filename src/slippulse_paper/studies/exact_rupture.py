@@ -86,6 +86,7 @@ def _exact(rupture: Rupture, x: np.ndarray) -> dict[str, np.ndarray]:
 def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     """Return slip velocities of sliding points: exact on the left half, a lattice on the right."""
     x, times = run["sample_position"].values, run["sample_time"].values
+    # Both halves include x = 0.
     left, right = x[x < 1e-9], x[x > -1e-9]
     exact = rupture.map(times, left, ("slip_velocity",))["slip_velocity"]
     lattice = run["sample_velocity"].sel(sample_position=right).values

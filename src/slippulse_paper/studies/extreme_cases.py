@@ -125,7 +125,7 @@ class Case:
 
 
 def levels_near_1() -> list[Case]:
-    """Return undamped fronts at 7 to 70 wave speeds, which are exact at any spacing."""
+    """Return cases of undamped fronts at 7 to 70 wave speeds, which are exact at any spacing."""
     return [
         Case(
             family="level near 1",
@@ -142,7 +142,7 @@ def levels_near_1() -> list[Case]:
 
 
 def levels_near_0() -> list[Case]:
-    """Return pulses that are narrower than a block, have few blocks, or are resolved."""
+    """Return cases of pulses that are narrower than a block, have few blocks, or are resolved."""
     cases = []
     for level, dx, duration, width, verdict in (
         (0.05, 0.8, 60.0, 0.8, FLAGGED),
@@ -153,13 +153,22 @@ def levels_near_0() -> list[Case]:
         (0.01, 0.01, 60.0, 0.02, FLAGGED),
     ):
         label = f"tau_0 = {level:g}, dx = {dx:g}"
-        case = Case("level near 0", label, "final slip", verdict, dx, duration, level, width)
+        case = Case(
+            family="level near 0",
+            label=label,
+            quantity="final slip",
+            expected_verdict=verdict,
+            dx=dx,
+            duration=duration,
+            level=level,
+            width=width,
+        )
         cases.append(case)
     return cases
 
 
 def extreme_gammas() -> list[Case]:
-    """Return transitions at small gamma, and front speeds up to large gamma dx^2."""
+    """Return cases of transitions at small gamma, and of front speeds up to large gamma dx^2."""
     # At the smallest gamma the slip is 1e8, and the length scale of the leaf springs is 500 blocks.
     cases = [
         Case(
@@ -200,7 +209,7 @@ def extreme_gammas() -> list[Case]:
 
 
 def strong_damping() -> list[Case]:
-    """Return front speeds under both release rules, at damping ratios from 0 to 100.
+    """Return cases of front speeds under both release rules, at damping ratios from 0 to 100.
 
     Strong damping makes fronts under the total rule fast, so they settle early. Under the elastic
     rule, the theory holds only if the damped layer at the front is thin compared with the pulse.
@@ -231,7 +240,7 @@ def strong_damping() -> list[Case]:
 
 
 def extreme_spacings() -> list[Case]:
-    """Return spacings from one layer thickness to a thousandth."""
+    """Return cases with spacings from one layer thickness to a thousandth."""
     cases = []
     for dx, quantity, duration, verdict in (
         (1.0, "front speed", 60.0, FLAGGED),
@@ -247,7 +256,7 @@ def extreme_spacings() -> list[Case]:
 
 
 def extreme_nucleations() -> list[Case]:
-    """Return nucleations by narrow Gaussians, and by one that is 1000 thicknesses wide."""
+    """Return cases with narrow Gaussians, and one with a width of 1000 layer thicknesses."""
     cases = []
     # A peak that is narrower than a block could lie unseen between two blocks.
     for width_in_blocks, verdict in ((0.5, REFUSED), (1.0, RIGHT), (2.0, RIGHT)):
@@ -266,7 +275,7 @@ def extreme_nucleations() -> list[Case]:
 
 
 def negative_levels() -> list[Case]:
-    """Return arrests of the left front in strongly negative pre-stress.
+    """Return cases of arrests of the left front in strongly negative pre-stress.
 
     Beyond a limit that is set by the friction ratio, blocks would slide back. Without damping the
     ringing of the lattice stalls such fronts, and on coarse lattices they are late.
@@ -299,17 +308,26 @@ def negative_levels() -> list[Case]:
 
 
 def long_duration() -> list[Case]:
-    """Return what rounding changes in a steady pulse over a very long run."""
+    """Return cases that measure what rounding changes in a steady pulse over a very long run."""
     return [
-        Case("duration", "t = 100000", quantity, RIGHT, dx=1.0, duration=1e5, width=2.0, gamma=0.01)
+        Case(
+            family="duration",
+            label="t = 100000",
+            quantity=quantity,
+            expected_verdict=RIGHT,
+            dx=1.0,
+            duration=1e5,
+            width=2.0,
+            gamma=0.01,
+        )
         for quantity in ("speed drift", "slip drift", "energy residual")
     ]
 
 
 def single_precision() -> list[Case]:
-    """Return parameters in single precision, which are converted to double, and states in it.
+    """Return cases with parameters or with a state in single precision.
 
-    The solver does not offer a state in single precision.
+    Such parameters are converted to double precision. The solver does not offer such a state.
     """
     parameters = Case(
         family="float32",
@@ -339,9 +357,9 @@ def single_precision() -> list[Case]:
 
 
 def peaks_near_threshold() -> list[Case]:
-    """Return peaks just below the threshold, which release nothing, and just above it.
+    """Return cases with the peak of the pre-stress just below and just above the threshold.
 
-    A peak just above the threshold acts like one at it.
+    A peak below the threshold releases nothing. One just above it acts like one at it.
     """
     return [
         Case("peak", "1 - 1e-09", "releases", RIGHT, 0.05, 30.0, peak=1.0 - 1e-9),
@@ -352,7 +370,7 @@ def peaks_near_threshold() -> list[Case]:
 
 
 def two_nucleations() -> list[Case]:
-    """Return fronts from two equal peaks.
+    """Return cases of fronts from two equal peaks.
 
     They meet halfway, at the time when a single front would arrive there.
     """
@@ -365,7 +383,7 @@ def two_nucleations() -> list[Case]:
 
 
 def barriers() -> list[Case]:
-    """Return a deep barrier, which stops the pulse, and a shallow one, which does not."""
+    """Return cases of a deep barrier, which stops the pulse, and a shallow one, which does not."""
     deep, shallow = barrier(1.5), barrier(0.2)
     return [
         Case("barrier", "depth 1.5", "passes by", RIGHT, 0.05, 60.0, bumps=deep),
@@ -379,9 +397,9 @@ def barrier(depth: float) -> tuple[tuple[float, float, float], ...]:
 
 
 def unstable_runs() -> list[Case]:
-    """Return the damping with the printed sign, under which grid modes grow, and large steps.
+    """Return cases that are unstable: damping with the printed sign, and too large steps.
 
-    The steps exceed the stability bound of each scheme.
+    The printed sign makes grid modes grow. The steps exceed the stability bound of each scheme.
     """
     too_large = {"max_step": 3.0}
     textbook = {"scheme": "fixed_step"} | too_large

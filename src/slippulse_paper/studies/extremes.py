@@ -82,7 +82,7 @@ def judged(case: Case, window: float) -> dict[str, Any]:
 
     window : last fraction of its path over which the front speed is measured
     """
-    tolerance = TOLERANCES.get(case.family, TOLERANCES.get(case.quantity, 0.0))
+    tolerance = tolerance_of(case)
     expected = case.expected()
     error = math.nan
     try:
@@ -107,6 +107,13 @@ def judged(case: Case, window: float) -> dict[str, Any]:
         "message": outcome.message,
         "block_updates": outcome.block_updates,
     }
+
+
+def tolerance_of(case: Case) -> float:
+    """Return the tolerance of the family of a case, or else that of its quantity, or else 0."""
+    if case.family in TOLERANCES:
+        return TOLERANCES[case.family]
+    return TOLERANCES.get(case.quantity, 0.0)
 
 
 def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:

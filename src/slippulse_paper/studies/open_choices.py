@@ -142,12 +142,16 @@ def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float
 
 def tent_arrest(left: float, ratio: float, release: str) -> Arrest:
     """Return the arrest for nucleation by a tent with W = 1."""
-    # The right front crosses the tent with the speed that belongs to each pre-stress from 1 to 0.
-    slownesses = 1.0 / front_speed(0.5 + 0.5 * TENT_NODES, ratio, release)
+    # On the right the pre-stress falls evenly from 1 to 0 over the distance 1, so the time in which
+    # the right front crosses the tent is the mean slowness (1/speed) over these levels. The nodes
+    # of the integration lie between -1 and 1.
+    levels = 0.5 + 0.5 * TENT_NODES
+    slownesses = 1.0 / front_speed(levels, ratio, release)
     crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
-    # The integral of the pre-stress is 1/2 on the right and (1 + left)/2 on the left of x = 0.
-    # Beyond the tent the left level balances it.
-    distance = 1.0 + (1.0 + 0.5 * left) / -left
+    # The integral of the pre-stress is 1/2 on the right and (1 + left)/2 on the left of x = 0. The
+    # negative level beyond the tent balances it at x_minus.
+    tent_integral = 1.0 + 0.5 * left
+    distance = 1.0 + tent_integral / -left
     # The last wave that drives the left front enters at the end of the tent on the right. Beyond
     # it the right front runs at the wave speed.
     time = distance + 1.0 + crossing_time

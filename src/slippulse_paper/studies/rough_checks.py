@@ -70,7 +70,7 @@ def ensembles_of(sweep: Mapping[str, Any]) -> Iterator[list[Profile]]:
 
 
 def parameters_of(ensemble: Sequence[Profile]) -> dict[str, Any]:
-    """Return the parameters that the profiles of an ensemble have in common."""
+    """Return the parameters of the random field, which all profiles of an ensemble share."""
     return {name: ensemble[0]["rough"][name] for name in ROUGH_KEYS}
 
 
