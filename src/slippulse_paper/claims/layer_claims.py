@@ -22,7 +22,12 @@ CROSSINGS_OF_TRANSITION = np.pi / np.sqrt(8.0)
 
 
 def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
-    """Return the rows of all grids at the last station, or some stations before the last."""
+    """Return the rows of all runs and grids at the last station.
+
+    A station is a position on the fault at which a pulse is measured.
+
+    before_last : number of stations before the last one, to choose an earlier station
+    """
     rows = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
     return rows[rows["station"] == rows["station"].max() - before_last]
 
@@ -50,7 +55,8 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance that a front runs while its shear front comes down from the top.
 
     Shear waves have the speed sqrt(gamma/2). The shear front of a source that moves along the top
-    at the speed v is a straight line. It meets the fault at sqrt(2 v^2/gamma - 1) behind the source.
+    at the speed v is a straight line. It meets the fault behind the source, at the distance
+    sqrt(2 v^2/gamma - 1).
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)

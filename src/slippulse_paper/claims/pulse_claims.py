@@ -82,9 +82,9 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
 def change_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     """Return the signs of the changes of velocity and half-width: 1, -1, or 0 for no change.
 
-    The columns are "changed" and "widened". Each pulse enters the level ``beyond`` and is compared
-    with the pulse that began in the same pre-stress and stays at level 0. A velocity has changed if
-    it has changed more than that of the other pulse.
+    The columns are "changed" and "widened". Each pulse enters the level ``beyond``. It is compared
+    with the pulse that began in the same pre-stress and enters the level 0, where theory says that
+    it does not change. What this one changes on a lattice does not count as a change.
     """
     staying = table[table["beyond"] == 0.0].set_index("left")
     change = table[VELOCITY_CHANGE]

@@ -136,11 +136,13 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     is_stuck = (slip > 0.0) & (velocity <= 0.0)
     # If no block sticks, the run remains a crack until the last instant.
     first_stick = int(np.argmax(is_stuck.any(axis=1))) if is_stuck[: last + 1].any() else last
-    last_name = "crack"
     if is_stuck[last, x == 0.0].all():
+        # The centre has stuck. A pulse runs on each side on which blocks slide.
         left_slides = (velocity[last, x < 0.0] > 0.0).any()
         right_slides = (velocity[last, x > 0.0] > 0.0).any()
         last_name = ("arrested", "pulse", "two pulses")[int(left_slides) + int(right_slides)]
+    else:
+        last_name = "crack"
     later = (first_stick + last) // 2
     # If two instants fall on the same sample, the name of the later one is kept.
     name_of_sample = {0: "start", first_stick // 2: "crack", first_stick: "first stick"}

@@ -15,6 +15,7 @@ import xarray as xr
 
 from slippulse.data.points import Recorded, runs_in
 from slippulse.model.rough_prestress import rough
+from slippulse.theory.closed_pulse import SteadyPulse
 from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.pulse import steady_pulse
 
@@ -150,44 +151,60 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
 def local_state(ensemble: Ensemble) -> dict[str, float]:
     """Compare final slip and front speed with steady pulses at the local and the mean pre-stress.
 
-    Final slip is compared at each block, in units of the slip of the steady pulse at the mean
-    pre-stress. Steady slip is proportional to the pre-stress. Slowness (time per distance, the
-    inverse of speed) is compared over the whole path of each front.
+    Both are in units of the steady pulse at the mean pre-stress.
     """
-    level = ensemble.parameters["level"]
-    damping_ratio = ensemble.parameters["damping_ratio"]
-    pulse = steady_pulse(level, ensemble.parameters["gamma"], damping_ratio=damping_ratio)
+    parameters = ensemble.parameters
+    level, damping_ratio = parameters["level"], parameters["damping_ratio"]
+    pulse = steady_pulse(level, parameters["gamma"], damping_ratio=damping_ratio)
     # A pulse forgets what it met after this distance.
     memory = pulse.width / (pulse.speed - 1.0)
-    exact_slownesses = 1.0 / front_speed(SPEED_LEVELS, damping_ratio)
+    numbers = {"pulse_width": pulse.width, "memory": memory}
+    return numbers | slip_numbers(ensemble, pulse, memory) | slowness_numbers(ensemble, pulse)
 
-    slips_by_run, levels_by_run = [], []
-    slownesses, exact_mean_slownesses = [], []
+
+def slip_numbers(ensemble: Ensemble, pulse: SteadyPulse, memory: float) -> dict[str, float]:
+    """Compare the final slip of all blocks of an ensemble with steady slip.
+
+    The columns off_local and off_mean have the median deviations from the slip of steady pulses at
+    the local and at the mean pre-stress. Steady slip is proportional to the pre-stress.
+
+    pulse : the steady pulse at the mean pre-stress
+    memory : blocks are compared beyond this position, where the nucleation is forgotten
+    """
+    slips, levels = [], []
     for run in ensemble.runs:
-        x, prestress = run["x"], run["prestress"]
-        release_time = run["release_time"]
-        is_settled = (x > memory) & np.isfinite(run["stick_time"])
-        slips_by_run.append(run["slip"][is_settled] / pulse.slip)
-        levels_by_run.append(prestress[is_settled] / level)
-
-        is_passed = (x > START) & np.isfinite(release_time)
-        times = release_time[is_passed]
-        slownesses.append((times[-1] - times[0]) / np.ptp(x[is_passed]))
-        local = np.interp(prestress[is_passed], SPEED_LEVELS, exact_slownesses)
-        exact_mean_slownesses.append(np.mean(local))
-
-    slip, relative_level = np.concatenate(slips_by_run), np.concatenate(levels_by_run)
-    slowness_ratios = np.divide(slownesses, exact_mean_slownesses)
+        is_compared = (run["x"] > memory) & np.isfinite(run["stick_time"])
+        slips.append(run["slip"][is_compared])
+        levels.append(run["prestress"][is_compared])
+    relative_slip = np.concatenate(slips) / pulse.slip
+    relative_level = np.concatenate(levels) / ensemble.parameters["level"]
     return {
-        "pulse_width": pulse.width,
-        "memory": memory,
-        # Median deviations from the steady slip at the local and at the mean pre-stress.
-        "off_local": float(np.median(np.abs(slip / relative_level - 1.0))),
-        "off_mean": float(np.median(np.abs(slip - 1.0))),
-        "slip_mean": float(np.mean(slip)),
-        "slip_deviation": float(np.std(slip)),
+        "off_local": float(np.median(np.abs(relative_slip / relative_level - 1.0))),
+        "off_mean": float(np.median(np.abs(relative_slip - 1.0))),
+        "slip_mean": float(np.mean(relative_slip)),
+        "slip_deviation": float(np.std(relative_slip)),
+    }
+
+
+def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]:
+    """Compare the slowness of fronts (time per distance) with that of steady fronts.
+
+    slowness : mean over all runs, divided by the slowness of the steady pulse
+    slowness_off : largest deviation of a run from the mean of the slownesses of steady fronts at
+        the local pre-stress
+    """
+    exact_slownesses = 1.0 / front_speed(SPEED_LEVELS, ensemble.parameters["damping_ratio"])
+    slownesses, local_slownesses = [], []
+    for run in ensemble.runs:
+        is_passed = (run["x"] > START) & np.isfinite(run["release_time"])
+        x, times = run["x"][is_passed], run["release_time"][is_passed]
+        slownesses.append((times[-1] - times[0]) / np.ptp(x))
+        at_blocks = np.interp(run["prestress"][is_passed], SPEED_LEVELS, exact_slownesses)
+        local_slownesses.append(np.mean(at_blocks))
+    ratios = np.divide(slownesses, local_slownesses)
+    return {
         "slowness": float(np.mean(slownesses) * pulse.speed),
-        "slowness_off": float(np.max(np.abs(slowness_ratios - 1.0))),
+        "slowness_off": float(np.max(np.abs(ratios - 1.0))),
     }
 
 
@@ -285,29 +302,46 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
 
 
 def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
-    """Return the velocity of the pulse at the end of its run, simulated and by theory.
+    """Return the velocity of the right pulse at the end of its run, simulated and by theory.
 
-    Also return whether it is a crack: then the blocks near the nucleation are still sliding.
+    The pulse has its largest velocity at its crest. By theory this is half of the integral of the
+    pre-stress from x_* to the origin of the wave that the crest meets there. Also return whether
+    the pulse is a crack: then the blocks near the nucleation are still sliding.
 
-    The largest velocity is carried by the wave that left x_*, where the left front stopped, to the
-    right (see `push_at`). It is half of the integral of the pre-stress from x_* to the point where
-    the wave that it meets, which runs to the left, has left the right front.
+    integral : of the pre-stress, up to each of CELL_MIDDLES
     """
-    x, end_time = run["x"], run.attrs["end_time"]
-    release_time = run["release_time"]
-    is_left = CELL_MIDDLES < 0.0
-    x_star = float(CELL_MIDDLES[is_left][np.argmin(integral[is_left])])
-    # Waves move at speed 1. A block that was never released counts as released at the end.
-    departure = float(np.interp(x_star, x, np.nan_to_num(release_time, nan=end_time)))
-    crest = x_star + end_time - departure
-    # A wave that left the right front at position X and time t is at X + t - end_time at the end.
-    on_front = (x > 0.0) & np.isfinite(release_time)
-    front_x, front_time = x[on_front], release_time[on_front]
-    origin_of_met_wave = float(np.interp(crest + end_time, front_x + front_time, front_x))
-    integral_there = float(np.interp(origin_of_met_wave, CELL_MIDDLES, integral))
-    first_block_beyond_start = np.searchsorted(x, START)
+    crest = crest_position(run, integral)
+    integral_at_origin = float(np.interp(origin_on_front(run, crest), CELL_MIDDLES, integral))
+    push = integral_at_origin - integral[CELL_MIDDLES < 0.0].min()
+    first_block_beyond_start = np.searchsorted(run["x"], START)
     return {
-        "velocity": float(np.interp(crest, x, run["slip_velocity"])),
-        "exact_velocity": 0.5 * (integral_there - integral[is_left].min()),
+        "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
+        "exact_velocity": 0.5 * push,
         "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
     }
+
+
+def crest_position(run: Recorded, integral: np.ndarray) -> float:
+    """Return the position of the crest of the right pulse at the end of a run.
+
+    The crest is the wave that started to the right at x_* < 0, where the left front stopped and the
+    integral is smallest, when this front arrived. Waves move at speed 1.
+    """
+    is_left = CELL_MIDDLES < 0.0
+    x_star = float(CELL_MIDDLES[is_left][np.argmin(integral[is_left])])
+    end_time = run.attrs["end_time"]
+    # A block that was never released counts as released at the end.
+    release_time = np.nan_to_num(run["release_time"], nan=end_time)
+    departure = float(np.interp(x_star, run["x"], release_time))
+    return x_star + end_time - departure
+
+
+def origin_on_front(run: Recorded, position: float) -> float:
+    """Return where the wave that is at a position at the end left the right front.
+
+    The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
+    the end.
+    """
+    is_on_front = (run["x"] > 0.0) & np.isfinite(run["release_time"])
+    x, time = run["x"][is_on_front], run["release_time"][is_on_front]
+    return float(np.interp(position + run.attrs["end_time"], x + time, x))

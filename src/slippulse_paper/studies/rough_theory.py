@@ -73,11 +73,11 @@ def first_passage(
 ) -> np.ndarray:
     """Return the probability that the push of a pulse stays positive over a distance.
 
-    The push is the integral of the pre-stress from where the rupture began to the pulse, and the
-    pulse dies when it reaches 0. As the pulse advances, the push makes a random walk whose steps
-    are correlated. Far from 0 this is Brownian motion with drift. Near 0 the correlation matters:
-    the Brownian motion is to be absorbed not at 0 but some way behind it, which is known exactly
-    for exponential correlation (`MILNE`).
+    The push is the integral of the pre-stress from where the left front stopped up to the pulse,
+    and the pulse dies when it reaches 0. As the pulse advances, the push makes a random walk whose
+    steps are correlated. Far from 0 this is Brownian motion with drift. Near 0 the correlation
+    matters. It is taken into account by letting the Brownian motion end not at 0 but below it, at a
+    distance that is known exactly for exponential correlation (`MILNE`).
 
     distance : distances over which pulses go on
     push : push of each pulse at the beginning; the two arrays are broadcast against each other
