@@ -120,6 +120,7 @@ class OverChoices(Claim):
     shown: Claim
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return one verdict from those at all combinations."""
         verdicts = [one.claim.verdict(tolerance) for one in self.combinations]
         return rules.verdict_over_choices(verdicts)
 

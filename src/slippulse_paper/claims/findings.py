@@ -116,7 +116,10 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
 
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:
-    """Return the median of exact divided by predicted time for each fraction of the distance."""
+    """Return the median of the exact time divided by the paper's estimate.
+
+    There is one median for each fraction of the path that counts as arrest.
+    """
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
     for fraction, median in transition.medians(judged.combinations).items():

@@ -121,6 +121,7 @@ class Qualitative(Claim):
         return {"held": held, "failed": failed, "undecided": undecided}
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return the verdict from the numbers of runs; the tolerance has no influence."""
         counts, runs = self.counts(), len(self.decided)
         if not runs:
             return rules.NOT_TESTABLE
@@ -169,6 +170,7 @@ class Equation(Claim):
         return [rules.within(deviation, uncertainty, tolerance) for deviation, uncertainty in runs]
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return the worst verdict of all runs that have numbers."""
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
@@ -210,7 +212,9 @@ class Approximate(Claim):
     from_exact: Uncertain = (NAN, NAN)
 
     def own_verdict(self, tolerance: float) -> str:
-        return rules.within(*self.median, tolerance)
+        """Return the verdict on the median deviation."""
+        median_deviation, uncertainty = self.median
+        return rules.within(median_deviation, uncertainty, tolerance)
 
     def fields(self) -> dict[str, Any]:
         """Return the medians and the spread of the runs; without usable runs only counts."""
@@ -251,12 +255,14 @@ class Reading(Claim):
         return float(chdtrc(degrees, self.chi_square)) if degrees else NAN
 
     def own_verdict(self, tolerance: float) -> str:
-        p = self.p_value()
-        if math.isnan(p):
+        """Return the verdict on the fit; the tolerance is the smallest p-value that is accepted."""
+        p_value = self.p_value()
+        if math.isnan(p_value):
             return rules.NOT_TESTABLE
+        # One degree of freedom is too few to judge a fit.
         if self.degrees_of_freedom < 2:
             return rules.INCONCLUSIVE
-        return rules.REPRODUCED if p >= tolerance else rules.FAILED
+        return rules.REPRODUCED if p_value >= tolerance else rules.FAILED
 
     def fields(self) -> dict[str, Any]:
         """Return the chi-square as measured, and its expectation as predicted."""

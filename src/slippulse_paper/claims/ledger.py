@@ -179,7 +179,10 @@ def with_texts(claim: Mapping[str, Any]) -> Entry:
 
 
 class Ledger:
-    """All claims of claims.json by id, and all findings of findings.json."""
+    """All claims of claims.json by id, and all findings of findings.json.
+
+    Iteration goes over the claims.
+    """
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
         self.claims = {claim["id"]: with_texts(claim) for claim in claims}

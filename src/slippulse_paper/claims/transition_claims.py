@@ -409,9 +409,10 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
 
 
 class Divergence(NamedTuple):
-    """Whether T_trans and L_trans diverge as gamma falls, and their exponents of gamma.
+    """The exponents of gamma in T_trans and L_trans.
 
-    ``diverges`` is None if there are fewer than three runs.
+    ``diverges`` is True if both diverge as gamma falls. It is None if there are fewer than three
+    runs.
     """
 
     diverges: bool | None

@@ -235,17 +235,28 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
         "diffusivity": rate,
         "death_scale": float(np.mean(pushes)) ** 2 / rate,
     }
+    # Survival at the largest distance.
     row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
-    alive = pulses[~pulses["died"]]
-    velocity_errors = (alive["velocity"] - alive["exact_velocity"]).abs()
-    row |= {
+    row |= velocity_numbers(pulses[~pulses["died"]], rate)
+    return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**parameters)
+
+
+def velocity_numbers(alive: pd.DataFrame, rate: float) -> dict[str, float]:
+    """Return the spread of the velocities of living pulses, and the spread by theory.
+
+    The velocity is half of the push. Its variance grows with distance like that of a random walk.
+
+    alive : rows of the part pulse
+    rate : variance of the push per distance, from `diffusivity`
+    """
+    errors = (alive["velocity"] - alive["exact_velocity"]).abs()
+    return {
         "cracks": int(alive["is_crack"].sum()),
         "velocity_mean": alive["velocity"].mean(),
         "velocity_deviation": alive["velocity"].std(),
         "velocity_predicted": 0.5 * np.sqrt(rate * alive["distance"].mean()),
-        "velocity_off": velocity_errors.median(),
+        "velocity_off": errors.median(),
     }
-    return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**parameters)
 
 
 def predicted_survival(

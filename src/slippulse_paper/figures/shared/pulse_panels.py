@@ -85,7 +85,7 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 class PulseFrame(NamedTuple):
-    """Where a simulated pulse is drawn, and the units of its curves.
+    """The range in which a simulated pulse is drawn, and the units of its curves.
 
     begin, end : range of distances from the front, which are negative behind it
     units : units of x and of each of FIELDS
