@@ -29,6 +29,12 @@ DRAWS = {
 
 PANELS = {"displacement": "a", "stress": "b"}
 COLUMNS = ["panel", "role", "series", "time", "position", "value"]
+MARK_LOOK: Look = {
+    "markeredgewidth": 0.8,
+    "markeredgecolor": BLACK,
+    "markersize": 4.5,
+    "zorder": 5.0,
+}
 
 
 class RuptureExtent(NamedTuple):
@@ -115,34 +121,27 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
-    # The rows of a rupture are its left front and its right front.
-    left_front = roles["measured"].iloc[0]
+    # The first row has the left front.
+    time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
     # A run that ends before its transition has no arrows.
-    if np.isfinite(left_front["time"]):
-        draw_arrows(
-            axes,
-            RuptureExtent(
-                left_front["time"], left=left_front["position"], length=left_front["value"]
-            ),
-        )
-    mark: Look = {
-        "markeredgewidth": 0.8,
-        "markeredgecolor": BLACK,
-        "markersize": 4.5,
-        "zorder": 5.0,
-    }
+    if np.isfinite(time):
+        draw_arrows(axes, RuptureExtent(time, left, length))
     paper = roles["paper"]
-    axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **mark)
+    look = MARK_LOOK | {"color": ORANGE, "label": "paper's estimate"}
+    axes.plot(paper["time"], paper["position"], "D", **look)
     if "last_release" in roles:
         # Under a stress boundary the paper's estimate of the time is |x_-|.
         x_minus = -float(paper["time"].iloc[0])
-        axes.axhline(x_minus, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
-        # The label stands beside the ticks of the axis.
-        axes.annotate("$x_-$", (0.0, x_minus), (6, 1), textcoords="offset points", zorder=4.0)
-        left_end = roles["last_release"].iloc[:1]
-        axes.plot(
-            left_end["time"], left_end["position"], "o", color="white", label="last release", **mark
-        )
+        draw_last_release(axes, roles["last_release"].iloc[:1], x_minus)
+
+
+def draw_last_release(axes: Axes, left_front: pd.DataFrame, x_minus: float) -> None:
+    """Draw the last release of the left front, and the line at x_minus, which it approaches."""
+    axes.axhline(x_minus, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
+    # The label stands beside the ticks of the axis.
+    axes.annotate("$x_-$", (0.0, x_minus), (6, 1), textcoords="offset points", zorder=4.0)
+    look = MARK_LOOK | {"color": "white", "label": "last release"}
+    axes.plot(left_front["time"], left_front["position"], "o", **look)
 
 
 def draw_arrows(axes: Axes, rupture: RuptureExtent) -> None:

@@ -1,11 +1,13 @@
 """Animate a scene: slip velocity and slip as functions of position."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from slippulse.data.files import write_whole
 from slippulse.data.readable_units import readable_unit
@@ -23,6 +25,13 @@ FIELDS = {
 }
 
 
+class Curve(NamedTuple):
+    """A drawn line, and its values with one row for each sampled time."""
+
+    line: Line2D
+    values: np.ndarray
+
+
 def save_animation(
     run: xr.Dataset, title: str, path: str | Path, layer: Layer | None = None
 ) -> None:
@@ -30,33 +39,18 @@ def save_animation(
 
     With a layer, the axes are in SI units.
     """
-    lower, upper = drawn_range(run)
-    positions = run["sample_position"].values
-    inside = (positions >= lower) & (positions <= upper)
-    x, unit_of_x = _drawn_values(positions, "length", layer)
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    curves = _draw_first_frame(figure, run, layer)
     times, unit_of_time = _drawn_values(run["sample_time"].values, "time", layer)
     frames = spaced_indices(times.size, FRAME_COUNT)
-    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
-    panels = figure.subplots(2, 1, sharex=True)
-    # Each line with its values, which have one row for each time.
-    lines = []
-    for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
-        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
-        largest = np.nanmax(values)
-        axes.axhline(0.0, color=GREY, linewidth=0.5)
-        (line,) = axes.plot(x[inside], values[0], color=colour)
-        axes.set(ylabel=_with_unit(label, unit), ylim=(-0.04 * largest, 1.05 * largest))
-        lines.append((line, values))
-    limits_of_x = np.array([lower, upper]) if layer is None else x[inside][[0, -1]]
-    panels[1].set(xlim=tuple(limits_of_x), xlabel=_with_unit(r"position $x$", unit_of_x))
     clock = figure.suptitle("", fontsize=9.0)
     # A dollar in the title is a text and begins no formula.
     plain_title = title.replace("$", r"\$")
 
     def draw(frame: int) -> None:
         """Draw one instant; ``frame`` is its index in the sampled times."""
-        for line, values in lines:
-            line.set_ydata(values[frame])
+        for curve in curves:
+            curve.line.set_ydata(curve.values[frame])
         clock.set_text(rf"{plain_title}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
 
     # The layout is computed once, for the longest title, so that frames do not jump.
@@ -66,6 +60,27 @@ def save_animation(
     animation = FuncAnimation(figure, draw, frames=frames)
     writer = PillowWriter(fps=FRAMES_PER_SECOND)
     write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))
+
+
+def _draw_first_frame(figure: Figure, run: xr.Dataset, layer: Layer | None) -> list[Curve]:
+    """Draw one panel for each of FIELDS, at the first sampled time, and return their curves."""
+    lower, upper = drawn_range(run)
+    positions = run["sample_position"].values
+    inside = (positions >= lower) & (positions <= upper)
+    all_x, unit_of_x = _drawn_values(positions, "length", layer)
+    x = all_x[inside]
+    panels = figure.subplots(2, 1, sharex=True)
+    curves = []
+    for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
+        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
+        largest = np.nanmax(values)
+        axes.axhline(0.0, color=GREY, linewidth=0.5)
+        (line,) = axes.plot(x, values[0], color=colour)
+        axes.set(ylabel=_with_unit(label, unit), ylim=(-0.04 * largest, 1.05 * largest))
+        curves.append(Curve(line, values))
+    limits = (lower, upper) if layer is None else (x[0], x[-1])
+    panels[-1].set(xlim=limits, xlabel=_with_unit(r"position $x$", unit_of_x))
+    return curves
 
 
 def _with_unit(label: str, unit: str) -> str:

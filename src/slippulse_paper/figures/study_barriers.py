@@ -142,7 +142,7 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
         axes.lines[-1].set_label(rf"$b = {ratio:g}$")
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth")
-    axes.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio")
+    axes.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes for each $b$")
     axes.legend(loc="upper left")
 
 

@@ -157,19 +157,7 @@ def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
         friction=LinearRate(alpha),
     )
     run = simulate_on_lattice(scene)
-    right = right_of_centre(run)
-    halfway, end = sliding_part(right, 0.5 * duration), sliding_part(right, duration)
-    velocity = right["slip_velocity"].values
-    # The innermost block that still slides is the first one with a velocity above 0.
-    innermost_velocity = velocity[velocity > 0.0][0]
-    keeps_growing = end.width >= MIN_GROWTH * halfway.width
-    has_quiet_tail = innermost_velocity / velocity.max() <= QUIET_VELOCITY
-    if keeps_growing or has_quiet_tail:
-        centre_velocity = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
-        regime = CREEPING if is_pulse(centre_velocity, velocity.max(), still) else CRACK
-        pulse = PulseSize(np.nan, np.nan)
-    else:
-        regime, pulse = STICKING, pulse_at(right, duration)
+    regime, pulse = _regime_and_pulse(run, duration, still)
     return {
         "level": level,
         "rate_strengthening": alpha,
@@ -180,6 +168,26 @@ def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
         "pulse_width": pulse.width,
         "pulse_slip": pulse.slip,
     }
+
+
+def _regime_and_pulse(run: xr.Dataset, duration: float, still: float) -> tuple[str, PulseSize]:
+    """Return the regime at the end of a run, and the pulse; its size is NaN if it does not stick.
+
+    Without a trailing edge the sliding part keeps growing, or has a tail of tiny velocities.
+    """
+    right = right_of_centre(run)
+    halfway, end = sliding_part(right, 0.5 * duration), sliding_part(right, duration)
+    velocity = right["slip_velocity"].values
+    largest = velocity.max()
+    # The innermost block that still slides is the first one with a velocity above 0.
+    innermost_velocity = velocity[velocity > 0.0][0]
+    keeps_growing = end.width >= MIN_GROWTH * halfway.width
+    has_quiet_tail = innermost_velocity / largest <= QUIET_VELOCITY
+    if not keeps_growing and not has_quiet_tail:
+        return STICKING, pulse_at(right, duration)
+    centre_velocity = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
+    regime = CREEPING if is_pulse(centre_velocity, largest, still) else CRACK
+    return regime, PulseSize(np.nan, np.nan)
 
 
 def _map(regime: str, alpha: float) -> pd.DataFrame:

@@ -60,8 +60,10 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     divided by the width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
+    # The exact profile of each run.
     profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
     parts = []
+    # A sweep has one boundary condition.
     for name, sweep in data.items():
         runs = tables[name]
         boundary = str(runs["boundary"].iloc[0])
