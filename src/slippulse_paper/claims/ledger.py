@@ -144,6 +144,7 @@ class Counts(Entry):
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
     def _off(self) -> str:
+        """Return in how many runs the claim holds and what the others do."""
         # The text is "HELD of ALL", followed by what did not hold.
         held, _, rest = self.measured_text().partition(", ")
         if rest:
@@ -166,6 +167,7 @@ class ReadOff(Entry):
         return f"p = {number(self.deviation, 2)}, required at least {setting(self.tolerance)}"
 
     def _off(self) -> str:
+        """Return the p-value of the best fit."""
         return f"The best fit has {self.compared_text()}."
 
 

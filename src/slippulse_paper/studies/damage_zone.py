@@ -50,8 +50,8 @@ def displacements(slip: float) -> pd.DataFrame:
 
     The top of the rock has the imposed displacement.
     """
-    # A displacement of the top relative to the fault makes a stress as large as the drop that
-    # theory gives for a slip of this size.
+    # Both layers together are sheared by the imposed displacement minus the slip. Stress is
+    # proportional to it with the same factor as the stress drop to the slip.
     stress = float(
         damage_zone_stress_drop(
             slip=IMPOSED_DISPLACEMENT - slip,
