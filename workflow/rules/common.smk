@@ -11,7 +11,8 @@ PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
 # Workers, too, run the code of this project, even if another version is installed or on PYTHONPATH.
 SOURCE_FOLDER = str(PROJECT / "src")
 sys.path.insert(0, SOURCE_FOLDER)
-os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [SOURCE_FOLDER, os.getenv("PYTHONPATH")]))
+PYTHON_PATH = os.pathsep.join(filter(None, [SOURCE_FOLDER, os.getenv("PYTHONPATH")]))
+os.environ.update(PYTHONPATH=PYTHON_PATH)
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
