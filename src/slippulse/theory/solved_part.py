@@ -31,8 +31,8 @@ class SolvedPart(PartWithEdge):
 
     # The last requested positions and their stick times are kept, since several fields are
     # requested at the same positions one after another.
-    _last_positions = np.empty(0)
-    _last_stick_times = np.empty(0)
+    _last_positions: np.ndarray = np.empty(0)
+    _last_stick_times: np.ndarray = np.empty(0)
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times at positions.
