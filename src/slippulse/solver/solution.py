@@ -60,9 +60,12 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     if not lattice.localised:
         strain = np.append(np.diff(slip) / dx, 0.0)
+    # Weights of the blocks, and of the bonds between each block and the next one. On a mirrored
+    # lattice each counts twice, except block 1 on the axis; block 0 is a mirror image.
     weight, bond = np.full((2, lattice.size), 2.0 if medium.is_mirrored else 1.0)
     if medium.is_mirrored:
-        weight[:2], bond[0] = (0.0, 1.0), 0.0
+        weight[0], weight[1] = 0.0, 1.0
+        bond[0] = 0.0
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
         # Symplectic Euler is a leapfrog scheme. Its velocities belong to the time half a step
@@ -85,8 +88,9 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
         "friction_loss": totals["friction_loss"],
     }
     work, *others = parts.values()
+    missing = abs(work - sum(others))
     largest = max(map(abs, parts.values()))
-    return parts | {"energy_residual": abs(work - sum(others)) / largest if largest else 0.0}
+    return parts | {"energy_residual": missing / largest if largest else 0.0}
 
 
 def compute_numbers(lattice: Lattice, status: int) -> dict:
@@ -127,7 +131,9 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     recorder.velocity[rest, inside] = motion.w[VELOCITY, recorder.blocks[inside]]
     blocks = np.arange(lattice.size) + lattice.first_block
     released = blocks[np.isfinite(history.release_time)]
-    first, last = (released.min(), released.max()) if released.size else (0, 0)
+    first, last = 0, 0
+    if released.size:
+        first, last = released.min(), released.max()
     keep = (blocks >= first - MARGIN_BLOCKS) & (blocks <= last + MARGIN_BLOCKS)
     if lattice.is_mirrored:
         keep &= blocks >= 0
@@ -135,8 +141,12 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     keep[0] = keep[-1] = False
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
+        """Return the kept blocks, with their mirror images times a sign if half was solved."""
         kept = values[keep]
-        return np.concatenate([sign * kept[:0:-1], kept]) if lattice.is_mirrored else kept.copy()
+        if not lattice.is_mirrored:
+            return kept.copy()
+        mirror_images = sign * kept[:0:-1]
+        return np.concatenate([mirror_images, kept])
 
     return Solution(
         x=unfold(blocks, -1) * lattice.scene.dx,
