@@ -184,16 +184,15 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
         "color": GREY,
         "fontsize": SMALL_TEXT,
         "path_effects": TEXT_OUTLINE,
+        "transform": axes.get_xaxis_transform(),
     }
-    look["transform"] = axes.get_xaxis_transform()
     # Both names are written between the two lines, at different heights.
-    places: list[Look] = [
-        {"y": 0.98, "ha": "left", "va": "top"},
-        {"y": 0.02, "ha": "right", "va": "bottom"},
-    ]
-    for strength, place in zip(rows.sort_values("value").itertuples(), places, strict=True):
+    kinetic_look = look | {"y": 0.98, "ha": "left", "va": "top"}
+    static_look = look | {"y": 0.02, "ha": "right", "va": "bottom"}
+    kinetic, static = rows.sort_values("value").itertuples()
+    for strength, text_look in ((kinetic, kinetic_look), (static, static_look)):
         axes.axvline(strength.value, color=GREY, linewidth=0.6, linestyle=":")
-        axes.text(x=strength.value, s=strength.series, **place, **look)
+        axes.text(x=strength.value, s=strength.series, **text_look)
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:

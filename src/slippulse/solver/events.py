@@ -178,7 +178,8 @@ def add_difference(motion, difference, first, last, block, now, h, top):
 
     It changes their velocities at time h and their polynomials around the start of the step.
     """
-    w, offset, velocity = motion.w, motion.offset, motion.velocity
+    w, offset = motion.w, motion.offset
+    velocity = motion.velocity
     rows, values = difference.rows, difference.values
     # Block i of the lattice is column i + column of the difference.
     column = np.uint64(CENTRE_COLUMN) - np.uint64(block)
@@ -209,6 +210,22 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
     if not is_on_axis:
         neighbour_velocities += velocity_at(w, block - 1, top, now)
     return -acceleration_change * neighbour_velocities
+
+
+@kernel_function(inline=True)
+def update_mirror_image(medium, motion, first, top):
+    """Return the first block that an event changed, and update block 0 if it is one of them.
+
+    On a mirrored lattice, block 0 is the mirror image of block 2. ``first`` is the first changed
+    block apart from mirror images.
+    """
+    if not medium.is_mirrored or first > 2:
+        return first
+    w, offset = motion.w, motion.offset
+    offset[0] = offset[2]
+    for m in range(1, top + 1):
+        w[m, 0] = w[m, 2]
+    return np.int64(0)
 
 
 @inlined_kernel
@@ -245,18 +262,12 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
-    # Block 0 is the mirror image of block 2.
-    with_ghost = medium.is_mirrored and first <= 2
-    if with_ghost:
-        offset[0] = offset[2]
-        for m in range(1, top + 1):
-            w[m, 0] = w[m, 2]
+    first_changed = update_mirror_image(medium, motion, first, top)
 
     lowest = predict_releases(medium, motion, segments, prediction, first - 1, last + 1, now, h)
     drop_predicted_events(prediction, first, last)
     is_finite = predict_sticks(motion, prediction, first, last, last - first, now, h, top)
     predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
-    first_changed = 0 if with_ghost else first
     return EventEffect(
         is_finite, first_changed, last, velocity_before, lowest, loss_change, work_change
     )

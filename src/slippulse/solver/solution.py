@@ -123,7 +123,8 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
 
 def extract_solution(lattice: Lattice, status: int) -> Solution:
     """Return the solution of a lattice whose kernel stopped for the reason ``status``."""
-    motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
+    motion, history = lattice.motion, lattice.history
+    recorder = lattice.recorder
     # If the kernel stopped early, the lattice is at rest at the times of all missing samples.
     inside = recorder.blocks >= 0
     rest = slice(lattice.tally.samples_taken, None)

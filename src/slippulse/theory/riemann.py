@@ -144,7 +144,7 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     return (np.array(at_left_ends)[:, None] + (source * growth) @ NODES_TO_INTEGRALS.T) / growth
 
 
-class Columns(NamedTuple):
+class PanelNodes(NamedTuple):
     """The nodes of some panels, seen from some points: the arguments of an integrand.
 
     d_xi and d_eta are xi - g and eta - h, with a row for each point and a column for each node.
@@ -162,13 +162,14 @@ class DependenceDomains:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
     Every field is an integral over these domains (`_integrate`), whose integrand is a function of
-    `Columns`.
+    `PanelNodes`.
     """
 
     def __init__(
         self, curve: Curve, gamma: float, alpha: float, y: np.ndarray, time: np.ndarray
     ) -> None:
-        self.curve, self.alpha, self.y = curve, alpha, y
+        self.curve, self.y = curve, y
+        self.alpha = alpha
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
         self.left, self.right = curve.crossings(y, self.xi, self.eta)
@@ -176,7 +177,7 @@ class DependenceDomains:
     def slip_velocity(self) -> np.ndarray:
         """Return du/dt at the points."""
         source = self.curve.source
-        return 0.5 * self._integrate(lambda at: at.kernel(0) * source[at.panels].ravel())
+        return 0.5 * self._integrate(lambda nodes: nodes.kernel(0) * source[nodes.panels].ravel())
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
@@ -193,10 +194,10 @@ class DependenceDomains:
             return -0.5 * left - by_decay, 0.5 * right - by_decay
         source, k = self.curve.source, self.stiffness
 
-        def integrand(at: Columns) -> np.ndarray:
+        def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return tau K' (eta - h) dx/ds and tau K' (xi - g) dx/ds."""
-            kernel_slope = at.kernel(1) * source[at.panels].ravel()
-            return np.stack([kernel_slope * at.d_eta, kernel_slope * at.d_xi])
+            kernel_slope = nodes.kernel(1) * source[nodes.panels].ravel()
+            return np.stack([kernel_slope * nodes.d_eta, kernel_slope * nodes.d_xi])
 
         by_xi, by_eta = self._integrate(integrand, (2,))
         return 0.5 * (k * by_xi - left) - by_decay, 0.5 * (k * by_eta + right) - by_decay
@@ -216,15 +217,15 @@ class DependenceDomains:
         """Return u at the points, by the formula for 2 u in the module docstring."""
         k, alpha = self.stiffness, self.alpha
 
-        def integrand(at: Columns) -> np.ndarray:
+        def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return the expression in braces per unit of s."""
-            p, slope, d_time, d_g, d_h = static_solution.on(at.panels)
+            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
             factor_of_kernel = -slope * d_time
             # alpha/2 p dx, where 2 dx = dh - dg.
             factor_of_kernel -= 0.25 * alpha * p * (d_h - d_g)
-            factor_of_slope = at.d_eta * (k * p * d_g)
-            factor_of_slope -= at.d_xi * (k * p * d_h)
-            return at.kernel(0) * factor_of_kernel + at.kernel(1) * factor_of_slope
+            factor_of_slope = nodes.d_eta * (k * p * d_g)
+            factor_of_slope -= nodes.d_xi * (k * p * d_h)
+            return nodes.kernel(0) * factor_of_kernel + nodes.kernel(1) * factor_of_slope
 
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
@@ -234,23 +235,24 @@ class DependenceDomains:
         By y, xi decreases and eta increases at the same rate. So z changes by
         k [(xi - g) - (eta - h)], the last bracket by dg + dh, and E does not change.
         """
-        k, alpha, curve = self.stiffness, self.alpha, self.curve
+        k, alpha = self.stiffness, self.alpha
+        curve = self.curve
         out = self._minus_mean_of_ends(static_solution, 1)
         if k == alpha == 0.0:
             return out
 
-        def integrand(at: Columns) -> np.ndarray:
+        def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return the derivative of the expression in braces, per unit of s."""
-            p, slope, d_time, d_g, d_h = static_solution.on(at.panels)
-            kernel_slope = at.kernel(1)
+            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
+            kernel_slope = nodes.kernel(1)
             # The derivative of K' in the second term.
-            bracket = at.d_eta * (p * d_g) - at.d_xi * (p * d_h)
-            by_kernel_slope = k**2 * at.kernel(2) * bracket
+            bracket = nodes.d_eta * (p * d_g) - nodes.d_xi * (p * d_h)
+            by_kernel_slope = k**2 * nodes.kernel(2) * bracket
             # The derivative of K in the first term, and of the bracket in the second one.
             factor_of_kernel = slope * d_time + 0.25 * alpha * p * (d_h - d_g)
             by_kernel = kernel_slope * (k * factor_of_kernel)
             by_bracket = kernel_slope * (k * p * (d_g + d_h))
-            return (at.d_eta - at.d_xi) * (by_kernel - by_kernel_slope) + by_bracket
+            return (nodes.d_eta - nodes.d_xi) * (by_kernel - by_kernel_slope) + by_bracket
 
         # The ends of the integral move. At the left end xi = g, at the right end eta = h, so that
         # K = 1 and K' = -1/4 at both of them.
@@ -284,7 +286,7 @@ class DependenceDomains:
         return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
     def _integrate(
-        self, integrand: Callable[[Columns], np.ndarray], components: tuple[int, ...] = ()
+        self, integrand: Callable[[PanelNodes], np.ndarray], components: tuple[int, ...] = ()
     ) -> np.ndarray:
         """Return the integral of an integrand times E over each domain, [component, point].
 
@@ -312,7 +314,7 @@ class DependenceDomains:
             # Only the panels at the two ends, which are cut, may have nodes outside of the domain.
             z_at_ends = z.reshape(low.size, -1, NODE_COUNT)[row, np.array([high, low])]
             kernel = kernel_function(self.stiffness, z, z_at_ends)
-            values = integrand(Columns(d_xi, d_eta, kernel, panels))
+            values = integrand(PanelNodes(d_xi, d_eta, kernel, panels))
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)
             by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
@@ -330,14 +332,16 @@ class DependenceDomains:
         # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
-    def _integrate_without_kernel(self, integrand: Callable[[Columns], np.ndarray]) -> np.ndarray:
+    def _integrate_without_kernel(
+        self, integrand: Callable[[PanelNodes], np.ndarray]
+    ) -> np.ndarray:
         """Return the integrals if the kernel is 1, where all points have the same integrand.
 
         Then each is the difference of two integrals from the left end of the curve.
         """
         zero, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
-        columns = Columns(d_xi=zero, d_eta=zero, kernel=lambda _: 1.0, panels=all_panels)
-        values = np.broadcast_to(integrand(columns), (1, self.curve.x.size))
+        nodes = PanelNodes(d_xi=zero, d_eta=zero, kernel=lambda _: 1.0, panels=all_panels)
+        values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))
         by_panel = values.reshape(-1, NODE_COUNT)
         sums = np.concatenate([[0.0], np.cumsum(by_panel @ WEIGHTS)])
         low, high = np.minimum(self.left.panel, self.right.panel), self.right.panel

@@ -306,11 +306,11 @@ class Rupture(ExplainsRemovedNames):
         knots = np.concatenate([part.knots.x for part in self._solved])
         knots = np.append(knots, -knots) if self.prestress.symmetric else knots
         is_between = (knots - stuck) * (knots - front) < 0.0
-        behind = np.append(knots[is_between], stuck)
-        behind = behind[np.argsort(np.abs(behind - front))]
-        first_stuck = int(np.argmax(self._stick_time_beyond_end(behind) <= time))
-        ahead = behind[first_stuck - 1] if first_stuck else front
-        return root_between(delay, float(behind[first_stuck]), float(ahead), xtol=1e-11)
+        candidates = np.append(knots[is_between], stuck)
+        candidates = candidates[np.argsort(np.abs(candidates - front))]
+        first_stuck = int(np.argmax(self._stick_time_beyond_end(candidates) <= time))
+        ahead = candidates[first_stuck - 1] if first_stuck else front
+        return root_between(delay, float(candidates[first_stuck]), float(ahead), xtol=1e-11)
 
     @cached_property
     def largest_velocity(self) -> float:
