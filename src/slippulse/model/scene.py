@@ -10,7 +10,7 @@ from html import escape
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
-from .checks import check_choice, check_kind, check_number, check_that, short_repr
+from .checks import check_choice, check_kind, check_number, check_that, refusal, short_repr
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import read_recorded_law
@@ -383,7 +383,7 @@ def refuse_extra_terms(values: Mapping, condition: str) -> None:
     condition : when no extra term is allowed, as the end of the message
     """
     for name, value in used_extra_terms(values).items():
-        check_that(False, name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
+        raise refusal(name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
 
 
 def gamma_without_extra_terms(attributes: Mapping) -> float:

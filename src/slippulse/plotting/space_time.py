@@ -122,13 +122,22 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     rows = spaced_indices(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
     # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
-    kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.nanmax(velocity)))))
+    largest_velocity = np.nanmax(velocity)
+    decimals = 4 - int(np.floor(np.log10(largest_velocity)))
+    kept = velocity[np.ix_(rows, columns)].round(decimals)
     # Samples that are 0 are left out, except in the first row and column, which define the grid.
-    written = kept != 0.0
-    written[0], written[:, 0] = True, True
-    grid = {"time": time[written], "position": position[written], "value": kept[written]}
-    largest = pd.DataFrame([{"role": "largest", "value": np.nanmax(velocity)}])
-    return pd.concat([pd.DataFrame({"role": "map", **grid}), largest])
+    is_written = kept != 0.0
+    is_written[0], is_written[:, 0] = True, True
+    grid = pd.DataFrame(
+        {
+            "role": "map",
+            "time": time[is_written],
+            "position": position[is_written],
+            "value": kept[is_written],
+        }
+    )
+    largest = pd.DataFrame([{"role": "largest", "value": largest_velocity}])
+    return pd.concat([grid, largest])
 
 
 def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
