@@ -112,7 +112,8 @@ def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
         tau = np.asarray(run["prestress"])[crossed]
         row[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
         distance = np.abs(x[crossed])
-        crossed_last = tau[distance >= (1.0 - window) * np.max(distance, initial=0.0)]
+        is_in_window = distance >= (1.0 - window) * np.max(distance, initial=0.0)
+        crossed_last = tau[is_in_window]
         is_constant = crossed_last.size > 0 and np.ptp(crossed_last) == 0.0
         row[f"level_ahead_{side}"] = float(crossed_last[0]) if is_constant else np.nan
     return row

@@ -46,8 +46,11 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
     def initialise(
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
-        for name in values.keys() - signature.parameters:
+        """Convert damping_ratio to beta, and call the initialiser of the dataclass."""
+        unknown_names = values.keys() - signature.parameters
+        for name in unknown_names:
             refuse_removed_argument("Scene", name)
+        # The arguments by name, including those that were given by position.
         bind = partial(signature.bind_partial, self, *given)
         arguments = bind(**values).arguments
         if damping_ratio is not None:

@@ -162,12 +162,15 @@ def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
 
     The stick time is NaN for blocks that did not stick.
     """
-    x = run["x"].values
     slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = np.union1d(slipped[spaced_indices(slipped.size, FRONT_POINTS)], slipped[-1:])
+    spaced = slipped[spaced_indices(slipped.size, FRONT_POINTS)]
+    # The last block is kept as well, so that the front is drawn to its end.
+    kept = np.union1d(spaced, slipped[-1:])
+    x = run["x"].values[kept]
+    release, stick = run["release_time"].values[kept], run["stick_time"].values[kept]
     return [
-        pd.DataFrame({"role": role, "position": x[kept], "time": run[edge].values[kept]})
-        for role, edge in (("front", "release_time"), ("trailing", "stick_time"))
+        pd.DataFrame({"role": "front", "position": x, "time": release}),
+        pd.DataFrame({"role": "trailing", "position": x, "time": stick}),
     ]
 
 

@@ -327,6 +327,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
 def apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top):
     """Let all events until the time ``latest`` happen together, after a step that ended early."""
     prediction, tally = scratch.prediction, history.tally
+    # The step is over, so that an array of its events can hold the blocks to be released.
     due = scratch.step_events.first
     count = event_prediction.list_due_releases(segments, prediction, latest, due)
     for q in range(prediction.event_count.n):

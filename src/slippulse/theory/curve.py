@@ -278,8 +278,9 @@ class Curve:
         """
         later = np.flatnonzero((side * self.edges > side * x) & (self.edge_times > time))
         if not later.size:
-            return float(self.edges[-1 if side > 0.0 else 0])
-        panel = later[:1] - 1 if side > 0.0 else later[-1:]
+            return float(self.edges[-1] if side > 0.0 else self.edges[0])
+        # The panel between the nearest edge that is reached later and the edge before it.
+        panel = np.array([later[0] - 1 if side > 0.0 else later[-1]])
         s = self._solve(self.columns("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
         return side * max(side * front, side * x)
@@ -364,10 +365,12 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """
     square = s * s
     fourth = square * square
+    # Horner's rule in s^4 for the four polynomials q_m and for those of the derivative.
     out = coefficients[-1] * fourth
     for row in coefficients[-2:0:-1]:
         out += row
         out *= fourth
     out += coefficients[0]
+    # q_0 + s^2 q_2 and q_1 + s^2 q_3, and then the sum of the first and s times the second.
     out = out[:4] + square * out[4:]
     return out[:2] + s * out[2:]

@@ -172,7 +172,10 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
     def too_fast(v: float) -> float:
-        """Return 1 if v is above the speed of the rupture, -1 if not."""
+        """Return 1 if v is above the speed of the rupture, -1 if not.
+
+        At a lower speed the slip stops before the first minimum of slip velocity.
+        """
         end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
         if math.isnan(end):
             return -1.0
@@ -191,9 +194,11 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     zone_end, tail = _zone_and_tail(speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
     turn, _ = tail.first_turn()
     if tail.creeps_forever() or not turn.size:
-        return SteadyRupture(speed, math.inf, tau0 / gamma)
-    stick = root_between(lambda x: float(tail.at(x, 2)), float(turn[1]), float(turn[0]))
-    return SteadyRupture(speed, -(zone_end + stick), float(tail.at(stick)))
+        return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
+    # The pulse sticks where U' = U'' = 0. At this speed, U' is 0 where U'' is.
+    nearer, farther = turn.tolist()
+    stick = root_between(lambda xi: float(tail.at(xi, 2)), farther, nearer)
+    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=float(tail.at(stick)))
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
@@ -264,12 +269,16 @@ def rate_pulse(
     span = (0.0, MAX_HALF_PERIODS * half_period)
     with np.errstate(over="ignore", invalid="ignore"):
         path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
-    if not len(path.y_events[1]):
+    _, states_at_peaks = path.y_events
+    if not len(states_at_peaks):
         allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
-    peak = v * max(float(state[1]) for state in path.y_events[1])
-    if path.status != 1:
+    peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
+    # The status is 1 if the integration ended at a terminal event, which is the stop of the slip.
+    has_stopped = path.status == 1
+    if not has_stopped:
         return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)
+    final_slip, _ = path.y[:, -1]
     return SteadyRupture(
-        speed=v, width=float(path.t[-1]), slip=float(path.y[0, -1]), peak_velocity=peak
+        speed=v, width=float(path.t[-1]), slip=float(final_slip), peak_velocity=peak
     )

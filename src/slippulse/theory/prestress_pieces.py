@@ -81,17 +81,21 @@ def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
 
 
 def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
-    """Return the intervals with tau >= 1 from left to right.
+    """Return the left and right end of each interval with tau >= 1, from left to right.
 
-    An interval is a point where tau only touches 1.
+    An interval is a point where tau only touches 1. Neighbouring pieces are one interval.
     """
-    merged: list[tuple[float, float]] = []
-    for left, right, _, above in split_into_pieces(prestress, 1.0):
-        if above and merged and left <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], right)
-        elif above:
-            merged.append((left, right))
-    return merged
+    lefts: list[float] = []
+    rights: list[float] = []
+    for piece in split_into_pieces(prestress, 1.0):
+        if not piece.above:
+            continue
+        if rights and piece.left <= rights[-1]:
+            rights[-1] = piece.right
+        else:
+            lefts.append(piece.left)
+            rights.append(piece.right)
+    return list(zip(lefts, rights, strict=True))
 
 
 def _sign_changes(

@@ -388,6 +388,7 @@ class Rupture(ExplainsRemovedNames):
         for part in self._solved:
             part.fill_fields(out, x=positions, index=index, time=time)
         if "strain" in out and self.prestress.symmetric:
+            # The fields are those at |x|. Only the strain is different, by its sign, at x < 0.
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
         return {name: np.where(unknown, np.nan, values) for name, values in out.items()}

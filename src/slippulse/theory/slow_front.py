@@ -391,19 +391,23 @@ class SlowFront:
     def next_entry(self, last_entry: float, negligible: float) -> Entry | None:
         """Return the next entry after the position of the last one; None if it is not known.
 
-        It follows the last one along the curve. A search for its value of T - x would fail where
-        the pre-stress is nearly 0, since T - x is constant to rounding there. Entries that move the
-        front by a negligible distance are skipped.
+        It follows the last one along the curve, from right to left. A search for its value of T - x
+        would fail where the pre-stress is nearly 0, since T - x is constant to rounding there.
+        Entries are skipped as long as all of them together move the front by no more than the
+        fraction ``negligible`` of the size of the rupture.
         """
-        panel, s, _ = self.entry_next_to(last_entry)
+        entry = self.entry_next_to(last_entry)
         skipped_motion, has_skipped = 0.0, False
-        while panel >= 0 and not self.is_slow_to_right(panel):
-            parameters = s - (s + 1.0) * ENTRY_FRACTIONS
-            motions = skipped_motion + self.motion_by_entries(panel, parameters)
+        # The panels are examined one after another. The search ends at a panel of the slow front
+        # itself; an entry behind it is found in another way.
+        while entry.panel >= 0 and not self.is_slow_to_right(entry.panel):
+            # Samples from the entry to the left end of its panel.
+            s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
+            motions = skipped_motion + self.motion_by_entries(entry.panel, s)
             # Only entries with negative pre-stress can move the front back.
-            is_negative = bool(np.min(self.curve.source[panel]) < 0.0)
+            is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
             largest_skipped = self.size * (NEGLIGIBLE_MOTIONS[0] if is_negative else negligible)
-            # The last of the entries from the first one on that are all skipped.
+            # The last sample up to which all samples are skipped.
             is_skipped = np.append(np.abs(motions) <= largest_skipped, False)
             last_skipped = int(np.argmin(is_skipped)) - 1
             skipped_motion = float(motions[last_skipped])
@@ -411,13 +415,13 @@ class SlowFront:
             if last_skipped < ENTRY_FRACTIONS.size - 1:
                 goes_on = not is_negative or motions[last_skipped + 1] >= skipped_motion
                 return self.entry_after_skipped(
-                    Entry(int(panel), float(parameters[last_skipped])),
+                    Entry(int(entry.panel), float(s[last_skipped])),
                     skipped_motion=skipped_motion,
                     has_skipped=has_skipped,
                     goes_on=goes_on,
                 )
-            panel, s = panel - 1, 1.0
-        if panel >= 0:
+            entry = Entry(entry.panel - 1, 1.0)
+        if entry.panel >= 0:
             return self.entry_behind_slow_front()
         return Entry(-1, 1.0) if has_skipped else None
 

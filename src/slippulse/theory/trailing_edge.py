@@ -459,13 +459,15 @@ class PartWithEdge(Part):
     def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the trailing edge may have a minimum.
 
-        Its slope, or du/dt at the final time, falls into such an interval from both ends.
+        Stick times fall from both ends towards the inside of such an interval. Intervals with an
+        uncertain stick time are left out.
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
         falls_inwards = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
         is_fast = knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        return falls_inwards & is_fast & (error[:-1] + error[1:] == 0.0)
+        is_certain = error[:-1] + error[1:] == 0.0
+        return falls_inwards & is_fast & is_certain
 
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
         """Return positions between knots that have stuck before the first stick at a knot."""
