@@ -102,19 +102,22 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     medium, motion = lattice.medium, lattice.motion
     dx = medium.dx
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    # The stress at the end, of all blocks except the ghost blocks.
     elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
     stress = (motion.tau - medium.leaf_stiffness * slip)[1:-1] + elastic
     if medium.damping_counts_for_release:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
-    stuck = ~lattice.sliding[1:-1]
-    lowest = float(np.min(stress[stuck], initial=totals["min_stuck_stress"]))
+    is_stuck = ~lattice.sliding[1:-1]
+    lowest = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
+    # A block would slide backwards at a stress of -(1 + 2 mu_k/(mu_s - mu_k)).
+    friction_ratio_needed = max(0.0, -(lowest + 1.0) / 2.0)
     first_stuck = (totals["first_stuck_block"] + lattice.first_block) * dx
     return compute_energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
         **{name: totals[name] for name in KEPT_COUNTERS},
         "min_stuck_stress": lowest,
-        "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
+        "friction_ratio_needed": friction_ratio_needed,
         "first_stick_time": totals["first_stick_time"],
         "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.is_mirrored),
