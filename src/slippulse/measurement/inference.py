@@ -75,6 +75,6 @@ def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, An
             fit["regions"][confidence] = float(low), float(high)
         fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
         fits[str(release)] = fit
-    from_best = sorted(fits.values(), key=lambda fit: fit["chi2"])
-    difference = from_best[-1]["chi2"] - from_best[0]["chi2"]
-    return fits | {"best": from_best[0], "difference": difference}
+    best_fit = min(fits.values(), key=lambda fit: fit["chi2"])
+    worst_fit = max(fits.values(), key=lambda fit: fit["chi2"])
+    return fits | {"best": best_fit, "difference": worst_fit["chi2"] - best_fit["chi2"]}

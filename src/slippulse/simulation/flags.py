@@ -58,8 +58,8 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
             # This form of the condition also flags a residual that is NaN.
             "energy": not numbers["energy_residual"] <= MAX_ENERGY_RESIDUAL,
         }
-    names = [*filter(flags.get, flags), *solution.flags]
-    return {"pulse_blocks": blocks, "run_flags": ",".join(names)}
+    raised = [name for name, is_raised in flags.items() if is_raised]
+    return {"pulse_blocks": blocks, "run_flags": ",".join([*raised, *solution.flags])}
 
 
 def lowest_stress(scene: Scene, solution: Solution) -> float:

@@ -163,12 +163,12 @@ class Curve:
         self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
         self.panels, self.restarts = panels, restarts
+        # The fields of all panels as arrays, [panel, node] and [panel, left or right end].
         columns = map(np.array, zip(*panels, strict=True))
-        self.x, self.time, self.source, x_ends, time_ends = columns
-        self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
-        self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
+        self.x, self.time, self.source, self.x_ends, self.time_ends = columns
+        self.edges = np.append(self.x_ends[:, 0], self.x_ends[-1, 1])
+        self.edge_times = np.append(self.time_ends[:, 0], self.time_ends[-1, 1])
         self.t_plus_x, self.t_minus_x = self.time + self.x, self.time - self.x
-        self.x_ends, self.time_ends = x_ends, time_ends
 
     def joined(self, other: "Curve") -> "Curve":
         """Return this curve followed by another that begins at its right end, without restarts."""
@@ -201,6 +201,7 @@ class Curve:
         if is_short or are_all_computed or columns.size > MAX_SEPARATE_COLUMNS:
             return self.powers.take(columns, axis=-1)
         fields = [getattr(self, name) for name in PANEL_FIELDS]
+        # A column is the number of the panel, plus `count` for each field before (see `columns`).
         values = [fields[k // count][k % count] for k in columns]
         return NODES_TO_POWERS @ np.reshape(values, (-1, NODE_COUNT)).T
 
