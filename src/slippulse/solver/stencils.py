@@ -34,9 +34,9 @@ def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf_stiffnes
         # strain does not.
         elastic = inverse_dx * (strain[i] - strain[i - UNSIGNED_ONE])
         force = elastic - leaf_stiffness * w[SLIP, i] + tau[i]
-        if damping != 0.0:
-            force += damping * second_difference(w, VELOCITY, i)
-        w[ACCELERATION, i] = force
+        w[ACCELERATION, i] = (
+            force + damping * second_difference(w, VELOCITY, i) if damping != 0.0 else force
+        )
 
 
 @kernel_function(inline=True)
