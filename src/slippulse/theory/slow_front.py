@@ -110,9 +110,9 @@ class Progress(NamedTuple):
 
 
 class Event(NamedTuple):
-    """Where the front reaches the mark ("mark") or stops (None), by the parameter on the chunk.
+    """An event of a slow front: it reaches the mark (name "mark") or stops (name None).
 
-    The parameter is infinite if there is no event.
+    s is the parameter of the event on the chunk, infinite if there is no event.
     """
 
     s: float
