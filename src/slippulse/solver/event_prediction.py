@@ -179,6 +179,7 @@ def has_simultaneous_event(segments, prediction, medium, block, latest):
 
     Its own mirror image counts as well. Such events must happen together.
     """
+    # Two events interact if the blocks that they change overlap or are neighbours.
     near = 2 * EVENT_REACH + 1
     # Block 1 on the axis is its own mirror image, and does not interact with itself. The slopes of
     # friction of the mirror images, however, are not stored, so with a kink of the law it counts.

@@ -218,7 +218,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
     A node at rest is released when its load reaches the strength, and sticks when its velocity
     falls to 0.
     """
-    # The bottom row has half the height of a cell, over which the stresses of the layer act.
+    # The bottom row has half the height of a cell, so that the difference of s_xx counts half.
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
     resistance = compute_strength(elastic, fields, fault, i)
     if not fault.sliding[i]:

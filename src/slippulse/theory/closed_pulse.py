@@ -107,6 +107,7 @@ def pulse_at_speed(
             roots = np.roots([beta * v, inertia, -alpha * v, gamma])
             complex_root = roots[np.argmax(roots.imag)]
             p, q = float(complex_root.real), float(complex_root.imag)
+        # With u = u' = 0 at the front, the slip at the end xi = -pi/q follows.
         width = float(np.pi / q)
         slip = float(tau0 / gamma * (1.0 + np.exp(-p * width)))
         # The peak is where the acceleration is 0, at xi = -arctan2(q, p)/q.

@@ -256,25 +256,28 @@ def rate_pulse(
         resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]
 
-    def strain(distance: float, state: np.ndarray) -> float:
-        """Return the strain, which is 0 where the slip stops."""
-        return state[1]
+    def stop_event(distance: float, state: np.ndarray) -> float:
+        """Return the strain, which falls to 0 where the slip stops."""
+        _, strain = state
+        return strain
 
-    def curvature(distance: float, state: np.ndarray) -> float:
+    def peak_event(distance: float, state: np.ndarray) -> float:
         """Return the derivative of the strain, which is 0 at the peak of slip velocity."""
-        return slopes(distance, state)[1]
+        _, strain_slope = slopes(distance, state)
+        return strain_slope
 
-    strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
+    # The integration ends at a stop.
+    stop_event.terminal, stop_event.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS_PER_HALF_PERIOD}
     span = (0.0, MAX_HALF_PERIODS * half_period)
     with np.errstate(over="ignore", invalid="ignore"):
-        path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+        path = solve_ivp(slopes, span, [0.0, 0.0], events=[stop_event, peak_event], **accuracy)
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
         allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
-    # The status is 1 if the integration ended at a terminal event, which is the stop of the slip.
+    # The status is 1 if the integration ended at a terminal event.
     has_stopped = path.status == 1
     if not has_stopped:
         return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)

@@ -158,8 +158,8 @@ class Chunk(NamedTuple):
 def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
     """Return the first event of a front with positions x at the nodes of a chunk.
 
-    corrections is the number of times that the end of the chunk was moved to an event. Then the
-    event may lie a little beyond the end.
+    corrections is the number of times that the end of the chunk was moved to an event. If it was
+    moved, the event may lie a little beyond the end.
     """
     limit = SEARCH_LIMIT if corrections else 1.0
     events = [Event(s, None) for s in _roots_on_chunk(NODES_TO_DERIVATIVES @ x, limit)]
@@ -439,7 +439,7 @@ class SlowFront:
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
         """Return how far the front moves by the entries from the first parameter to each one.
 
-        The pre-stress at the entries, integrated, is used up by the negative pre-stress ahead.
+        The integral of the pre-stress over these entries equals the motion times the resistance.
         """
         weights = partial_weights(parameters)
         return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
