@@ -52,7 +52,9 @@ class Entry(SimpleNamespace):
         parts += [f"{name}: {rounded(value)}" for name, value in self.further.items()]
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
-            parts.append(f"runs deviate from exact theory by {median} (median) to {largest}")
+            parts.append(
+                f"runs deviate from exact theory by {median} (median), or {largest} at most"
+            )
         for flip in self.flips_at:
             side = "above" if flip["tolerance"] > self.tolerance else "below"
             if 1.0 / TOLERANCE_BAND <= flip["tolerance"] / self.tolerance <= TOLERANCE_BAND:
@@ -62,15 +64,15 @@ class Entry(SimpleNamespace):
         if self.at_earlier:
             earlier = setting(self.earlier_tolerance)
             parts.append(
-                f"at the tolerance {earlier}, set before results were seen: {self.at_earlier}"
+                f"at {earlier}, the tolerance set before results were seen: {self.at_earlier}"
             )
         if self.follows_from:
             names = ", ".join(f"`{id}`" for id in self.follows_from)
-            parts.append(f"follows from {names} and is not counted again")
+            parts.append(f"the claim follows from {names} and is not counted again")
         if self.beyond:
-            parts.append("beyond the paper, and not counted")
+            parts.append("the claim is beyond the paper and is not counted")
         if self.remark:
-            parts.append("a remark on a drawing, and not counted")
+            parts.append("the claim is a remark on a drawing and is not counted")
         return "; ".join(filter(None, parts))
 
     def _compared(self) -> str:
@@ -95,7 +97,7 @@ class Entry(SimpleNamespace):
         parts = [f"{self.runs} runs"] if self.runs and self.kind != "qualitative" else []
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
-            parts.append(f"90 % of them deviate by at most {ninety}, the worst by {largest}")
+            parts.append(f"90 % of them deviate by at most {ninety}, and the worst by {largest}")
         if self.left_out:
             parts.append(f"runs left out because they have no number: {self.left_out}")
         return parts
