@@ -244,7 +244,6 @@ def rate_pulse(
     v = float(front_speed(tau0, damping_ratio))
     inertia = (v - 1.0) * (v + 1.0)
     half_period = math.pi * math.sqrt(inertia / gamma)
-
     evaluations = count()
 
     def slopes(distance: float, state: np.ndarray) -> list[float]:
