@@ -27,25 +27,28 @@ def second_difference(w, k, i):
 
 
 @kernel_function(inline=True)
-def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf_stiffness, damping):
-    """Compute accelerations from differences of strain, leaf springs, pre-stress and damping."""
+def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping):
+    """Compute accelerations from differences of strain, leaf springs, pre-stress and damping.
+
+    ``leaf`` is the stiffness of the leaf springs, and ``damping`` is beta/dx^2.
+    """
     for i in block_range(first, last):
         # Where slip is large (gamma -> 0), second differences of slip would lose digits. The stored
         # strain does not.
         elastic = inverse_dx * (strain[i] - strain[i - UNSIGNED_ONE])
-        force = elastic - leaf_stiffness * w[SLIP, i] + tau[i]
+        force = elastic - leaf * w[SLIP, i] + tau[i]
         w[ACCELERATION, i] = (
             force + damping * second_difference(w, VELOCITY, i) if damping != 0.0 else force
         )
 
 
 @kernel_function(inline=True)
-def next_derivative(w, k, i, inverse_dx2, leaf_stiffness, damping):
+def next_derivative(w, k, i, inverse_dx2, leaf, damping):
     """Return time derivative k of the slip of block i, from the derivatives k - 2 and k - 1.
 
     It is derivative k - 2 of the equation of motion.
     """
-    elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf_stiffness * w[k - 2, i]
+    elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
     return elastic + damping * second_difference(w, k - 1, i) if damping != 0.0 else elastic
 
 
