@@ -115,7 +115,7 @@ def whole_ledger(ledger: Ledger) -> str:
         )
         rows.append(row)
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
-    return table(f"{head} | verdict l9 | rests on l29", rows)
+    return table(f"{head} | verdict l9 | evidence l29", rows)
 
 
 def tolerances(ledger: Ledger) -> str:
