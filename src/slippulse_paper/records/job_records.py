@@ -117,6 +117,19 @@ def read_record(path: str | Path) -> Record:
         raise ValueError(str(error)) from error
 
 
+class _Job(NamedTuple):
+    """Outputs of a job in one folder, and the SHA-256 of each input that it read, by path."""
+
+    outputs: list[str]
+    inputs: dict[str, str]
+
+    def replaced_inputs(self, states: Mapping[str, FileState]) -> Iterator[str]:
+        """Yield the inputs whose recorded content is no longer the one that the job read."""
+        for path, sha256 in self.inputs.items():
+            if path in states and states[path].sha256 != sha256:
+                yield path
+
+
 class RecordedFiles:
     """All records in a folder of results, and the state of the recorded files."""
 
@@ -154,14 +167,35 @@ class RecordedFiles:
                     yield name, "Snakemake's own record of it (in .snakemake) is lost"
             except OSError:
                 continue
+        for job in self._jobs():
+            source = next(job.replaced_inputs(states), None)
+            if source is not None:
+                yield from ((output, f"made from another {source}") for output in job.outputs)
+
+    def older_than_inputs(self) -> set[str]:
+        """Return the files that were made from files that have been made again since then.
+
+        This includes files that were made from such files.
+        """
+        states, jobs = self.states(), self._jobs()
+        found = {
+            output for job in jobs for _ in job.replaced_inputs(states) for output in job.outputs
+        }
+        added = found
+        while added:
+            added = {output for job in jobs if found & {*job.inputs} for output in job.outputs}
+            added -= found
+            found |= added
+        return found
+
+    def _jobs(self) -> list["_Job"]:
+        """Return outputs and inputs of each record, by their paths from the working directory."""
+        jobs = []
         for path, record in self.records.items():
             folder = path.parent.parent
-            for name, digest in record.inputs.items():
-                source = os.path.normpath(folder / name)
-                if source in states and states[source].sha256 != digest:
-                    for output in record.outputs:
-                        yield str(folder / output), f"made from another {source}"
-                    break
+            inputs = {os.path.normpath(folder / name): sha for name, sha in record.inputs.items()}
+            jobs.append(_Job([str(folder / name) for name in record.outputs], inputs))
+        return jobs
 
 
 def _files_recorded_by_snakemake() -> set[str]:
