@@ -32,6 +32,7 @@ from .claim_texts import places_of
 from .evidence import Evidence, Texts
 from .kinds import Claim
 from .ledger import with_texts
+from .rules import NOT_TESTABLE
 
 # Simulations behind the claims, each with the topics of the predictions that it is compared with.
 SIMULATIONS = {
@@ -139,10 +140,14 @@ def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) 
         raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.change_signs)
     where = places_of(evidence.entries, sentences)
-    return [
+    claims = [
         written(id, claim_of(evidence, id), entry, where[id], common)
         for id, entry in evidence.entries.items()
     ]
+    for claim in claims:
+        if claim["verdict"] == NOT_TESTABLE:
+            claim["why"] = f"{claim['why']} {evidence.flags_behind(claim['source'])}".rstrip()
+    return claims
 
 
 def claim_of(evidence: Evidence, id: str) -> Claim:
