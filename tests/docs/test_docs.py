@@ -13,10 +13,12 @@ import yaml
 
 import slippulse as sp
 from docs import describe
+from slippulse_paper.records.job_records import record_path
 
 
 def test_the_tutorial_keeps_what_it_says(project, tmp_path):
     names = runpy.run_path(str(project / "docs/run_tutorial.py"))["run"](tmp_path)
+    assert names["record"] == record_path(names["table"])
     assert len([*tmp_path.glob("*.png")]) == 3
     # Under a held stress the left front stops near where the paper has it, from below.
     balance = (1.5 + 1.0) / 0.5 * math.sqrt(math.pi / 2.0)
