@@ -277,17 +277,20 @@ def outdated(summary: str) -> Iterable[tuple[str, str]]:
 
 def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     """Yield the files that differ from what their jobs wrote, and the files that no job wrote."""
-    from slippulse_paper.records.job_records import RecordedFiles
+    from slippulse_paper.records.job_records import RecordedFiles, made_without_step
 
     recorded = RecordedFiles(RESULTS)
     yield from recorded.problems()
     states = recorded.states()
+    unknown = []
     for path in sorted(RESULTS.rglob("*")):
         parts = path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
         is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
         if is_result and str(path) not in states and str(path) not in outdated:
-            yield str(path), "no job has recorded it"
+            unknown.append(str(path))
+    for name in sorted({*unknown} - made_without_step(unknown)):
+        yield name, "no job has recorded it"
 
 
 if __name__ == "__main__":

@@ -19,6 +19,8 @@ from typing import Any, NamedTuple
 from slippulse.data.files import write_text
 
 FOLDER = ".records"
+# The call in a rule that runs a step of this project and so has a record.
+STEP_CALL = "run_step("
 
 
 class ChangedFile(RuntimeError):
@@ -198,16 +200,30 @@ class RecordedFiles:
         return jobs
 
 
-def _files_recorded_by_snakemake() -> set[str]:
-    """Return the paths of files with a record of Snakemake, which are encoded in its file names."""
+def _files_recorded_by_snakemake() -> dict[str, Path]:
+    """Return Snakemake's record of each file by the path of the file, which its name encodes."""
     folder = Path(".snakemake/metadata")
-    names = set()
+    records = {}
     for path in folder.rglob("*"):
         # Snakemake splits a long name into folders whose names begin with @.
         encoded = "".join(part.removeprefix("@") for part in path.relative_to(folder).parts)
         with suppress(ValueError):
-            names.add(base64.urlsafe_b64decode(encoded).decode())
-    return names
+            records[base64.urlsafe_b64decode(encoded).decode()] = path
+    return records
+
+
+def made_without_step(paths: Iterable[str]) -> set[str]:
+    """Return the files that Snakemake made by a rule without a step of this project.
+
+    Such a rule is one of the user, and its jobs have no record here.
+    """
+    records, found = _files_recorded_by_snakemake(), set()
+    for name in {*paths} & {*records}:
+        with suppress(OSError, ValueError, TypeError, AttributeError):
+            code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
+            if code and STEP_CALL not in code:
+                found.add(name)
+    return found
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:
