@@ -5,6 +5,7 @@ import re
 import runpy
 import subprocess
 import sys
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -96,3 +97,32 @@ def test_nothing_is_loaded_that_is_not_needed(modules):
     loaded = f"sorted({UNLOADED[modules]} & set(sys.modules))"
     program = f"import sys, slippulse_paper.{modules}; print({loaded})"
     assert subprocess.check_output([sys.executable, "-c", program], text=True).strip() == "[]"
+
+
+def test_the_files_from_a_key_to_a_pixel_have_what_the_page_names(project):
+    text = (project / "docs/workflow.md").read_text(encoding="utf-8")
+    section = text.partition("## From a key to a pixel")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| `(\S+)` \| (?:`(\w+)`)? ?\|", section, re.MULTILINE)
+    assert len(rows) == section.count("\n| ") - 1 > 10
+    for path, name in rows:
+        content = (project / path).read_text(encoding="utf-8")
+        definition = rf"^\s*(def|rule) {name}\b|^{name} = "
+        assert not name or re.search(definition, content, re.MULTILINE), (path, name)
+
+
+# Modules that the recipes of CONTRIBUTING.md add.
+ADDED = {"study_pulse_spacings.py", "test_foundation.py", "logarithmic_rate.py", "NAME.py"}
+
+
+def test_modules_that_a_page_names_exist(project):
+    files = subprocess.run(
+        ["git", "ls-files", "*.py"], cwd=project, stdout=subprocess.PIPE, text=True, check=True
+    )
+    known = [f"/{path}" for path in files.stdout.splitlines()]
+    pages = [*project.glob("*.md"), *project.glob("docs/*.md"), project / "config/README.md"]
+    for page in pages:
+        if page.name == "CHANGELOG.md":
+            continue
+        for name in re.findall(r"`([\w/]+\.py)`", page.read_text(encoding="utf-8")):
+            exists = any(path.endswith(f"/{name}") for path in known)
+            assert exists or Path(name).name in ADDED, (page.name, name)
