@@ -84,6 +84,10 @@ class Comparison:
         """Number of numbers that differ between lattices and have no uncertainty."""
         return self.count(UNKNOWN)
 
+    def older_files(self, name: str) -> str:
+        """List the paths of a file of this name that is older than other results."""
+        return " and ".join(str(folder / name) for folder in self.older[name])
+
     def summary(self) -> str:
         """Say in one sentence how many numbers agree."""
         agree = (
@@ -106,8 +110,8 @@ def compare(here: Path, other: Path) -> Comparison:
         contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
         result.older[name] = [tree for tree in trees if str(tree / name) in older[tree]]
         if result.older[name]:
-            files = " and ".join(str(tree / name) for tree in result.older[name])
-            result.other.append(f"{name}: not compared, since other results are newer than {files}")
+            newer = f"other results are newer than {result.older_files(name)}"
+            result.other.append(f"{name}: not compared, since {newer}")
         elif len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
         else:
