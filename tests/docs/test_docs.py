@@ -15,6 +15,7 @@ import yaml
 import slippulse as sp
 from docs import describe
 from slippulse_paper.records.job_records import record_path
+from slippulse_paper.steps.needs import needs_of
 
 
 def test_the_tutorial_keeps_what_it_says(project, tmp_path):
@@ -126,3 +127,15 @@ def test_modules_that_a_page_names_exist(project):
         for name in re.findall(r"`([\w/]+\.py)`", page.read_text(encoding="utf-8")):
             exists = any(path.endswith(f"/{name}") for path in known)
             assert exists or Path(name).name in ADDED, (page.name, name)
+
+
+def test_the_page_of_figures_has_every_figure_with_its_simulations(project):
+    figures, studies = needs_of("figures"), needs_of("studies")
+    page = (project / "docs/figures.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| .* \| ([^|]*) \|$", page, re.MULTILINE)
+    assert {name for name, _ in rows} == {*figures}
+    for name, simulations in rows:
+        needed = [figures[name], *(studies[study] for study in figures[name].get("studies", ()))]
+        kinds = ("data", "measured", "uncertainties", "sweeps")
+        found = {one for needs in needed for kind in kinds for one in needs.get(kind, ())}
+        assert set(re.findall(r"\w+", simulations)) == found, name
