@@ -56,7 +56,9 @@ class Entry(SimpleNamespace):
         parts += [f"{name}: {rounded(value)}" for name, value in self.further.items()]
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
-            parts.append(f"runs deviate from exact theory by {median} (median) to {largest}")
+            parts.append(
+                f"runs deviate from exact theory by {median} (median), or {largest} at most"
+            )
         parts += [*self._other_tolerances(), *self._not_counted()]
         return "; ".join(part for part in parts if part)
 
@@ -73,7 +75,7 @@ class Entry(SimpleNamespace):
         if self.at_earlier:
             earlier = setting(self.earlier_tolerance)
             parts.append(
-                f"at the tolerance {earlier}, set before results were seen: {self.at_earlier}"
+                f"at {earlier}, the tolerance set before results were seen: {self.at_earlier}"
             )
         return parts
 
@@ -82,11 +84,11 @@ class Entry(SimpleNamespace):
         reasons = []
         if self.follows_from:
             names = ", ".join(f"`{id}`" for id in self.follows_from)
-            reasons.append(f"follows from {names} and is not counted again")
+            reasons.append(f"the claim follows from {names} and is not counted again")
         if self.beyond:
-            reasons.append("beyond the paper, and not counted")
+            reasons.append("the claim is beyond the paper and is not counted")
         if self.remark:
-            reasons.append("a remark on a drawing, and not counted")
+            reasons.append("the claim is a remark on a drawing and is not counted")
         return reasons
 
     def _compared(self) -> str:
@@ -115,7 +117,7 @@ class Entry(SimpleNamespace):
             parts.append(f"{self.runs} runs")
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
-            parts.append(f"90 % of them deviate by at most {ninety}, the worst by {largest}")
+            parts.append(f"90 % of them deviate by at most {ninety}, and the worst by {largest}")
         if self.left_out:
             parts.append(f"runs left out because they have no number: {self.left_out}")
         return parts
