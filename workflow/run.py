@@ -29,6 +29,10 @@ KEPT_RESULTS = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
+ALLOWED_TARGETS = (
+    "allowed: a figure (fig1 to fig11, or a name in docs/figures.md), everything, scenes,"
+    " a file such as results/claims.html, or a rule of your own"
+)
 # Folders and files of results that are not made by rules.
 PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
 PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
@@ -76,6 +80,15 @@ def full_target(target: str) -> str:
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
 
 
+def is_unknown(target: str) -> bool:
+    """Return True for a target that is neither a path nor a rule of this project."""
+    rules = "\n".join(
+        path.read_text(encoding="utf-8")
+        for path in [PROJECT / "Snakefile", *PROJECT.glob("workflow/rules/*.smk")]
+    )
+    return "/" not in target and not re.search(rf"^rule {re.escape(target)}:", rules, re.MULTILINE)
+
+
 def clean_up_after_kill() -> TextIO:
     """Remove the unfinished files of a killed run. Exit if another run uses this folder.
 
@@ -116,7 +129,8 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     problems = changed_results()
     if not problems:
         return []
-    listing = summary(options, targets)
+    # If Snakemake refuses the targets, the run itself prints the reason.
+    listing = summary(options, targets, stderr=subprocess.DEVNULL)
     required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
     names = [name for name in problems if name in required_outputs]
     if not names:
@@ -127,11 +141,13 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     return ["--forcerun", *names]
 
 
-def summary(options: list[str], targets: list[str]) -> subprocess.CompletedProcess[str]:
+def summary(
+    options: list[str], targets: list[str], stderr: int | None = None
+) -> subprocess.CompletedProcess[str]:
     """Run Snakemake's --summary, which lists the files of the targets with their state."""
     summary_options = ["--profile", "none", "--workflow-profile", "none", "--summary"]
     command = [sys.executable, "-m", "snakemake", *summary_options, *options, "--", *targets]
-    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
 
 
 def closing_text(targets: list[str], given: Mapping[str, str]) -> str:
@@ -241,6 +257,10 @@ def replicate(given: Mapping[str, str]) -> int:
     end_on_signals(run)
     code = run.wait()
     lock.close()
+    unknown = [target for target in targets if code and is_unknown(target)]
+    if unknown:
+        names = ", ".join(unknown)
+        print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:
         record_run(given, targets)
         time_taken = timedelta(seconds=round(time.monotonic() - began))
@@ -315,17 +335,20 @@ def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
 
     outdated : files whose reason is known already
     """
-    from slippulse_paper.records.job_records import RecordedFiles
+    from slippulse_paper.records.job_records import RecordedFiles, made_without_step
 
     recorded = RecordedFiles(RESULTS)
     yield from recorded.problems()
     states = recorded.states()
+    unknown = []
     for path in sorted(RESULTS.rglob("*")):
         name, parts = str(path), path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
         is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
         if is_result and name not in states and name not in outdated:
-            yield name, "no job has recorded it"
+            unknown.append(name)
+    for name in sorted({*unknown} - made_without_step(unknown)):
+        yield name, "no job has recorded it"
 
 
 if __name__ == "__main__":

@@ -307,7 +307,9 @@ def report_changed_results():
     names = [*problems]
     count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
     more = " ..." if len(names) > MAX_SHOWN_RESULTS else ""
-    shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({names[0]}: {problems[names[0]]})"
+    reason = problems[names[0]]
+    example = reason if len(names) == 1 else f"{names[0]}: {reason}"
+    shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({example})"
     remedy = "make replicate, or snakemake --forcerun and their names"
     print(f"{count} changed: {shown}. To make them again: {remedy}", file=sys.stderr)
 

@@ -5,6 +5,7 @@ make claims of the measured kinds. The functions before it evaluate expressions 
 estimate grid uncertainties.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -161,6 +162,23 @@ class Evidence:
             selected.append([table[is_selected] for table in tables])
         # Lattices of the same rank belong together: all finest ones, then all coarser ones.
         return [pd.concat(tables_of_rank) for tables_of_rank in zip(*selected, strict=True)]
+
+    def flags_behind(self, source: str) -> str:
+        """Return a sentence on the flagged runs of the simulations in a source; empty if none is.
+
+        Claims do not use a flagged run, so that such a run may leave a claim without a number.
+        """
+        parts = []
+        for name in dict.fromkeys(re.findall(r"\w+", source)):
+            if name not in self.swept:
+                continue
+            flags = self.tables[name]["run_flags"].dropna().astype(str)
+            flags = flags[flags != ""]
+            kinds = ", ".join(sorted({*",".join(flags).split(",")}))
+            if len(flags):
+                count = f"{len(flags)} of {len(self.tables[name])} runs of {name}"
+                parts.append(f"{count} are flagged ({kinds}) and therefore not used")
+        return f"{'; '.join(parts)}." if parts else ""
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
         """Return runs on the finest lattice.

@@ -32,6 +32,7 @@ from .claim_texts import places_of
 from .evidence import Evidence
 from .kinds import Claim
 from .ledger import with_texts
+from .rules import NOT_TESTABLE
 
 # Simulations behind the claims, each with the topics of the predictions that it is compared with.
 SIMULATIONS = {
@@ -148,7 +149,10 @@ def all_claims(
     ledger = []
     for id, entry in evidence.entries.items():
         claim = claim_of(evidence, id)
-        ledger.append(written(id, claim, entry, places[id], explanations))
+        result = written(id, claim, entry, places[id], explanations)
+        if result["verdict"] == NOT_TESTABLE:
+            result["why"] = f"{result['why']} {evidence.flags_behind(result['source'])}".rstrip()
+        ledger.append(result)
     return ledger
 
 

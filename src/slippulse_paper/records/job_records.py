@@ -20,6 +20,8 @@ from typing import Any, NamedTuple
 from slippulse.data.files import write_text
 
 FOLDER = ".records"
+# The call in a rule that runs a step of this project and so has a record.
+STEP_CALL = "run_step("
 
 
 class ChangedFile(RuntimeError):
@@ -131,6 +133,21 @@ def read_record(path: str | Path) -> Record:
         raise ValueError(str(error)) from error
 
 
+class _Job(NamedTuple):
+    """Outputs of a job in one folder, and the SHA-256 of each input that it read, by path."""
+
+    outputs: list[str]
+    inputs: dict[str, str]
+
+    def replaced_inputs(self, states: Mapping[str, FileState]) -> list[str]:
+        """Return the inputs whose recorded content is no longer the one that the job read."""
+        replaced = []
+        for path, sha256 in self.inputs.items():
+            if path in states and states[path].sha256 != sha256:
+                replaced.append(path)
+        return replaced
+
+
 class RecordedFiles:
     """All records in a folder of results, and the state of the recorded files."""
 
@@ -161,12 +178,42 @@ class RecordedFiles:
             yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
         states = self.states()
         yield from _changed_files(states)
+        for job in self._jobs():
+            replaced_inputs = job.replaced_inputs(states)
+            if replaced_inputs:
+                for output in job.outputs:
+                    yield output, f"made from another {replaced_inputs[0]}"
+
+    def older_than_inputs(self) -> set[str]:
+        """Return the files that were made from files that have been made again since then.
+
+        This includes files that were made from such files.
+        """
+        states, jobs = self.states(), self._jobs()
+        older: set[str] = set()
+        for job in jobs:
+            if job.replaced_inputs(states):
+                older.update(job.outputs)
+        # Repeat until no further file was made from an older one.
+        count = -1
+        while len(older) > count:
+            count = len(older)
+            for job in jobs:
+                if not older.isdisjoint(job.inputs):
+                    older.update(job.outputs)
+        return older
+
+    def _jobs(self) -> list["_Job"]:
+        """Return outputs and inputs of each record, by their paths from the working directory."""
+        jobs = []
         for path, record in self.records.items():
             folder = _recorded_folder(path)
-            changed_input = _changed_input(record, folder, states)
-            if changed_input is not None:
-                for output in record.outputs:
-                    yield str(folder / output), f"made from another {changed_input}"
+            outputs = [str(folder / name) for name in record.outputs]
+            inputs = {
+                os.path.normpath(folder / name): digest for name, digest in record.inputs.items()
+            }
+            jobs.append(_Job(outputs, inputs))
+        return jobs
 
 
 def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]:
@@ -182,30 +229,35 @@ def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]
             yield name, "Snakemake's own record of it (in .snakemake) is lost"
 
 
-def _changed_input(record: Record, folder: Path, states: Mapping[str, FileState]) -> str | None:
-    """Return an input that has been written again since the job read it, or None."""
-    for name, digest in record.inputs.items():
-        path = os.path.normpath(folder / name)
-        if path in states and states[path].sha256 != digest:
-            return path
-    return None
-
-
 def _recorded_folder(record: Path) -> Path:
     """Return the folder with the files that a record is about."""
     return record.parent.parent
 
 
-def _files_recorded_by_snakemake() -> set[str]:
-    """Return the paths of files with a record of Snakemake, which are encoded in its file names."""
+def _files_recorded_by_snakemake() -> dict[str, Path]:
+    """Return Snakemake's record of each file by the path of the file, which its name encodes."""
     folder = Path(".snakemake/metadata")
-    names = set()
+    records = {}
     for path in folder.rglob("*"):
         # Snakemake splits a long name into folders whose names begin with @.
         encoded = "".join(part.removeprefix("@") for part in path.relative_to(folder).parts)
         with suppress(ValueError):
-            names.add(base64.urlsafe_b64decode(encoded).decode())
-    return names
+            records[base64.urlsafe_b64decode(encoded).decode()] = path
+    return records
+
+
+def made_without_step(paths: Iterable[str]) -> set[str]:
+    """Return the files that Snakemake made by a rule without a step of this project.
+
+    Such a rule is one of the user, and its jobs have no record here.
+    """
+    records, found = _files_recorded_by_snakemake(), set()
+    for name in {*paths} & {*records}:
+        with suppress(OSError, ValueError, TypeError, AttributeError):
+            code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
+            if code and STEP_CALL not in code:
+                found.add(name)
+    return found
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..records.job_records import RecordedFiles
 from ..records.provenance import changes
 from .compared_numbers import (
     AGREES,
@@ -54,13 +55,16 @@ class Comparison:
 
     ``numbers`` has one row for each number that is in both folders, and ``runs`` one entry for each
     table. ``changes`` has the changed values of the configuration and the changed verdicts, by the
-    name of the file. ``disagreements`` has lines about results of the same run that differ, and
-    ``other_differences`` lines about everything that is altered or in one folder only.
+    name of the file. ``older`` has by this name the folders in which the file is older than other
+    results, so that it does not describe them. ``disagreements`` has lines about results of the
+    same run that differ, and ``other_differences`` lines about everything that is altered or in one
+    folder only.
     """
 
     numbers: pd.DataFrame = field(default_factory=pd.DataFrame)
     runs: list[TableRuns] = field(default_factory=list)
     changes: dict[str, list[dict]] = field(default_factory=dict)
+    older: dict[str, list[Path]] = field(default_factory=dict)
     disagreements: list[str] = field(default_factory=list)
     other_differences: list[str] = field(default_factory=list)
 
@@ -83,6 +87,10 @@ class Comparison:
         """Number of numbers of runs that are the same in both folders."""
         return self.agree + self.unknown + self.count(DIFFERS)
 
+    def older_files(self, name: str) -> str:
+        """Return the paths of a file of this name that is older than other results, as text."""
+        return " and ".join(str(folder / name) for folder in self.older[name])
+
     def summary(self) -> str:
         """Return a sentence on how many numbers agree."""
         agreement = f"{self.agree} of {self.compared} numbers agree"
@@ -99,7 +107,12 @@ def compare(new: Path, old: Path) -> Comparison:
     new_tables, old_tables = _table_names(new), _table_names(old)
     for name in sorted(new_tables ^ old_tables):
         result.other_differences.append(f"{name}: in one folder only")
+    # In each folder, the files that were not made again after a change of what they depend on.
+    older_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
     for name in CHANGE_LINES:
+        result.older[name] = [
+            folder for folder, files in older_files.items() if str(folder / name) in files
+        ]
         _compare_contents(result, new, old, name)
     numbers = [_compare_tables(result, new, old, name) for name in sorted(new_tables & old_tables)]
     if numbers:
@@ -118,6 +131,10 @@ def _table_names(results: Path) -> set[str]:
 
 def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
     """Record the values that differ between the configurations or between the verdicts."""
+    if result.older[name]:
+        newer = f"other results are newer than {result.older_files(name)}"
+        result.other_differences.append(f"{name}: not compared, since {newer}")
+        return
     new_path, old_path = new / name, old / name
     if not (new_path.exists() and old_path.exists()):
         result.other_differences.append(f"{name}: missing in one folder; not compared")
