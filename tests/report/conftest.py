@@ -14,6 +14,7 @@ from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting.style import new_panels
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative
 from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.claims.rules import Spread, Uncertain
 from slippulse_paper.report.manuscript import DOCUMENTS, Inputs
 from slippulse_paper.steps import write_report
 
@@ -42,8 +43,10 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     for i, (id, entry) in enumerate(entries.items(), start=1):
         # The numbers of no two claims are equal.
         deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
-        numbers = {"median": (deviation, 0.00021), "ratio": (1.0 + deviation, 0.00021)}
-        numbers |= {"deviations": 1e-3 * i * np.arange(3.0), "from_exact": (1e-5 * i, 2e-5 * i)}
+        medians = {"median": deviation, "ratio": 1.0 + deviation}
+        numbers = {name: Uncertain(value, 0.00021) for name, value in medians.items()}
+        from_exact = Spread(median=1e-5 * i, largest=2e-5 * i)
+        numbers |= {"deviations": 1e-3 * i * np.arange(3.0), "from_exact": from_exact}
         claim = Approximate(tolerance=entry["tolerance"], **numbers, further=further)
         if entry["kind"] == "qualitative":
             claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, further=further)

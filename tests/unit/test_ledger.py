@@ -19,7 +19,7 @@ from slippulse_paper.claims.findings import findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, written
-from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST
+from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 
 YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
 NAN = float("nan")
@@ -99,7 +99,7 @@ def estimated(
 ) -> Combination:
     """An estimate at one release rule and damping ratio, by the exact solution."""
     choice = {"release": release, "damping_ratio": ratio, "solution": "exact"} | others
-    numbers = {"deviations": np.array([0.0]), "median": (deviation, uncertainty)}
+    numbers = {"deviations": np.array([0.0]), "median": Uncertain(deviation, uncertainty)}
     claim = Approximate(tolerance=0.2, template_values={"reason": ""}, **numbers)
     return Combination(choice, claim)
 
@@ -294,7 +294,7 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
 
 def test_the_extra_verdict_decides_at_every_tolerance():
     """So a claim that fails by its second condition has no tolerance at which it is reproduced."""
-    numbers = {"deviations": np.array([0.1]), "median": (0.1, 0.001)}
+    numbers = {"deviations": np.array([0.1]), "median": Uncertain(0.1, 0.001)}
     claim = Approximate(tolerance=0.2, extra_verdict=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
     assert replace(claim, failing=BEYOND).verdict() == BEYOND

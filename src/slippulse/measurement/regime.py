@@ -24,17 +24,19 @@ REGIMES = (
 UNDECIDED = "undecided"
 
 
-def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
+def classify_regime(
+    run: AnyRun, still_fraction: float, steady_tolerance: float
+) -> dict[str, float | str]:
     """Return the regime of a run with samples (one of REGIMES), and the numbers that decide it.
 
     A rupture is two-way if it runs on both sides of x = 0. It runs on a side if the front there is
     as fast as the waves over the last third of the run, to within ``steady_tolerance``. If neither
-    front is, the rupture runs where, at the end, a block slides at least at ``still`` times the
-    largest velocity. A crack that runs on one side only has "one front slow" if the other front
-    still moves. A rupture is arrested if no block was released in the last tenth of the
-    duration, or if the velocity at the end is at most ``still`` times an earlier one. A one-way
-    pulse grows, decays or is steady according to the change of its largest velocity over the last
-    third of the run.
+    front is, the rupture runs where, at the end, a block slides at least at ``still_fraction``
+    times the largest velocity. A crack that runs on one side only has "one front slow" if the other
+    front still moves. A rupture is arrested if no block was released in the last tenth of the
+    duration, or if the velocity at the end is at most ``still_fraction`` times an earlier one. A
+    one-way pulse grows, decays or is steady according to the change of its largest velocity over
+    the last third of the run.
     """
     change = _change_of_largest_velocity(run)
     x, final_velocity = _final_velocity(run)
@@ -43,7 +45,7 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     left_speed, right_speed = (_late_speed(run, side) for side in ("left", "right"))
     slowest_fast = 1.0 - steady_tolerance
     fast_sides = int(left_speed >= slowest_fast) + int(right_speed >= slowest_fast)
-    slides = final_velocity >= still * largest
+    slides = final_velocity >= still_fraction * largest
     sliding_sides = int(np.any(slides[x < 0.0])) + int(np.any(slides[x > 0.0]))
     running_sides = fast_sides if fast_sides > 0 else sliding_sides
     ways = "two-way" if running_sides == 2 else "one-way"
@@ -51,9 +53,9 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     final_samples = np.asarray(run["sample_velocity"])[-1]
     if np.isnan(np.append(final_velocity, final_samples)).any():
         regime = UNDECIDED
-    elif _is_arrested(run, largest, still):
+    elif _is_arrested(run, largest, still_fraction):
         regime = "arrested"
-    elif not is_pulse(centre, largest, still):
+    elif not is_pulse(centre, largest, still_fraction):
         regime = f"crack-like, {'one front slow' if has_slow_front else ways}"
     else:
         regime = pulse_regime(ways, change, steady_tolerance)
@@ -88,20 +90,22 @@ def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(run["sample_position"]), np.asarray(run["sample_velocity"])[-1]
 
 
-def _is_arrested(run: AnyRun, largest: float, still: float) -> bool:
+def _is_arrested(run: AnyRun, largest: float, still_fraction: float) -> bool:
     """Return True if the rupture is nearly at rest at the end, or was released last long before."""
     last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
-    at_rest = largest <= still * max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
+    largest_ever = max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
+    at_rest = largest <= still_fraction * largest_ever
     return at_rest or last_release < 0.9 * run.attrs["duration"]
 
 
-def is_pulse(centre: float, largest: float, still: float) -> bool:
+def is_pulse(centre: float, largest: float, still_fraction: float) -> bool:
     """Return True for a pulse: the nucleation point is (nearly) at rest while the rupture runs.
 
     centre, largest : slip velocity at the nucleation point, and the largest one anywhere
-    still : fraction of the largest velocity below which the nucleation point counts as at rest
+    still_fraction : fraction of the largest velocity below which the nucleation point counts as at
+        rest
     """
-    return centre < still * largest
+    return centre < still_fraction * largest
 
 
 def _late_speed(run: AnyRun, side: str) -> float:

@@ -123,15 +123,16 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
     """Return the numbers of the transition; none if the paper defines no transition for the run.
 
     The paper defines it for equal positive levels under a displacement boundary, and for a negative
-    level on the left and 0 on the right under a stress boundary. Under a displacement boundary, it
-    is measured for a table with different positive levels, too.
+    level on the left and 0 on the right, without steps, under a stress boundary. Under a
+    displacement boundary, it is measured for a table with different positive levels, too.
     """
     left, right = run.attrs["left"], run.attrs["right"]
     profile = prestress_from(run.attrs)
     if run.attrs["boundary"] == "displacement":
+        are_positive = left > 0.0 and right > 0.0
         are_allowed = left == right or bool(profile.points)
-        return transition_displacement(run) if left > 0.0 < right and are_allowed else {}
-    if left < 0.0 == right and not profile.steps:
+        return transition_displacement(run) if are_positive and are_allowed else {}
+    if left < 0.0 and right == 0.0 and not profile.steps:
         # With a barrier on the right, the integral of the pre-stress may not be positive, so that
         # there is no balance position.
         with suppress(ArithmeticError):

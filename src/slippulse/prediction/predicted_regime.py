@@ -17,7 +17,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     return pd.DataFrame({"exact_regime": [_regime(run, settings["still"]) for run in runs]})
 
 
-def _regime(run: Run, still: float) -> str:
+def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table."""
     profile = run.prestress
     if profile.bumps or profile.points:
@@ -36,12 +36,17 @@ def _regime(run: Run, still: float) -> str:
         gamma=run.gamma,
         damping_ratio=rounded_damping_ratio(run),
         release=run.release,
-        still=still,
+        still_fraction=still_fraction,
     )
 
 
 def final_regime(
-    left: float, right: float, gamma: float, damping_ratio: float, release: str, still: float
+    left: float,
+    right: float,
+    gamma: float,
+    damping_ratio: float,
+    release: str,
+    still_fraction: float,
 ) -> str:
     """Return the final regime in the continuum limit, for one pre-stress level on each side.
 
@@ -60,7 +65,8 @@ def final_regime(
     at a distance e, it is at the distance (p/n) e. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where
     v is the front speed into p: it never stops, but is slower than the waves. After a long time,
     du/dt at the nucleation point divided by its largest value in the rupture tends to
-    r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less than ``still``.
+    r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less than
+    ``still_fraction``.
     """
     low, high = sorted((left, right))
     if high < 0.0:
@@ -76,15 +82,20 @@ def final_regime(
     if high == 0.0:
         return "pulse, one-way, steady"
     largest_ratio = float(
-        largest_pulse_ratio(level=high, damping_ratio=damping_ratio, release=release, still=still)
+        largest_pulse_ratio(
+            level=high, damping_ratio=damping_ratio, release=release, still_fraction=still_fraction
+        )
     )
     becomes_pulse = high / -low < largest_ratio
     return "pulse, one-way, growing" if becomes_pulse else "crack-like, one front slow"
 
 
-def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:
+def largest_pulse_ratio(
+    level, damping_ratio: float, release: str, still_fraction: float
+) -> np.ndarray:
     """Return the ratio p/n of levels below which a rupture without leaf springs becomes a pulse.
 
     level : the positive level p; the ratio and the other arguments are those of `final_regime`
     """
-    return still * (1.0 + 1.0 / front_speed(level, damping_ratio, release)) / (1.0 - 2.0 * still)
+    speed = front_speed(level, damping_ratio, release)
+    return still_fraction * (1.0 + 1.0 / speed) / (1.0 - 2.0 * still_fraction)

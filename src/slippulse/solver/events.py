@@ -91,14 +91,17 @@ def start_sliding(centre, medium, motion, block, now, top):
 def hold_block(centre, w, offset, block, now, top):
     """Stop a block at the time ``now``, and return the velocity that it had.
 
-    ``centre`` receives minus the time derivatives of its slip at that time, from derivative 2 on.
+    ``w`` holds the time derivatives of slip at the start of the step. Those of the block are set to
+    0, and its slip at the time ``now`` is kept in ``offset``. From derivative 2 on, ``centre``
+    receives the change of the derivatives at that time, which is minus their value before the stop.
     """
+    # Move the derivatives of the block from w to centre, and shift them to the time ``now``.
     centre[SLIP] = 0.0
     for k in range(1, top + 1):
         centre[k] = w[k, block]
         w[k, block] = 0.0
     shift_polynomial(centre, np.int64(0), top, top, now)
-    # The slip since the start of the step remains, although the polynomial of the block is now 0.
+    # centre[SLIP] is now the slip since the start of the step, which the block keeps.
     offset[block] += centre[SLIP]
     for k in range(2, top + 1):
         centre[k] = -centre[k]
@@ -161,7 +164,9 @@ def spread_difference(difference, medium, motion, event, left, right, top):
 def evaluate_difference(out, rows, lowest, top, s):
     """Compute derivative ``lowest`` of the difference at a time s after the event, in ``out``.
 
-    The last column, a block at rest, is left out.
+    ``rows`` has the derivatives at the event, one row for each up to ``top``, and one column for
+    each block within reach. Horner's rule sums their Taylor series for all blocks at once. The last
+    column is left out, because it lies beyond the reach of every event and is always 0.
     """
     columns = np.uint64(COLUMN_COUNT - 1)
     for p in range(columns):

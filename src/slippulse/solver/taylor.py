@@ -354,8 +354,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 ):
     """Advance until a limit, and return the reason why it stopped.
 
-    Each step goes through the numbered stages of the module docstring. When no more steps follow,
-    the loss of energy is complete and row 2 of w is the acceleration.
+    Each step goes through the numbered stages of the module docstring. The losses of energy of a
+    step are completed at the start of the next one. The function returns only after that, so the
+    losses are complete and the row ACCELERATION of w is valid.
     """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
@@ -366,12 +367,14 @@ def advance(  # noqa: C901, PLR0912, PLR0915
     work_slope_changes = step_events.work_slope_changes
     has_losses = medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.max_steps):
+        # Stage 1: the derivatives at the start of the step.
         start = tally.time
         if medium.alpha == 0.0:
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
-        # The losses of the step before still lack the part from its end, which is known now.
+        # The losses of the step before still lack the part h D_1/3 (see `loss_of_step`). Its
+        # length h is the pending step, and D_1 is the dissipation or the power of friction now.
         dissipation, dissipation_slope = 0.0, 0.0
         if has_losses:
             dissipation, dissipation_slope = compute_dissipation(medium, motion, segments)
@@ -394,14 +397,17 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         # The step lasts from the time `start` to `end`, and has the length h. Times of events are
         # counted from its start.
         h, end = next_step(limits, start)
+        # Stage 2: the events that will happen until then.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
             return BLOWN_UP
-        # At first, the blocks that move in this step are those that slide.
+        # At first, the blocks that move in this step are those that slide. Events add others.
         for q in range(2 * segments.count.n):
             moved.edges[q] = segments.edges[q]
         moved.count.n = segments.count.n
         step_events.count.n = 0
 
+        # Stage 3: one event after another. The step ends early at an event that has to happen
+        # together with others.
         early = False
         while True:
             event = find_next_event(segments, prediction)
@@ -421,6 +427,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
                 return BLOWN_UP
         take_samples(recorder, motion, tally, start, end, order)
 
+        # Stage 4: the end of the step.
         if has_losses:
             tally.viscous_loss += loss_of_step(
                 h, dissipation, dissipation_slope, loss_slope_changes

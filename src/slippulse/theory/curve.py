@@ -65,9 +65,12 @@ def power_basis(count: int) -> np.ndarray:
 
 
 def with_slopes(powers: np.ndarray) -> np.ndarray:
-    """Return coefficients of polynomials and of their derivatives, as `value_and_slope` takes them.
+    """Return coefficients of polynomials and of their derivatives, in groups of four powers.
 
-    powers has the shape [power, polynomial], and its number of powers is a multiple of 4.
+    powers has the shape [power, polynomial], and its number of powers is a multiple of 4. The
+    result has the shape [group, row, polynomial], as `value_and_slope` takes it. The 8 rows of a
+    group are the coefficients of the polynomial and of its derivative for the lowest power, then
+    both for the next power, and so on.
     """
     exponents = np.arange(1.0, len(powers))
     slopes = powers[1:] * exponents[:, None]

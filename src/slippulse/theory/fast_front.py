@@ -101,15 +101,17 @@ class FastFront:
 
     @property
     def marks(self) -> list[float]:
-        """Positions where the background jumps or where the front turns fast or slow.
+        """Positions where pieces meet, except kinks of a table of points.
 
-        Without a table of points, they are the right ends of all pieces except the last one.
+        At such a kink the pre-stress is continuous, and the front is fast on both sides of it or
+        slow on both sides.
         """
         marks = []
         for piece, after in pairwise(self.pieces):
-            turns = piece.above != after.above
-            jumps = piece.background.right_value != after.background.left_value
-            if turns or jumps or not self.prestress.points:
+            is_turn = piece.is_above != after.is_above
+            is_jump = piece.background.right_value != after.background.left_value
+            is_kink_of_table = bool(self.prestress.points) and not is_turn and not is_jump
+            if not is_kink_of_table:
                 marks.append(piece.right)
         return marks
 
@@ -142,7 +144,7 @@ class FastFront:
         last_feature = float(np.max(self.features, initial=-np.inf))
         while x < stop and time < until:
             piece = self.piece_right_of(x)
-            if not piece.above:
+            if not piece.is_above:
                 break
             end = min(stop, piece.right)
             if np.isinf(end) and x >= last_feature:

@@ -24,13 +24,13 @@ ROUNDING_ERROR = 1e-15
 class Piece(NamedTuple):
     """An interval on which the pre-stress is smooth and lies on one side of a value.
 
-    above is True if tau >= the value. For the value 0 a front is faster than the waves there.
+    is_above is True if tau >= the value. For the value 0 a front is faster than the waves there.
     """
 
     left: float
     right: float
     background: Interval
-    above: bool
+    is_above: bool
 
 
 def uniform_background(level: float) -> Interval:
@@ -71,12 +71,12 @@ def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     samples = np.unique(np.concatenate([[], *of_gaussians]))
     pieces = []
     for background in prestress.intervals:
-        above, changes = _sign_changes(
+        is_above, changes = _sign_changes(
             prestress, background=background, samples=samples, value=value
         )
         for start, end in pairwise([background.left, *changes, background.right]):
-            pieces.append(Piece(left=start, right=end, background=background, above=above))
-            above = not above
+            pieces.append(Piece(left=start, right=end, background=background, is_above=is_above))
+            is_above = not is_above
     return pieces
 
 
@@ -88,7 +88,7 @@ def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
     lefts: list[float] = []
     rights: list[float] = []
     for piece in split_into_pieces(prestress, 1.0):
-        if not piece.above:
+        if not piece.is_above:
             continue
         if rights and piece.left <= rights[-1]:
             rights[-1] = piece.right

@@ -158,13 +158,14 @@ class Chunk(NamedTuple):
 def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
     """Return the first event of a front with positions x at the nodes of a chunk.
 
+    The front stops where the derivative of its position with respect to the parameter is 0.
     corrections is the number of times that the end of the chunk was moved to an event. If it was
     moved, the event may lie a little beyond the end.
     """
     limit = SEARCH_LIMIT if corrections else 1.0
-    events = [Event(s, None) for s in _roots_on_chunk(NODES_TO_DERIVATIVES @ x, limit)]
-    if np.isfinite(mark):
-        events += [Event(s, "mark") for s in _roots_on_chunk(x - mark, limit)]
+    stops = _roots_on_chunk(NODES_TO_DERIVATIVES @ x, limit)
+    arrivals = _roots_on_chunk(x - mark, limit) if np.isfinite(mark) else []
+    events = [Event(s, None) for s in stops] + [Event(s, "mark") for s in arrivals]
     return min(events, key=lambda event: event.s, default=Event(np.inf, None))
 
 

@@ -30,7 +30,7 @@ from .slow_front import Progress, SlowFront
 REASONS_UNKNOWN = {
     "unknown": "a slow front depends on another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
-    "loaded": "a front stops where the pre-stress is positive",
+    "positive_prestress": "a front stops where the pre-stress is positive",
 }
 REASON_OVERRUN = "a front arrives where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
@@ -164,7 +164,10 @@ def _nucleate(law: FastFront) -> list[Stretch]:
 
 
 def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Advance a front while it is faster than the waves, up to the next nucleation point."""
+    """Advance a front while it is faster than the waves, up to the next nucleation point.
+
+    law belongs to the pre-stress with this side turned to the right.
+    """
     start, stop = stretch.ends[side], stretch.next_start[side]
     panels, end = law.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
@@ -176,9 +179,10 @@ def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: fl
 
 
 def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Add a panel of a slow front; a fast front follows where the pre-stress is positive again.
+    """Add one panel to a slow front, and record the reason if the front ends with it.
 
-    law is that of the pre-stress with this side turned to the right.
+    If the panel ends where the pre-stress turns positive, the front continues as a fast one. law
+    belongs to the pre-stress with this side turned to the right, so that the front runs right.
     """
     piece = law.piece_right_of(side * stretch.ends[side].x)
     # The slow front ends at the latest where the pre-stress turns positive, or the next nucleation
@@ -191,22 +195,23 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
         gamma=law.gamma,
         alpha=law.alpha,
     )
-    panel, stop, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
+    panel, reason, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
-    if stop in ("stops", *REASONS_UNKNOWN):
-        loaded = stop == "stops" and law.prestress(side * stretch.ends[side].x) > EQUALITY_TOLERANCE
-        stretch.end_reason[side] = "loaded" if loaded else stop
-    elif stretch.ends[side].time >= until:
+    end = stretch.ends[side]
+    if reason == "stops" and law.prestress(side * end.x) > EQUALITY_TOLERANCE:
+        reason = "positive_prestress"
+    if reason == "stops" or reason in REASONS_UNKNOWN:
+        stretch.end_reason[side] = reason
+    elif end.time >= until:
         stretch.end_reason[side] = "duration"
-    elif stop == "mark":
-        # If the next piece is negative too, the next call continues.
-        if mark >= stretch.next_start[side]:
-            stretch.end_reason[side] = "met"
-        elif law.piece_right_of(mark).above:
-            stretch.progress[side] = Progress()
-            stretch.restarts[side].append(side * mark)
-            _advance_fast_front(law, stretch=stretch, side=side, until=until)
+    elif reason == "mark" and mark >= stretch.next_start[side]:
+        stretch.end_reason[side] = "met"
+    elif reason == "mark" and law.piece_right_of(mark).is_above:
+        stretch.progress[side] = Progress()
+        stretch.restarts[side].append(side * mark)
+        _advance_fast_front(law, stretch=stretch, side=side, until=until)
+    # In all other cases the front is still slow, and the next call adds its next panel.
 
 
 def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:

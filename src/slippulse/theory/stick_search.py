@@ -65,30 +65,34 @@ class StickSearch:
         waves are the times at which waves arrive, [position, wave].
         """
         times = self._sample_times(release, waves)
-        out = np.full(x.shape, np.nan)
-        # The last two samples of a batch are kept, since a minimum next to them may lie below 0.
-        # At the start they are the release itself, twice. The velocity of -1 is lower than that of
-        # the release, which therefore does not count as a minimum.
-        last_time = np.stack([release, release], axis=1)
-        last_velocity = np.tile([-1.0, 0.0], (x.size, 1))
+        stick_times = np.full(x.shape, np.nan)
+        # A batch is examined together with the two samples before it, so that no group of three
+        # samples is missed. Before the first batch, both are the release itself. The first of them
+        # has the velocity -1, so that the release does not count as a minimum.
+        kept_times = np.stack([release, release], axis=1)
+        kept_velocities = np.tile([-1.0, 0.0], (x.size, 1))
+        # Positions whose blocks have not stuck until the last sample.
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
             batch = self._sample(x[sliding], times[sliding, :BATCH_SIZE])
             times = times[:, BATCH_SIZE:]
-            time = np.append(last_time[sliding], batch.time, axis=1)
-            velocity = np.append(last_velocity[sliding], batch.velocity, axis=1)
+            time = np.append(kept_times[sliding], batch.time, axis=1)
+            velocity = np.append(kept_velocities[sliding], batch.velocity, axis=1)
             samples = VelocitySamples(x[sliding], time, velocity)
+            # The column of the first sample at or below 0, after the two samples before the batch.
+            # If there is none, it is the number of columns.
             is_stuck = batch.velocity <= 0.0
             has_stuck = is_stuck.any(axis=1)
-            # Columns of the samples begin with the two that were kept.
             first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
-            stick = self._zeros_next_to_minima(samples, first_stuck)
-            rows = np.flatnonzero(has_stuck & ~np.isfinite(stick))
-            stick[rows] = self._zeros_in_steps(samples, rows, first_stuck[rows])
-            out[sliding] = stick
-            last_time[sliding], last_velocity[sliding] = time[:, -2:], velocity[:, -2:]
-            sliding = sliding[~np.isfinite(stick) & (time[:, -1] < self.until)]
-        return out
+            # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
+            # that ends at the first sample at or below 0.
+            zeros = self._zeros_next_to_minima(samples, first_stuck)
+            rows = np.flatnonzero(has_stuck & ~np.isfinite(zeros))
+            zeros[rows] = self._zeros_in_steps(samples, rows, first_stuck[rows])
+            stick_times[sliding] = zeros
+            kept_times[sliding], kept_velocities[sliding] = time[:, -2:], velocity[:, -2:]
+            sliding = sliding[~np.isfinite(zeros) & (time[:, -1] < self.until)]
+        return stick_times
 
     def _sample_times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
         """Return the times of the samples, [position, time]: equal steps and arrivals of waves."""

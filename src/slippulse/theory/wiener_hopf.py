@@ -8,7 +8,8 @@ and Phenomena in Fracture Mechanics, for fronts on lattices.) The factor at k = 
 pre-stress of the front.
 
 In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the
-symbol is
+symbol is the following M(k). The functions below call v - 1 the excess, b the ratio, g the springs
+and a the drag.
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
@@ -129,22 +130,38 @@ def log_prestress(
 def _choose_contour(
     excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
 ) -> tuple[Nodes, float]:
-    """Return a contour that serves all fronts, and the angle at which it leaves 0."""
-    # No zero and no branch point lies nearer to 0, where the contour starts, than this.
-    nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
-    angle = CONTOUR_ANGLE
+    """Return a contour that serves all fronts, and the angle of its ray below the real axis.
+
+    Its panels begin at half of the smallest distance at which a zero or a branch point of M can lie
+    from 0. From there to CONTOUR_REACH they have equal lengths in ln |z|.
+    """
+    # At a zero or branch point |w| is at least this divided by 1 + b. The limits are the branch
+    # points of q (with leaf springs) or the zero of M next to 0 (without), and those of r.
+    smallest_w = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
     if drag:
-        nearest = min(nearest, springs / abs(drag))
-    if drag < 0.0:
-        # The growing waves of the slowest front lie at this sine below the axis. The contour leaves
-        # 0 halfway between them and the imaginary axis, if that is steeper.
-        slowest = float(np.min(excess))
-        sine = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
-        halfway = 0.5 * (np.arcsin(min(sine, 1.0)) + 0.5 * np.pi)
-        angle = max(CONTOUR_ANGLE, halfway)
-    scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH))
+        smallest_w = min(smallest_w, springs / abs(drag))
+    # As w = v z, this is the smallest |z|.
+    smallest_z = np.min(smallest_w / ((1.0 + ratio) * (1.0 + excess)))
+    panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
+    angle = _contour_angle(excess, springs, drag)
     return nodes(panels, angle), angle
+
+
+def _contour_angle(excess: np.ndarray, springs: float, drag: float) -> float:
+    """Return the angle below the real axis at which the contour leaves 0.
+
+    If waves grow behind the front (drag < 0), the contour must pass below them. It then leaves 0
+    halfway between the waves of the slowest front and the imaginary axis, if that is steeper than
+    CONTOUR_ANGLE.
+    """
+    if drag >= 0.0:
+        return CONTOUR_ANGLE
+    slowest = float(np.min(excess))
+    # The sine of the angle between the real axis and the growing waves, with v^2 - 1 written in
+    # terms of v - 1.
+    sine = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+    halfway = 0.5 * (np.arcsin(min(sine, 1.0)) + 0.5 * np.pi)
+    return max(CONTOUR_ANGLE, halfway)
 
 
 def log_factor(

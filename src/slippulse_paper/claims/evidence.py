@@ -16,7 +16,7 @@ from slippulse.measurement.regime import UNDECIDED
 from slippulse.measurement.uncertainty import grid_study
 
 from .kinds import NAN, Approximate, Equation
-from .rules import Uncertain
+from .rules import Spread, Uncertain
 
 Texts = Mapping[str, Mapping]
 # A table for each lattice, the finest first, or one of exact solutions.
@@ -67,13 +67,13 @@ def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertai
     is a single table, is 0.
     """
     if len(tables) == 1:
-        return values[0], 0.0
+        return Uncertain(values[0], 0.0)
     if tables[0].empty:
-        return values[0], NAN
+        return Uncertain(values[0], NAN)
     # Spacings of the coarser lattices, divided by that of the finest.
     factors = [float(table["factor"].dropna().iloc[0]) for table in tables[1:]]
     study = grid_study(values, factors)
-    return study.value, study.uncertainty
+    return Uncertain(study.value, study.uncertainty)
 
 
 def _slope(logs: np.ndarray) -> float:
@@ -102,7 +102,7 @@ def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[
         for left_out in np.unique(column):
             change = abs(_slope(logs[0][:, column != left_out]) - value)
             uncertainty = max(uncertainty, change)
-    return value, uncertainty
+    return Uncertain(value, uncertainty)
 
 
 class Evidence:
@@ -241,7 +241,7 @@ class Evidence:
                 decided.append(None)
         return decided
 
-    def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain:
+    def deviation_from_exact(self, simulation: str, quantity: str) -> Spread:
         """Return the median and the largest deviation of a quantity from exact theory.
 
         The deviation of a run is |value/exact - 1|, with the value extrapolated to spacing 0.
@@ -249,4 +249,4 @@ class Evidence:
         table = self.finest(simulation)
         ratio = ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}")
         deviation = (ratio - 1.0).abs()
-        return float(deviation.median()), float(deviation.max())
+        return Spread(median=float(deviation.median()), largest=float(deviation.max()))

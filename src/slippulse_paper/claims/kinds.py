@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import chdtrc
 
 from . import rules
-from .rules import Uncertain
+from .rules import Spread, Uncertain
 
 NAN = math.nan
 # A verdict is computed at this many tolerances; where it changes, bisection refines the tolerance.
@@ -199,6 +199,9 @@ class Equation(Claim):
         return fields | dict(self.counts)
 
 
+NO_VALUE, NO_SPREAD = Uncertain(NAN, NAN), Spread(NAN, NAN)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Approximate(Claim):
     """An estimate, judged by the median deviation of its runs."""
@@ -207,9 +210,9 @@ class Approximate(Claim):
     deviations: np.ndarray
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
     median: Uncertain
-    ratio: Uncertain = (NAN, NAN)
-    # Median and largest deviation from exact theory of values extrapolated to spacing 0.
-    from_exact: Uncertain = (NAN, NAN)
+    ratio: Uncertain = NO_VALUE
+    # Deviations from exact theory of values extrapolated to spacing 0.
+    from_exact: Spread = NO_SPREAD
 
     def own_verdict(self, tolerance: float) -> str:
         """Return the verdict on the median deviation."""
@@ -229,12 +232,11 @@ class Approximate(Claim):
         }
         if usable.size:
             median_ratio, uncertainty = self.ratio
-            median_deviation, _ = self.median
             fields |= {
                 "measured": median_ratio,
                 "uncertainty": uncertainty,
                 "predicted": 1.0,
-                "deviation": median_deviation,
+                "deviation": self.median.value,
                 "ninety": float(np.percentile(usable, 90.0)),
                 "largest": float(usable.max()),
             }

@@ -10,6 +10,7 @@ import pandas as pd
 from . import rules
 from .evidence import Evidence
 from .kinds import Approximate, Qualitative
+from .rules import Uncertain
 
 # Whether the pulses of a point of the map are steady. All other outcomes leave it undecided,
 # because a pulse from below or from above was not tested or had not settled.
@@ -107,8 +108,8 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
-        median=(float(deviations.median()), uncertainty),
-        ratio=(float(ratio.median()), uncertainty),
+        median=Uncertain(float(deviations.median()), uncertainty),
+        ratio=Uncertain(float(ratio.median()), uncertainty),
         failing=rules.BEYOND,
         further={
             "median in the plane, divided by the formula: speed": float(speed_ratio.median()),

@@ -1,6 +1,7 @@
 """Define the verdicts, and the rules that turn a deviation and its uncertainty into a verdict."""
 
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +17,20 @@ VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NO
 # Among several verdicts the one that comes first in this list decides; pages use the same order.
 WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
 HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
-# A number with its uncertainty.
-Uncertain = tuple[float, float]
+
+
+class Uncertain(NamedTuple):
+    """A number with its uncertainty."""
+
+    value: float
+    uncertainty: float
+
+
+class Spread(NamedTuple):
+    """The median and the largest of some deviations."""
+
+    median: float
+    largest: float
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:

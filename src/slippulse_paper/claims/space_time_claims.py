@@ -22,7 +22,7 @@ def left(evidence: Evidence, id: str) -> Reading:
         tolerance=evidence.tolerance(id),
         chi_square=best["chi2"],
         degrees_of_freedom=best["dof"],
-        further=read_off(evidence, "space_time_displacement"),
+        further=values_of_our_figure(evidence, "space_time_displacement"),
         template_values=best,
     )
 
@@ -75,12 +75,15 @@ def right(evidence: Evidence, id: str) -> Reading:
         tolerance=evidence.tolerance(id),
         chi_square=float((pulls**2).max()),
         degrees_of_freedom=1,
-        further=read_off(evidence, "space_time_stress"),
+        further=values_of_our_figure(evidence, "space_time_stress"),
     )
 
 
-def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
-    """Return the values that our own figure has for the readings of one panel."""
+def values_of_our_figure(evidence: Evidence, simulation: str) -> dict[str, float]:
+    """Return what our own figure shows where values were read off one panel of the published one.
+
+    simulation : simulation that makes the panel. If it has several runs, their mean is returned.
+    """
     runs = evidence.finest(simulation)
     values = {}
     for reading in evidence.readings.values():

@@ -21,7 +21,7 @@ from . import rules
 from .choices import LAST_RELEASE_FRACTION, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreed_answers, exponent, ratios, with_grid_uncertainty
 from .kinds import NAN, Approximate, Claim, Equation, Qualitative
-from .rules import Uncertain
+from .rules import Spread
 from .space_time_claims import readings_by_name
 
 # The printed threshold also applies backwards: at or below -1 the pre-stress itself would make
@@ -190,8 +190,8 @@ class JudgedEstimate(NamedTuple):
     """An estimate at all combinations, with two comparisons."""
 
     combinations: list[Combination]
-    # Median and largest deviation of lattices from exact theory.
-    from_exact: Uncertain
+    # Deviations of lattices from exact theory.
+    from_exact: Spread
     # Length of the arrow in figure 4 divided by the estimate; empty if figure 4 draws none.
     arrow: dict[str, float]
 
@@ -287,8 +287,7 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
         for quantity, symbol in SYMBOLS.items():
             estimate = f"estimated_{quantity}"
             exponents[symbol] = exponent(tables, quantity, estimate, varied_columns)
-        # Each exponent is a value with its uncertainty.
-        farthest = max(exponents, key=lambda symbol: abs(exponents[symbol][0] - 1.0))
+        farthest = max(exponents, key=lambda symbol: abs(exponents[symbol].value - 1.0))
         measured, uncertainty = exponents[farthest]
         return Equation(
             tolerance=evidence.tolerance(id),
@@ -304,14 +303,17 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
-    """Judge the mean speeds of both fronts; the front with the larger deviation counts."""
+    """Judge whether the mean speeds of both fronts are 1, the wave speed.
+
+    Until its arrest the left front covers one part of the rupture length, and the right front the
+    rest of it. The claim is judged by the front whose median deviation is larger.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        left = evidence.approximate(id, tables, "covered / time", "1")
-        right = evidence.approximate(id, tables, "(length - covered) / time", "1")
-        left_deviation, _ = left.median
-        right_deviation, _ = right.median
-        if right_deviation > left_deviation:
+        left = evidence.approximate(id, tables, measured="covered / time", predicted="1")
+        right_speed = "(length - covered) / time"
+        right = evidence.approximate(id, tables, measured=right_speed, predicted="1")
+        if right.median.value > left.median.value:
             return replace(right, template_values={"side": "right"})
         return replace(left, template_values={"side": "left"})
 

@@ -59,12 +59,17 @@ def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
 
 
 def _default_time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
-    """Return the time step of the preset, or a smaller one if that is not stable or accurate."""
+    """Return the time step of the preset, or a smaller one if that is not stable or accurate.
+
+    All steps are divided by dx, also those of the preset.
+    """
     accuracy = simulation["accuracy"]
+    # The stability depends on beta/dx, gamma dx^2 and alpha dx.
     ratios = stability_ratios(run.parameters(), friction)
     stable_step = choose_step(simulation["scheme"], accuracy["order"], *ratios)
-    longest_step = STABILITY_MARGIN * friction.traits.longest_step / run.dx
-    return min(accuracy["max_step"], stable_step, longest_step)
+    # The longest step that resolves the law of friction.
+    step_of_law = STABILITY_MARGIN * friction.traits.longest_step / run.dx
+    return min(accuracy["max_step"], stable_step, step_of_law)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:

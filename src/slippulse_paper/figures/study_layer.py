@@ -44,14 +44,19 @@ OUTCOMES: dict[str, Look] = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts field, pulse, step and map.
+    """Return the rows of four parts of the figure, which the column part names.
 
-    A row of the part pulse is a pulse on its finest grid, at the last station. The columns
-    change_of_QUANTITY have the absolute change from the second finest grid.
+    field : velocity in the layer at one time
+    pulse : one row for each pulse on its finest grid, measured at the last station (see
+        `drawn_pulses`); columns change_of_QUANTITY have the absolute change from the second finest
+        grid
+    step : slip of pulses that enter another pre-stress
+    map : outcome as a function of gamma and fracture energy
     """
     study = tables["layer"]
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
     steps = study[study["part"] == "step"]
+    # A grid is named by its number of cells over the height of the layer.
     steps = steps[steps["cells"] == steps["cells"].max()]
     steps = steps[["part", "gamma", "tau0", "before", "sample_position", "pulse_slip"]]
     points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")

@@ -39,7 +39,11 @@ CHANGE_LINES = {
 
 @dataclass(frozen=True)
 class TableRuns:
-    """Runs of one table: how many are in both folders, and descriptions of the others."""
+    """Runs of one table: how many are in both folders, and descriptions of the others.
+
+    A pair of altered runs differs only in the parameters ``altered_parameters``, each of which has
+    one value in the new table and another one in the old table.
+    """
 
     table: str
     same_count: int
@@ -157,7 +161,11 @@ def _read_content(path: Path) -> dict:
 
 
 def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.DataFrame:
-    """Compare one table of both folders, record what differs, and return its compared numbers."""
+    """Compare one table of both folders, record what differs, and return the numbers of its runs.
+
+    Numbers of the same run in both folders are judged. Those of altered runs (see `TableRuns`) are
+    only listed.
+    """
     new_table = read_runs(new / "measurements" / name)
     old_table = read_runs(old / "measurements" / name)
     parameters = varying_parameters(new_table, old_table)
@@ -171,9 +179,8 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
         only_old=_describe_rows(old_table, joined.only_old, parameters),
     )
     result.runs.append(runs)
-    differences = _differences_of_runs(runs)
-    for column in sorted(new_table.columns.symmetric_difference(old_table.columns)):
-        differences.append(f"columns in one folder only: {column}")
+    differences = _differences_of_runs(runs) + _differences_of_columns(new_table, old_table)
+    # Grid studies give the uncertainties of the numbers.
     new_study, old_study = new / "uncertainties" / name, old / "uncertainties" / name
     if new_study.exists() != old_study.exists():
         differences.append("uncertainties in one folder only")
@@ -213,6 +220,12 @@ def _differences_of_runs(runs: TableRuns) -> list[str]:
         )
         lines.append(f"{pairs} in {', '.join(runs.altered_parameters)}")
     return lines
+
+
+def _differences_of_columns(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
+    """Return a line for each column that only one of two tables has."""
+    columns = sorted(new.columns.symmetric_difference(old.columns))
+    return [f"columns in one folder only: {column}" for column in columns]
 
 
 def _differing_numbers(numbers: pd.DataFrame) -> list[str]:

@@ -77,20 +77,20 @@ cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles plane, selection, case and theory.
+    """Return the rows of four parts of the figure, which the column role names.
 
     plane : runs of all laws at all levels, for the regime as a function of level and strength
     selection : front speeds under slip weakening by spacing and d_c, with the exact speed
     case, theory : some runs at several spacings, and their exact numbers
     """
-    still = settings["measure"]["still"]
+    still_fraction = settings["measure"]["still"]
     cases = [
-        _run(level, law, step, dx, still)
-        for (level, law, step), dx in product(CASES, SELECTION_SPACINGS)
+        _run(level, law, dx=dx, step_over_dx=step_over_dx, still_fraction=still_fraction)
+        for (level, law, step_over_dx), dx in product(CASES, SELECTION_SPACINGS)
     ]
     parts = {
-        "plane": _plane(still),
-        "selection": _selection(still),
+        "plane": _plane(still_fraction),
+        "selection": _selection(still_fraction),
         "case": cases,
         "theory": [_theory(level, law) for level, law, _ in CASES],
     }
@@ -98,7 +98,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(tables_by_role, ignore_index=True).assign(gamma=GAMMA)
 
 
-def _plane(still: float) -> list[dict[str, Any]]:
+def _plane(still_fraction: float) -> list[dict[str, Any]]:
     """Run all laws at all levels."""
     rows = []
     for level in LEVELS:
@@ -111,11 +111,14 @@ def _plane(still: float) -> list[dict[str, Any]]:
             d_c = relative_distance * level**2 / GAMMA
             laws.append(SlipWeakening(d_c, NUCLEATION_HALF_LENGTH))
             laws.append(ExponentialWeakening(d_c, NUCLEATION_HALF_LENGTH))
-        rows += [_run(level, law, STEP_OVER_DX, DX, still) for law in laws]
+        rows += [
+            _run(level, law, dx=DX, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction)
+            for law in laws
+        ]
     return rows
 
 
-def _selection(still: float) -> list[dict[str, Any]]:
+def _selection(still_fraction: float) -> list[dict[str, Any]]:
     """Run slip weakening at several spacings and d_c; NaN as exact speed if nothing ruptures."""
     rows = []
     for level, dx, spacings_per_distance in product(
@@ -125,7 +128,7 @@ def _selection(still: float) -> list[dict[str, Any]]:
         exact_speed = np.nan
         if _strength(level, law) < 1.0:
             exact_speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed
-        row = _run(level, law, STEP_OVER_DX, dx, still)
+        row = _run(level, law, dx=dx, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction)
         rows.append(row | {"d_c": law.d_c, "exact_speed": exact_speed})
     return rows
 
@@ -143,13 +146,17 @@ def _strength(level: float, law: Friction) -> float:
     return -relative_limit if isinstance(law, RateWeakening) else relative_limit
 
 
-def _run(level: float, law: Friction, step: float, dx: float, still: float) -> dict[str, Any]:
+def _run(
+    level: float, law: Friction, dx: float, step_over_dx: float, still_fraction: float
+) -> dict[str, Any]:
     """Simulate one run and return its regime and pulse; width and slip are NaN if nothing sticks.
 
-    step : largest time step divided by dx
-    still : fraction of the largest velocity below which the centre of a pulse counts as at rest
+    step_over_dx : largest time step divided by dx
+    still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
+        rest
     """
-    step = min(step, 0.9 * law.traits.longest_step / dx)
+    # The step must also resolve the law of friction.
+    step_over_dx = min(step_over_dx, 0.9 * law.traits.longest_step / dx)
     # Slip weakening has a limit dx -> 0 at fixed beta, all other laws at fixed beta/dx.
     beta = BETA if isinstance(law, SlipWeakening) else DAMPING_RATIO * dx
     scene = Scene(
@@ -160,12 +167,12 @@ def _run(level: float, law: Friction, step: float, dx: float, still: float) -> d
         gamma=GAMMA,
         beta=beta,
         scheme="fixed_step",
-        max_step=step,
+        max_step=step_over_dx,
         friction=law,
     )
     run = recorded(scene, None, solve_by_scheme(scene)).dataset()
     right = right_of_centre(run)
-    regime = _regime(right, level / GAMMA, still)
+    regime = _regime(right, level / GAMMA, still_fraction)
     pulse = pulse_at(right, DURATION) if regime == STICKING else PulseSize(np.nan, np.nan)
     return {
         "law": law.law,
@@ -192,7 +199,7 @@ def _late_front_speed(right: xr.Dataset) -> float:
     return float(speed)
 
 
-def _regime(right: xr.Dataset, slip_at_rest: float, still: float) -> str:
+def _regime(right: xr.Dataset, slip_at_rest: float, still_fraction: float) -> str:
     """Classify a rupture, from the growth of its right side over the second half of the run.
 
     slip_at_rest : slip at which the springs balance the pre-stress, tau_0/gamma
@@ -206,7 +213,7 @@ def _regime(right: xr.Dataset, slip_at_rest: float, still: float) -> str:
     if edge_advances and pulse_at(right, DURATION).slip > MIN_OVERSHOOT * slip_at_rest:
         return STICKING
     velocity = right["slip_velocity"].values
-    return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
+    return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still_fraction) else CRACK
 
 
 def _theory(level: float, law: Friction) -> dict:

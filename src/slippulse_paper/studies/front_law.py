@@ -34,16 +34,24 @@ LINE_COLUMNS = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the panels prestress, springs (by gamma dx^2), refined (by dx) and limit (dx -> 0).
+    """Return the points of the lines of theory in four panels, which the column panel names.
 
-    A line belongs to a set of parameters of the swept runs.
+    There is a line for each combination of parameters that the simulated sweeps have.
+
+    prestress : front speed as a function of the pre-stress
+    springs : front speed as a function of gamma dx^2
+    refined : front speed as a function of dx, with beta or b = beta/dx fixed
+    limit : front speed in the limit dx -> 0 at fixed beta
     """
+    # The parameters of the runs of each sweep, in the order of NEEDS.
     swept, springs, fixed_ratio, *fixed_beta = (
         pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
     )
     refined = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     refined += [runs.assign(held="beta", fixed=runs["beta"]) for runs in fixed_beta]
-    parts = [*prestress_lines(swept), *spring_lines(springs), refined_lines(pd.concat(refined))]
+    # The panels refined and limit are made together.
+    refined_and_limit = refined_lines(pd.concat(refined))
+    parts = [*prestress_lines(swept), *spring_lines(springs), refined_and_limit]
     return pd.concat(parts, ignore_index=True)
 
 

@@ -74,21 +74,26 @@ class Front(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles lattice, limit, steady and map, and arrest and asymptote (no springs).
+    """Return the rows of the parts of the figure, which the column role names.
+
+    With leaf springs:
 
     lattice : regime and pulse of lattice runs, by level and rate strengthening
     limit : the critical rate strengthening by level
     steady : exact pulses at SHOWN_LEVEL, by rate strengthening
     map : slip velocity of two exact ruptures
-    arrest, asymptote : left front and largest velocity by time, on lattices and at late times
+
+    Without leaf springs:
+
+    arrest : left front and largest velocity as functions of time, on lattices
+    asymptote : the same two, as theory predicts them for late times
     """
-    still = settings["measure"]["still"]
-    maps = []
-    for regime, fraction in MAPPED_FRACTIONS.items():
-        maps.append(_map(regime, fraction * _front(SHOWN_LEVEL).critical))
+    still_fraction = settings["measure"]["still"]
+    critical = _front(SHOWN_LEVEL).critical
+    maps = [_map(regime, fraction * critical) for regime, fraction in MAPPED_FRACTIONS.items()]
     arrests = [_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
     parts = {
-        "lattice": _lattices(still),
+        "lattice": _lattices(still_fraction),
         "limit": _limit(),
         "steady": _steady_pulses(),
         "map": pd.concat(maps),
@@ -107,14 +112,14 @@ def _front(level: float) -> Front:
     return Front(speed, critical_rate_strengthening(GAMMA, speed))
 
 
-def _lattices(still: float) -> pd.DataFrame:
+def _lattices(still_fraction: float) -> pd.DataFrame:
     """Run lattices at all levels and fractions of the critical rate strengthening."""
     # Below this value slip grows without bound, and the model refuses it.
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
     for level, fraction in product(LEVELS, CRITICAL_FRACTIONS):
         if fraction * _front(level).critical > smallest_alpha:
-            rows.append(_lattice(level, fraction, still))
+            rows.append(_lattice(level, fraction, still_fraction))
     return pd.DataFrame(rows)
 
 
@@ -136,11 +141,12 @@ def _steady_pulses() -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["rate_strengthening", "pulse_width", "pulse_slip"])
 
 
-def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
+def _lattice(level: float, fraction: float, still_fraction: float) -> dict[str, Any]:
     """Simulate one run and return its regime and pulse; NaN if the pulse does not stick.
 
     fraction : rate strengthening divided by the critical value
-    still : fraction of the largest velocity below which the centre of a pulse counts as at rest
+    still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
+        rest
     """
     speed, critical = _front(level)
     alpha, dx = fraction * critical, SPACING_OVER_LEVEL * level
@@ -157,7 +163,7 @@ def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
         friction=LinearRate(alpha),
     )
     run = simulate_on_lattice(scene)
-    regime, pulse = _regime_and_pulse(run, duration, still)
+    regime, pulse = _regime_and_pulse(run, duration, still_fraction)
     return {
         "level": level,
         "rate_strengthening": alpha,
@@ -170,7 +176,9 @@ def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
     }
 
 
-def _regime_and_pulse(run: xr.Dataset, duration: float, still: float) -> tuple[str, PulseSize]:
+def _regime_and_pulse(
+    run: xr.Dataset, duration: float, still_fraction: float
+) -> tuple[str, PulseSize]:
     """Return the regime at the end of a run, and the pulse; its size is NaN if it does not stick.
 
     Without a trailing edge the sliding part keeps growing, or has a tail of tiny velocities.
@@ -186,7 +194,7 @@ def _regime_and_pulse(run: xr.Dataset, duration: float, still: float) -> tuple[s
     if not keeps_growing and not has_quiet_tail:
         return STICKING, pulse_at(right, duration)
     centre_velocity = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
-    regime = CREEPING if is_pulse(centre_velocity, largest, still) else CRACK
+    regime = CREEPING if is_pulse(centre_velocity, largest, still_fraction) else CRACK
     return regime, PulseSize(np.nan, np.nan)
 
 

@@ -49,14 +49,19 @@ class Series(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles area, line (one level is 0 along it) and profile (W = 1)."""
-    still, model = settings["measure"]["still"], settings["model"]
+    """Return the rows of three parts of the figure, which the column role names.
+
+    area : corners of the area of a regime in the plane of both levels
+    line : ends of a line along which one level is 0
+    profile : slip velocity as a function of the position, for a nucleation of width W = 1
+    """
+    still_fraction, model = settings["measure"]["still"], settings["model"]
     ratio, release = model["damping_ratio"], model["release"]
-    all_series = [*areas_and_lines(ratio, release, still), *profiles(ratio, release)]
+    all_series = [*areas_and_lines(ratio, release, still_fraction), *profiles(ratio, release)]
     parts = []
     for number, series in enumerate(all_series):
         gamma = GAMMAS[series.boundary]
-        regime = final_regime(series.left, series.right, gamma, ratio, release, still)
+        regime = final_regime(series.left, series.right, gamma, ratio, release, still_fraction)
         rows = series.rows.assign(
             role=series.role, boundary=series.boundary, series=number, regime=regime
         )
@@ -64,13 +69,14 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def areas_and_lines(ratio: float, release: str, still: float) -> Iterator[Series]:
+def areas_and_lines(ratio: float, release: str, still_fraction: float) -> Iterator[Series]:
     """Yield the quadrants of both planes, areas of cracks in them, and lines on the axes.
 
     Where one level is negative, a rupture without leaf springs is a pulse. Only near the axis,
     where the negative level is small compared with the positive one, is it a crack.
     """
-    negative_levels = -BORDER_LEVELS / largest_pulse_ratio(BORDER_LEVELS, ratio, release, still)
+    level_ratios = largest_pulse_ratio(BORDER_LEVELS, ratio, release, still_fraction)
+    negative_levels = -BORDER_LEVELS / level_ratios
     border = np.column_stack([negative_levels, BORDER_LEVELS])
     crack_area = np.vstack([[(0.0, 0.0)], border, [(negative_levels[-1], 0.0)]])
     axis = np.array([(-1.0, 0.0), (0.0, 0.0)])

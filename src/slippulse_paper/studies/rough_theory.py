@@ -62,7 +62,13 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 
 def diffusivity(parameters: Mapping[str, Any]) -> float:
-    """Return the variance of the integral of a rough field over a long distance, per distance."""
+    """Return the variance of the integral of a rough field over a long distance, per distance.
+
+    It is the integral of the autocovariance of the field over all distances, which is 2 pi times
+    its power spectrum at the wave number 0. The spectrum is that of `spectrum`, proportional to
+    (1 + k^2 l^2)^-(H + 1/2), and its integral over k is the variance of the field. The integral of
+    this power is sqrt(pi) Gamma(H)/(l Gamma(H + 1/2)).
+    """
     hurst, deviation = parameters["hurst"], parameters["deviation"]
     shape = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
     return float(shape * parameters["correlation_length"] * deviation**2)
