@@ -50,7 +50,7 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
         names.difference_update(PULSE_NUMBERS)
     # The largest velocity tends to a limit only where a front is arrested on the left, and the
     # pulse runs into pre-stress 0. Between two fronts that continue to run, it grows without limit.
-    if not run["left"] < 0.0 == run["right"] == run["beyond"]:
+    if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.discard("largest_velocity")
     if run["boundary"] == "stress":
         is_resolved = run.get("transition_state") == "resolved" and fraction <= MAX_COVERED_FRACTION

@@ -25,7 +25,8 @@ def _regime(run: Run, still_fraction: float) -> str:
     if profile.steps:
         # A pulse that has formed in pre-stress 0 reaches the steps, which lie ahead of it. Its
         # velocity then grows by half the integral of the pre-stress that it crosses.
-        pulse_forms = run.boundary == "stress" and profile.left < 0.0 == profile.right
+        has_pulse_levels = profile.left < 0.0 and profile.right == 0.0
+        pulse_forms = run.boundary == "stress" and has_pulse_levels
         steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
         if not (pulse_forms and steps_are_ahead):
             return UNDECIDED

@@ -59,11 +59,11 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     """Return the balance distance and, for a single Gaussian, the numbers of the arrest."""
     row = {**NO_TRANSITION}
     profile, ratio = run.prestress, rounded_damping_ratio(run)
-    if far_level(run, "left") < 0.0 == far_level(run, "right"):
+    if far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0:
         balance_position = value_or_nan(partial(prestress_balance_position, profile))
         row["exact_balance_distance"] = -balance_position
     width = _gaussian_width(profile)
-    if width and profile.left < 0.0 == profile.right:
+    if width and profile.left < 0.0 and profile.right == 0.0:
         find_arrest = partial(_arrest, profile.left, ratio, run.release, fraction)
         for_unit_width = value_or(find_arrest, NO_TRANSITION)
         # All lengths and times, and the velocity, are proportional to the width.

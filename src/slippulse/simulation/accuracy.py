@@ -242,7 +242,7 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
     spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
-    if prestress.left < 0.0 == prestress.right and distances:
+    if prestress.left < 0.0 and prestress.right == 0.0 and distances:
         if not prestress.steps:
             constant = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * ratio
             spacings.append(error * distances[0] / constant)

@@ -28,7 +28,13 @@ PARAMETERS = ["boundary", "left", "right", "gamma", "damping_ratio", "dx"]
 
 
 def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles scene, exact and lattice (edges), map_exact, map_lattice and difference."""
+    """Return the rows of the parts of the figure, which the column role names.
+
+    scene : parameters of the lattice that is shown, one row for each scene
+    exact, lattice : edges and slip of the exact solution, and of the lattice at some positions
+    map_exact, map_lattice : slip velocity by time and position, for the first scene
+    difference : mean differences between each lattice and the exact solution
+    """
     first_name, *_, last_name = NEEDS["data"]
     parts = []
     for name in NEEDS["data"]:
