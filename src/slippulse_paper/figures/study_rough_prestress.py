@@ -10,7 +10,9 @@ from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN_MARKER, PAGE_WID
 
 NEEDS = {"studies": ["rough_prestress"]}
 KEYS = ["level", "deviation", "correlation_length", "hurst"]
-COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY)
+COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY, BLACK)
+# Ensembles beyond these colours, as in a larger study, have only their death rate drawn, in grey.
+SHAPES = (*MARKERS, "X")
 HEAD = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
 
 
@@ -24,7 +26,7 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (lives, rates, walks, velocities) = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
     held = table[table["boundary"] == "displacement"]
     ensembles = held[(held["part"] == "ensemble") & (held["deaths"] > 0.0)]
-    for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
+    for colour, marker, (_, row) in zip(COLOURS, SHAPES, ensembles.iterrows(), strict=False):
         label = ", ".join(f"{row[key]:g}" for key in KEYS)
         _survival(lives, _of(held, row, "survival"), colour, label)
         errors = [[row["rate"] - row["rate_low"]], [row["rate_high"] - row["rate"]]]
@@ -33,14 +35,20 @@ def draw(table: pd.DataFrame) -> Figure:
     lives.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
     lives.set(ylim=(0.6, 1.01), xlim=(0.0, ensembles["stop"].max()))
     lives.legend(title=HEAD, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
-    ends = np.array([3e-5, 1e-2])
+    others = ensembles.iloc[len(COLOURS) :]
+    rates.plot(others["barrier_rate"], others["rate"], ".", color=GREY, zorder=1.0)
+    ends = np.array([3e-5, max(1e-2, 1.2 * ensembles["barrier_rate"].max())])
     rates.plot(ends, ends, color=BLACK, linewidth=0.8)
     rates.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
-    rates.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2e-2), title=r"$\Gamma = 1$")
-    rates.set(xlabel="predicted rate of fatal barriers", ylabel="death rate of pulses")
+    rates.set(
+        xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2.0 * ends[1]), title=r"$\Gamma = 1$"
+    )
+    rates.set(
+        xlabel="predicted fatal barriers for each $H$", ylabel="deaths of pulses for each $H$"
+    )
     stress = table[table["boundary"] == "stress"]
     ensembles = stress[stress["part"] == "ensemble"]
-    for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
+    for colour, marker, (_, row) in zip(COLOURS, SHAPES, ensembles.iterrows(), strict=False):
         label = ", ".join(f"{row[key]:g}" for key in KEYS)
         if row["deaths"] > 0.1 * row["pulses"]:
             curve = _of(stress, row, "survival")
@@ -53,17 +61,19 @@ def draw(table: pd.DataFrame) -> Figure:
         look["zorder"] = 3.0 - row["deviation"]
         velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look, **OPEN_MARKER)
     long = stress[stress["part"] == "long_survival"]
-    walks.plot(long["distance"], long["survival"], color=GREY, label="balance alone")
+    walks.plot(long["distance"], long["survival"], color=GREY, label="balance, not simulated")
     tail = long[long["distance"] > 0.2 * long["distance"].max()]
     guide = 1.5 * tail["survival"].iloc[0] * np.sqrt(tail["distance"].iloc[0] / tail["distance"])
-    walks.plot(tail["distance"], guide, ":", color=BLACK, label="slope $-1/2$")
+    walks.plot(tail["distance"], guide, ":", color=BLACK, label="power law $x^{-1/2}$")
     walks.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
     walks.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
     walks.legend(loc="lower left", fontsize=SMALL_TEXT)
     top = float(velocities.dataLim.x1)
     velocities.plot([0.0, top], [0.0, top], color=BLACK, linewidth=0.8, zorder=0.0)
-    velocities.set(xlabel="half of the pre-stress integral", title=r"$\Gamma = 0$")
-    velocities.set_ylabel("slip velocity of the pulse")
+    velocities.set(
+        xlabel="slip velocity by theory, half of the integral of $\\tau$", title=r"$\Gamma = 0$"
+    )
+    velocities.set_ylabel("slip velocity of the pulse, simulated")
     velocities.legend(title=HEAD, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
     return figure
 

@@ -1,4 +1,4 @@
-"""Checks of rough ensembles on a part: finer lattices, exact solutions, and what pulses forget."""
+"""Checks of rough ensembles: finer lattices, longer tracks, exact solutions, and the memory."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -15,18 +15,20 @@ from slippulse.theory.rupture import Rupture
 from ..configuration.expand import expand
 from .rough_prestress import KEYS, MIDDLES, START, fate, integral
 from .rough_theory import balance_position
-from .survival_statistics import death_rate
+from .survival_statistics import Fate, death_rate
 
 NEEDS = {"sweeps": ["rough_displacement", "rough_settling", "rough_stress"]}
 
 # Seeds of each ensemble whose deaths are compared between spacings.
 GRID_SEEDS, GRID_SPACINGS = 10, (0.05, 0.025)
+# Tracks and durations that are this many times longer, their seeds, and the spacing of the lattice.
+LONGER, LENGTH_SEEDS, LENGTH_SPACING = 2, 20, 0.1
 # Seeds whose deaths with the stress held are compared with the balance, up to a time, by spacing.
 BALANCE_SEEDS, BALANCE_TIME, BALANCE_SPACINGS = 20, 60.0, (0.1, 0.05, 0.025)
 # Seeds that are also solved exactly, up to a time, against lattices of these spacings, at blocks at
 # this distance from each other.
 EXACT_SEEDS, EXACT_TIME, EXACT_SPACINGS = 2, 12.0, (0.05, 0.025)
-EXACT_DISTANCE = 0.25
+EXACT_DISTANCE = 0.5
 # Bump of the pre-stress that a pulse forgets, the seeds that meet it, and distances beyond the bump
 # in units of the memory. A Gaussian ends EDGE widths from its centre.
 BUMP, EDGE = (15.0, 0.1, 1.0), 3.0
@@ -34,10 +36,11 @@ BUMP_SEEDS, BEYOND = 10, np.linspace(0.1, 1.4, 14)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts grid (death rates), balance (deaths), exact (slip) and memory (of a bump)."""
+    """Parts grid, length (death rates), balance (deaths), exact (slip) and memory (of a bump)."""
     dying, settling, stress = (settings["sweeps"][name] for name in NEEDS["sweeps"])
     parts = [
         grid(dying),
+        length(dying),
         balance(next(ensembles(stress)), stress),
         *(exact(group, settling) for group in ensembles(settling)),
     ]
@@ -70,6 +73,31 @@ def grid(sweep: Mapping[str, Any]) -> pd.DataFrame:
             fates += [fate(run, side, profiles[0]["rough"]["stop"]) for side in (1, -1)]
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
+
+
+def length(sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the death rates in the first and in the second half of longer tracks and runs.
+
+    The column stop has the end of each half.
+    """
+    profiles = [one for group in ensembles(sweep) for one in group[:LENGTH_SEEDS]]
+    middle = profiles[0]["rough"]["stop"]
+    end = LONGER * middle
+    longer = []
+    for one in profiles:
+        rough = one["rough"]
+        longer.append({**one, "rough": {**rough, "start": LONGER * rough["start"], "stop": end}})
+    duration = {"time": LONGER * sweep["duration"]["time"]}
+    dx = LENGTH_SPACING
+    scenes, _ = expand({**sweep, "profiles": longer, "duration": duration, "dx": [dx]})
+    fates = []
+    for scene in scenes:
+        run = Recorded(solve_on_lattice(scene).arrays(), {})
+        fates += [fate(run, side, end) for side in (1, -1)]
+    # A pulse that goes beyond the first half is no longer followed there.
+    first = [Fate(min(one.distance, middle), one.died and one.distance < middle) for one in fates]
+    rows = [death_rate(first, START) | {"stop": middle}, death_rate(fates, middle) | {"stop": end}]
+    return pd.DataFrame(rows).assign(part="length", dx=dx)
 
 
 def balance(group: Sequence[Mapping[str, Any]], sweep: Mapping[str, Any]) -> pd.DataFrame:

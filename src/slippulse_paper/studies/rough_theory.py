@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ def barrier_rate(keys: Mapping[str, Any]) -> dict[str, float]:
     wave_number, power = spectrum(keys)
     best = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
     for barrier in level * BARRIERS:
-        depth = barrier_depth(level, -barrier, keys["gamma"], keys["damping_ratio"])
+        depth = critical_depth(level, -barrier, keys["gamma"], keys["damping_ratio"])
         averaged = power * np.sinc(wave_number * depth / (2.0 * np.pi)) ** 2
         variance, slope = np.sum(averaged), np.sum(averaged * wave_number**2)
         rate = math.exp(-((level + barrier) ** 2) / (2.0 * variance))
@@ -46,6 +47,12 @@ def barrier_rate(keys: Mapping[str, Any]) -> dict[str, float]:
         if rate > best["barrier_rate"]:
             best = {"barrier_rate": rate, "barrier": -barrier, "depth": depth}
     return best
+
+
+@cache
+def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: float) -> float:
+    """Return the exact critical depth of a barrier, once for all ensembles of the same level."""
+    return barrier_depth(level, barrier, gamma, damping_ratio)
 
 
 def diffusivity(keys: Mapping[str, Any]) -> float:
