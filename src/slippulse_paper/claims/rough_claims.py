@@ -7,6 +7,10 @@ from .kinds import Qualitative
 
 # Names of the exponent and of the ends of its interval, and numbers of ensembles under held stress.
 ENDS = (("exponent", ""), ("low", "_low"), ("high", "_high"))
+# Columns that name an ensemble.
+FIELD = ["level", "deviation", "correlation_length", "hurst"]
+# Death rates of ensembles in which fewer pulses die say little.
+LEAST_DEATHS = 5
 STRESS_KEYS = ("level", "deviation", "pulses", "deaths", "cracks", "survival", "low", "high")
 DISTANCES, VELOCITIES = ("death_scale", "stop"), ("velocity_deviation", "velocity_predicted")
 
@@ -66,7 +70,17 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
     study, checks = evidence.tables["rough_prestress"], evidence.tables["rough_checks"]
     dying = held[held["deaths"] > 0]
     ratio = dying["rate"] / dying["barrier_rate"]
-    long = dying["correlation_length"] == dying["correlation_length"].max()
+    frequent = dying[dying["deaths"] >= LEAST_DEATHS]
+    frequent_ratios = {
+        name: frequent[column] / frequent["barrier_rate"]
+        for name, column in (("ratio", "rate"), ("low", "rate_low"), ("high", "rate_high"))
+    }
+    calm, worst = held[held["deaths"] == 0], held.loc[held["rate"].idxmax()]
+    lives = study[(study["part"] == "survival") & (study["boundary"] == "displacement")]
+    lives = lives[(lives[FIELD] == worst[FIELD]).all(axis=1)].iloc[-1]
+    near, far = (row for _, row in checks[checks["part"] == "length"].iterrows())
+    grid = checks[checks["part"] == "grid"].sort_values("dx")
+    fine, coarse = grid.iloc[0], grid.iloc[-1]
     settled = held.dropna(subset=["memory"]).sort_values("correlation_length")
     forgotten = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
     exponent = study[study["part"] == "long"].iloc[0]
@@ -76,8 +90,19 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
     balance = checks[checks["part"] == "balance"].sort_values("dx")
     first, last = settled.iloc[0], settled.iloc[-1]
     out = {"least_ratio": ratio.min(), "largest_ratio": ratio.max()}
-    out |= {"long_least": ratio[long].min(), "long_largest": ratio[long].max()}
-    out |= {"long_length": dying["correlation_length"].max()}
+    out |= {"confidence": exponent["confidence"], "frequent_deaths": LEAST_DEATHS}
+    out |= {"frequent_least": frequent_ratios["ratio"].min()}
+    out |= {"frequent_largest": frequent_ratios["ratio"].max()}
+    out |= {"frequent_low": frequent_ratios["low"].min()}
+    out |= {"frequent_high": frequent_ratios["high"].max()}
+    out |= {"calm_pulses": calm["pulses"].sum(), "calm_rate": calm["rate_high"].max()}
+    out |= {f"worst_{key}": worst[key] for key in ("level", "deviation", "stop")}
+    out |= {f"worst_{key}": lives[key] for key in ("survival", "low", "high")}
+    for name, row in (("near", near), ("far", far)):
+        out |= {f"{name}_{key}": row[key] for key in ("rate", "rate_low", "rate_high", "stop")}
+    out |= {"grid_pulses": coarse["pulses"], "grid_dx": coarse["dx"], "grid_fine_dx": fine["dx"]}
+    out |= {"grid_deaths": coarse["deaths"], "grid_fine_deaths": fine["deaths"]}
+    out |= {"highest_level": held["level"].max()}
     for name, row in (("short", first), ("smooth", last)):
         out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation")}
         out |= {f"{name}_local": row["off_local"], f"{name}_mean": row["off_mean"]}
