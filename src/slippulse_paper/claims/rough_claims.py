@@ -5,40 +5,65 @@ import pandas as pd
 from .evidence import Evidence
 from .kinds import Qualitative
 
-# Names of the exponent and of the ends of its interval, and numbers of ensembles under held stress.
-ENDS = (("exponent", ""), ("low", "_low"), ("high", "_high"))
+# Columns of an ensemble under a stress boundary that the texts quote.
+QUOTED_COLUMNS = (
+    "level",
+    "deviation",
+    "pulses",
+    "deaths",
+    "cracks",
+    "survival",
+    "low",
+    "high",
+    "death_scale",
+    "stop",
+    "velocity_deviation",
+    "velocity_predicted",
+    "predicted",
+    "velocity_mean",
+)
 # Columns that name an ensemble.
-FIELD = ["level", "deviation", "correlation_length", "hurst"]
-# Death rates of ensembles in which fewer pulses die say little.
+FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
+# Ensembles with fewer deaths have death rates with wide confidence intervals.
 LEAST_DEATHS = 5
-STRESS_KEYS = ("level", "deviation", "pulses", "deaths", "cracks", "survival", "low", "high")
-DISTANCES, VELOCITIES = ("death_scale", "stop"), ("velocity_deviation", "velocity_predicted")
+# A death rate is at most 3 divided by the distance without a death, at 95 % confidence.
+RULE_OF_THREE = 3.0
 
 
 def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
-    """Ensembles of one boundary."""
+    """Return one row for each ensemble of runs under a boundary condition."""
     table = evidence.tables["rough_prestress"]
     return table[(table["part"] == "ensemble") & (table["boundary"] == boundary)]
 
 
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
-    """No pulse dies where the deviation is a small part of the level, a limit of ours."""
+    """Judge that no pulse dies where the pre-stress is only a little rough.
+
+    The limit of the roughness is ours: the deviation of the pre-stress divided by its level is at
+    most the tolerance. Each pulse counts as one run. Pulses must die in rougher ensembles, because
+    otherwise the claim would not need the limit.
+    """
     rows = ensembles(evidence, "displacement")
-    relative = rows["deviation"] / rows["level"]
-    small = relative <= evidence.tolerance(id)
-    alive, dead = (rows["pulses"] - rows["deaths"])[small].sum(), rows["deaths"][small].sum()
-    stronger = rows[~small]
-    dying = stronger["deaths"].sum()
-    template_values = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
-    template_values |= {
-        "stronger": stronger["pulses"].sum(),
-        "least_deviation": relative[~small].min(),
+    roughness = rows["deviation"] / rows["level"]
+    is_smooth = roughness <= evidence.tolerance(id)
+    smooth, rough = rows[is_smooth], rows[~is_smooth]
+    alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
+    dying = rough["deaths"].sum()
+    template_values = {
+        "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
+        "dying": dying,
+        "stronger": rough["pulses"].sum(),
+        "least_deviation": roughness[~is_smooth].min(),
     }
-    further = {"pulses that die at larger deviations": float(dying)}
-    further["of"] = float(template_values["stronger"])
-    decided = [True] * int(alive) + [False] * int(dead)
+    further = {
+        "pulses that die at larger deviations": float(dying),
+        "of": float(template_values["stronger"]),
+    }
     return Qualitative(
-        decided=decided, condition=dying > 0, further=further, template_values=template_values
+        decided=[True] * int(alive) + [False] * int(dead),
+        condition=dying > 0,
+        further=further,
+        template_values=template_values,
     )
 
 
@@ -63,56 +88,110 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
 
 
 def rough_numbers(evidence: Evidence) -> dict[str, float]:
-    """Numbers of the findings on rough pre-stress."""
-    held, stress = (ensembles(evidence, name) for name in ("displacement", "stress"))
-    if held.empty or stress.empty:
+    """Return the numbers of the findings on rough pre-stress; empty without ensembles."""
+    displacement = ensembles(evidence, "displacement")
+    stress = ensembles(evidence, "stress")
+    if displacement.empty or stress.empty:
         return {}
-    study, checks = evidence.tables["rough_prestress"], evidence.tables["rough_checks"]
-    dying = held[held["deaths"] > 0]
-    ratio = dying["rate"] / dying["barrier_rate"]
-    frequent = dying[dying["deaths"] >= LEAST_DEATHS]
-    frequent_ratios = {
-        name: frequent[column] / frequent["barrier_rate"]
-        for name, column in (("ratio", "rate"), ("low", "rate_low"), ("high", "rate_high"))
+    checks = evidence.tables["rough_checks"]
+    study = evidence.tables["rough_prestress"]
+    numbers = death_rate_numbers(displacement) | settling_numbers(displacement, checks)
+    numbers |= survival_numbers(displacement, study) | accuracy_numbers(checks)
+    long_distance = study[study["part"] == "long"].iloc[0]
+    numbers |= {
+        "confidence": long_distance["confidence"],
+        "tail_exponent": long_distance["exponent"],
+        "tail_low": long_distance["exponent_low"],
+        "tail_high": long_distance["exponent_high"],
     }
-    calm, worst = held[held["deaths"] == 0], held.loc[held["rate"].idxmax()]
-    lives = study[(study["part"] == "survival") & (study["boundary"] == "displacement")]
-    lives = lives[(lives[FIELD] == worst[FIELD]).all(axis=1)].iloc[-1]
-    near, far = (row for _, row in checks[checks["part"] == "length"].iterrows())
-    grid = checks[checks["part"] == "grid"].sort_values("dx")
-    fine, coarse = grid.iloc[0], grid.iloc[-1]
-    settled = held.dropna(subset=["memory"]).sort_values("correlation_length")
-    forgotten = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
-    exponent = study[study["part"] == "long"].iloc[0]
-    rough = stress.loc[stress["deviation"].idxmax()]
-    quiet = stress.loc[stress["deviation"].idxmin()]
-    above = stress.loc[stress["level"].idxmax()]
-    balance = checks[checks["part"] == "balance"].sort_values("dx")
-    first, last = settled.iloc[0], settled.iloc[-1]
-    out = {"least_ratio": ratio.min(), "largest_ratio": ratio.max()}
-    out |= {"confidence": exponent["confidence"], "frequent_deaths": LEAST_DEATHS}
-    out |= {"frequent_least": frequent_ratios["ratio"].min()}
-    out |= {"frequent_largest": frequent_ratios["ratio"].max()}
-    out |= {"frequent_low": frequent_ratios["low"].min()}
-    out |= {"frequent_high": frequent_ratios["high"].max()}
-    out |= {"calm_pulses": calm["pulses"].sum(), "calm_rate": calm["rate_high"].max()}
-    out |= {f"worst_{key}": worst[key] for key in ("level", "deviation", "stop")}
-    out |= {f"worst_{key}": lives[key] for key in ("survival", "low", "high")}
-    for name, row in (("near", near), ("far", far)):
-        out |= {f"{name}_{key}": row[key] for key in ("rate", "rate_low", "rate_high", "stop")}
-    out |= {"grid_pulses": coarse["pulses"], "grid_dx": coarse["dx"], "grid_fine_dx": fine["dx"]}
-    out |= {"grid_deaths": coarse["deaths"], "grid_fine_deaths": fine["deaths"]}
-    out |= {"highest_level": held["level"].max()}
-    for name, row in (("short", first), ("smooth", last)):
-        out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation")}
-        out |= {f"{name}_local": row["off_local"], f"{name}_mean": row["off_mean"]}
-        out |= {f"{name}_slowness": row["slowness_off"]}
-    out |= {"memory": first["memory"], "forgotten": forgotten["high"].max()}
-    out |= {f"tail_{name}": exponent[f"exponent{end}"] for name, end in ENDS}
-    keys = (*STRESS_KEYS, *DISTANCES, *VELOCITIES, "predicted", "velocity_mean")
-    out |= {f"rough_{key}": rough[key] for key in keys}
-    out |= {f"quiet_{key}": quiet[key] for key in keys}
-    out |= {f"above_{key}": above[key] for key in keys}
-    out |= {"balance_coarse": balance["change"].iloc[-1], "balance_fine": balance["change"].iloc[0]}
-    out |= {"balance_dx": balance["dx"].iloc[0], "balance_coarse_dx": balance["dx"].iloc[-1]}
-    return {name: float(value) for name, value in out.items()}
+    quoted = {
+        "rough": stress.loc[stress["deviation"].idxmax()],
+        "quiet": stress.loc[stress["deviation"].idxmin()],
+        "above": stress.loc[stress["level"].idxmax()],
+    }
+    for name, ensemble in quoted.items():
+        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS}
+    numbers |= balance_numbers(checks)
+    return {name: float(value) for name, value in numbers.items()}
+
+
+def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
+    """Compare death rates with the predicted rates of fatal barriers, where pulses died.
+
+    The ratios and the ends of their confidence intervals are those of ensembles with at least
+    LEAST_DEATHS deaths.
+    """
+    dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
+    ratio = dying["rate"] / dying["barrier_rate"]
+    return {
+        "frequent_deaths": LEAST_DEATHS,
+        "frequent_least": ratio.min(),
+        "frequent_largest": ratio.max(),
+        "frequent_low": (dying["rate_low"] / dying["barrier_rate"]).min(),
+        "frequent_high": (dying["rate_high"] / dying["barrier_rate"]).max(),
+        "highest_level": ensembles["level"].max(),
+    }
+
+
+def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
+    """Return the survival in the ensemble with the highest death rate, and that without deaths."""
+    calm = ensembles[ensembles["deaths"] == 0]
+    worst = ensembles.loc[ensembles["rate"].idxmax()]
+    is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
+    is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
+    end_of_curve = study[is_curve & is_worst].iloc[-1]
+    numbers = {"calm_pulses": calm["pulses"].sum(), "calm_rate": calm["rate_high"].max()}
+    numbers |= {f"worst_{column}": worst[column] for column in ("level", "deviation", "stop")}
+    return numbers | {f"worst_{name}": end_of_curve[name] for name in ("survival", "low", "high")}
+
+
+def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
+    """Return deaths on two lattices, and death rates in the two halves of longer tracks."""
+    by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
+    fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
+    halves = checks[checks["part"] == "length"].sort_values("stop")
+    numbers = {
+        "grid_pulses": coarse["pulses"],
+        "grid_dx": coarse["dx"],
+        "grid_deaths": coarse["deaths"],
+        "grid_fine_dx": fine["dx"],
+        "grid_fine_deaths": fine["deaths"],
+    }
+    for name, half in (("near", halves.iloc[0]), ("far", halves.iloc[-1])):
+        columns = ("rate", "rate_low", "rate_high", "stop")
+        numbers |= {f"{name}_{column}": half[column] for column in columns}
+    return numbers
+
+
+def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
+    """Return how near final slip and speed are to steady pulses at the local and mean pre-stress.
+
+    Two ensembles are quoted, those with the shortest and the longest correlation length among the
+    ensembles with recorded slip. Also return how much a bump changes the slip at distances beyond
+    the memory of the pulse.
+    """
+    with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
+    shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
+    numbers: dict[str, float] = {}
+    for name, ensemble in (("short", shortest), ("smooth", longest)):
+        numbers |= {
+            f"{name}_correlation_length": ensemble["correlation_length"],
+            f"{name}_deviation": ensemble["deviation"],
+            f"{name}_local": ensemble["off_local"],
+            f"{name}_mean": ensemble["off_mean"],
+            f"{name}_slowness": ensemble["slowness_off"],
+        }
+    beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
+    return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
+
+
+def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
+    """Return how far before the balance pulses die, on the coarsest and on the finest lattice."""
+    by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
+    finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
+    return {
+        "balance_coarse": coarsest["change"],
+        "balance_fine": finest["change"],
+        "balance_dx": finest["dx"],
+        "balance_coarse_dx": coarsest["dx"],
+    }

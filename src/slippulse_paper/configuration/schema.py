@@ -123,33 +123,38 @@ STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
-GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
-ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
-LAWS = "law of friction of sliding blocks, below; by default the model's"
-IN_SI = "layer in SI units; profile, `duration` and `dx` are then in m, Pa and s"
+GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); leave it out under `stress`"
+ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
+LAWS = "friction law of sliding blocks, explained below; by default that of `model`"
+IN_SI = "properties of a layer in SI units; all keys of the scene are then in SI units too"
 # Quantities of the numbers of a scene that are in SI units if the scene has a layer.
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
-KEPT = "recorded data: release and stick times; slip, velocity, acceleration at the end; samples"
+KEPT = (
+    "recorded data: fronts are release and stick times, fields are slip, velocity and acceleration"
+    " at the end, samples are explained below"
+)
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
 
 class Rough(Block):
     """Parameters of a rough background, as in `sp.rough`."""
 
-    level: float = key("mean, < 1 [S]")
-    deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
+    level: float = key("mean of the pre-stress, below 1 [S]")
+    deviation: NonNegative = key(
+        "standard deviation; larger values of the pre-stress than 0.95 are set to 0.95 [S]"
+    )
     correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
     hurst: float = key(
-        "Hurst exponent: 0 is the roughest profile at short lengths, 1 the smoothest",
+        "Hurst exponent: 0 gives the roughest profile at short lengths, 1 the smoothest",
         ge=0.0,
         le=1.0,
     )
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
-    spacing: Positive = key("distance of the positions [H]")
+    spacing: Positive = key("distance between neighbouring positions [H]")
     seed: Seed | Distinct[Seed] = key(
-        "seed of the random field; a list makes one profile each", words=SEEDS
+        "seed of the random field; a list of seeds gives one profile for each seed", words=SEEDS
     )
 
     def check(self) -> None:
@@ -161,34 +166,45 @@ class Rough(Block):
 class Profile(Block):
     """One pre-stress profile."""
 
-    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
-    right: float | None = key("level far to the right, without a table [S]", None)
+    left: float | None = key(
+        "level of the pre-stress far to the left, if there is no table [S]", None
+    )
+    right: float | None = key("level far to the right, if there is no table [S]", None)
     width: Positive | None = key(
-        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
-        " have no Gaussian [H] (paper)",
+        "standard deviation W of the Gaussian at x = 0, at least dx; with `points` or `file` there"
+        " is a Gaussian only if `width` is given [H] (paper)",
         1.0,
     )
-    peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
-    steps: list[Step] = key("levels beyond positions, away from x = 0 [H, S]", [], STEPS)
-    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
+    peak: float = key("pre-stress at x = 0; somewhere the pre-stress must reach 1 [S] (paper)", 1.0)
+    steps: list[Step] = key(
+        "new levels of the pre-stress, each from a position on, away from x = 0 [H, S]", [], STEPS
+    )
+    bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: linear between these points, constant beyond; a position twice is a"
-        " jump [H, S]",
+        "instead of levels: table of points, with linear interpolation between them and constant"
+        " values outside; a position that appears twice is a jump [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: a CSV or netCDF file with such points, relative to the overlay", None
+        "instead of levels: path of a CSV or netCDF file with such points, relative to the overlay",
+        None,
     )
-    rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
+    rough: Rough | None = key(
+        "instead of levels: parameters of a random pre-stress, explained below", None, ROUGH
+    )
 
     @model_validator(mode="after")
-    def _background(self) -> Self:
-        # A profile whose file was read has `file` and also `points`.
-        tables = self._given_ones("file", "points", "rough")
+    def _check_background(self) -> Self:
+        """Raise ValueError unless a profile has either levels or one table.
+
+        A table without a width gets no Gaussian.
+        """
+        tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
+            # The points were read from the file.
             tables = ["file"]
-        levels = self._given_ones("left", "right")
+        levels = self._given_keys("left", "right")
         if not tables:
             missing = [name for name in ("left", "right") if name not in levels]
             allowed = "levels on both sides, or points, file or rough"
@@ -207,7 +223,8 @@ class Profile(Block):
             self.check_table()
         return self
 
-    def _given_ones(self, *names: str) -> list[str]:
+    def _given_keys(self, *names: str) -> list[str]:
+        """Return those of some keys that have a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
@@ -226,18 +243,19 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position, not 0, beyond which (away from x = 0) the level is replaced [H]"
+        "position, not 0, from which on (away from x = 0) the level is replaced [H]"
     )
-    levels: Distinct[float] = key("levels that replace it, one in each run [S]")
+    levels: Distinct[float] = key("new levels, one for each run [S]")
 
 
 class Duration(Block):
     time: Positive | None = key("the duration [H/c]", None)
     half_periods: Positive | None = key(
-        "the duration in pi/sqrt(gamma); only under `displacement`", None
+        "the duration in units of pi/sqrt(gamma); only under `displacement`", None
     )
     balance_distances: Positive | None = key(
-        "the duration in |x_minus|; if the left level is < 0 and the right one 0", None
+        "the duration in units of |x_minus|; only if the left level is < 0 and the right one is 0",
+        None,
     )
 
 
@@ -245,16 +263,20 @@ class SpacingRule(Block):
     """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
 
     fixed: Spacing | None = key(
-        "the spacing, also in the grid study; without the other keys [H]", None
+        "one spacing for all presets and for the grid study; give no other key with it [H]", None
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
-    width_power: float = key("power of W", 0.0)
-    gamma_power: float = key("power of gamma; only under `displacement`", 0.0)
+    width_power: float = key("power of W in the rule for the spacing", 0.0)
+    gamma_power: float = key(
+        "power of gamma in the rule for the spacing; only under `displacement`", 0.0
+    )
 
 
 class Recording(Block):
     times: int = key("number of times, evenly spaced over the duration", ge=2, le=100_000)
-    positions: int = key("number of positions, evenly spaced; 1: x = 0", ge=1, le=100_000)
+    positions: int = key(
+        "number of positions, evenly spaced; 1 means x = 0 alone", ge=1, le=100_000
+    )
     extent: NonNegative = key("largest distance of positions from x = 0 [H]")
 
 
@@ -262,29 +284,33 @@ class Physics(Block):
     """Keys that simulations and scenes have in common."""
 
     boundary: Boundary = key(
-        "condition on top: held displacement (Gamma = 1) or stress (Gamma = 0)"
+        "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
-    scheme: Scheme | None = key("by default the model's", None)
-    resolved_blocks: int | None = key("by default the model's", None, ge=1)
+    scheme: Scheme | None = key("scheme; by default that of `model`", None)
+    resolved_blocks: int | None = key("as in `model`, which has the default", None, ge=1)
     max_step: Positive | None = key(
-        "largest time step; by default the preset's, or the stable one [dx]", None
+        "largest time step; by default that of the preset, or the stable one if it is smaller [dx]",
+        None,
     )
 
-    def alone(self, key: str, *others: str) -> None:
+    def refuse_together(self, key: str, *others: str) -> None:
         """Raise ValueError if a key is given together with one of the others."""
-        given = ", ".join(other for other in others if other in self.model_fields_set)
-        is_alone = key not in self.model_fields_set or not given
-        require(is_alone, f"{key}: given with {given}", "one or the other (null removes a key)")
+        given_others = [other for other in others if other in self.model_fields_set]
+        are_together = key in self.model_fields_set and bool(given_others)
+        problem = f"{key}: given with {', '.join(given_others)}"
+        require(not are_together, problem, "one or the other (null removes a key)")
 
     @model_validator(mode="after")
-    def _physics(self) -> Self:
+    def _check_physics(self) -> Self:
+        """Raise ValueError for keys that the boundary condition or another key excludes."""
         if getattr(self, "layer", None) is None:
             self._check_gamma()
-        self.alone("beta", "damping_ratio")
-        self.alone("rate_strengthening", "friction")
+        self.refuse_together("beta", "damping_ratio")
+        self.refuse_together("rate_strengthening", "friction")
         return self
 
     def _check_gamma(self) -> None:
+        """Raise ValueError if gamma is missing, or given although there are no leaf springs."""
         gamma = getattr(self, "gamma", None)
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
@@ -294,14 +320,19 @@ class Physics(Block):
 
 
 def _with_extra_terms(lists: bool) -> type[Physics]:
-    """Return `Physics` with a key for each extra term of the equation: a list, or a number."""
+    """Return `Physics` with a key for each extra term of the equation.
+
+    The value of a key is a number, or a list of numbers if ``lists`` is set.
+    """
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
         number: Any = int if "integer" in term.bounds else float
         value: Any = Annotated[number, Field(**limits)]
+        value_or_list: Any = Distinct[value] if lists else value
         meaning = f"{term.meaning}; by default {term.default:g}"
-        keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
+        # Pydantic takes the type and the definition of each key.
+        keys[name] = (value_or_list | None, key(meaning, None))
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
 
 
@@ -320,41 +351,50 @@ class Simulation(PhysicsOfSweep):
     right: Literal["same"] | Distinct[float] | None = key(
         "pre-stress levels on the right [S]", None
     )
-    width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
+    width: Distinct[Positive] = key(
+        "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
+    )
     profiles: Distinct[Profile] | None = key(
         "complete profiles, instead of the three keys above", None
     )
-    beyond: Beyond | None = key("a second level on one side, below", None)
+    beyond: Beyond | None = key("a second level on one side, given by the next two keys", None)
     gamma: Distinct[Positive] | None = key(GAMMA, None)
-    damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
-    beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
+    damping_ratio: Distinct[NonNegative] | None = key(
+        "damping ratio beta/dx; by default that of `model`", None
+    )
+    beta: Distinct[NonNegative] | None = key("damping beta, instead of `damping_ratio` [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
     rate_strengthening: Distinct[float] | None = key(ALPHA, None)
-    duration: Duration = key("duration of each run, in one of three units, below", words=UNITS)
-    spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
+    duration: Duration = key("duration of each run, in one of three units", words=UNITS)
+    spacing: SpacingRule = key("rule for the block spacing", SpacingRule(), RULE)
     dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
-    release: Release | Distinct[Release] | None = key("by default the model's", None, RELEASED)
-    friction_ratio: NonNegative | None = key("by default the model's", None)
+    release: Release | Distinct[Release] | None = key(
+        "release rule; by default that of `model`", None, RELEASED
+    )
+    friction_ratio: NonNegative | None = key("as in `model`, which has the default", None)
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
-        "sampled times and positions for `record: [..., samples]`, below", None
+        "times and positions of the samples, if `record` contains samples", None
     )
     chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _together(self) -> Self:
-        self.alone("profiles", "left", "right", "width", "beyond")
-        self.alone("dx", "spacing")
-        rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
-        levels = self.left is not None and self.right is not None
-        require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
-        alone = rule == {"fixed"} or "fixed" not in rule
-        require(alone, "spacing.fixed: given with others", "alone")
+    def _check_together(self) -> Self:
+        """Raise ValueError for keys that are missing or exclude each other."""
+        self.refuse_together("profiles", "left", "right", "width", "beyond")
+        self.refuse_together("dx", "spacing")
+        has_levels = self.left is not None and self.right is not None
+        has_profile = has_levels or self.profiles is not None
+        require(has_profile, "left, right: missing", "lists, or profiles")
+        rule_keys = self.spacing.model_fields_set
+        is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
+        require(is_consistent, "spacing.fixed: given with others", "alone")
+        units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
-            require("gamma_power" not in rule, "spacing.gamma_power: given", only)
+            require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
         if "samples" in self.record:
             allowed = "times, positions and extent when record has 'samples'"
@@ -368,18 +408,23 @@ class Simulation(PhysicsOfSweep):
 class LayerKeys(Block):
     """A layer in SI units; see `Layer` of the library for details."""
 
-    thickness: Positive = key("thickness H, from the interface to the held top [m]")
+    thickness: Positive = key("thickness H, from the interface to the top [m]")
     shear_modulus: Positive = key("shear modulus G [Pa]")
-    lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
-    poisson_ratio: float | None = key("instead of `lame_parameter`; between -1 and 0.5", None)
+    lame_parameter: float | None = key("first Lame parameter lambda, > -2G/3 [Pa]", None)
+    poisson_ratio: float | None = key(
+        "Poisson ratio, between -1 and 0.5, instead of `lame_parameter`", None
+    )
     density: Positive = key("density [kg/m3]")
-    static_friction: Positive = key("coefficient of static friction, above the kinetic one")
+    static_friction: Positive = key("coefficient of static friction, larger than the kinetic one")
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
-    top: Top | None = key("held (displacement) or stress; by default as `boundary`", None)
+    top: Top | None = key(
+        "what is held on top: held (the displacement) or stress; by default as `boundary`", None
+    )
 
     @model_validator(mode="after")
-    def _known_layer(self) -> Self:
+    def _check_layer(self) -> Self:
+        """Raise ValueError if there is no such layer."""
         self.layer("displacement")
         return self
 
@@ -394,12 +439,14 @@ class NamedScene(Profile, PhysicsOfScene):
 
     title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
-    damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
-    beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
+    damping_ratio: NonNegative | None = key(
+        "damping ratio beta/dx; by default that of `model`", None
+    )
+    beta: NonNegative | None = key("damping beta, instead of `damping_ratio` [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
-    dx: Positive | None = key("block spacing, <= 1; by default the preset's [H]", None)
-    release: Release | None = key("by default the model's", None)
+    dx: Positive | None = key("block spacing, at most 1; by default that of the preset [H]", None)
+    release: Release | None = key("release rule; by default that of `model`", None)
     duration: Positive = key("duration of the run [H/c]")
     layer: LayerKeys | None = key(IN_SI, None)
 
@@ -415,7 +462,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return given | {"boundary": BOUNDARY_OF_TOP[top]} if is_known else given
 
     @model_validator(mode="after")
-    def _layer(self) -> Self:
+    def _check_in_model_units(self) -> Self:
+        """Raise ValueError if the scene is not allowed in the units of the model."""
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
             require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
@@ -463,7 +511,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return self.model_copy(update=given)
 
     @model_validator(mode="after")
-    def _one_seed(self) -> Self:
+    def _check_one_seed(self) -> Self:
+        """Raise ValueError if a scene has several seeds, since it is one run."""
         seed = self.rough.seed if self.rough is not None else 0
         require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
         return self
@@ -477,16 +526,19 @@ class NamedScene(Profile, PhysicsOfScene):
             ]
         }
         if self.points is not None:
-            x, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x = layer.convert_from_si(x_in_metres, "length")
             tau = layer.table_from_pascal("points", stress)
-            columns = layer.convert_from_si(x, "length").tolist(), tau.tolist()
-            given["points"] = [*zip(*columns, strict=True)]
+            given["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
-            changed = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
-            changed["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            deviation = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            converted = {
+                "level": layer.level_from_pascal("rough.level", self.rough.level),
+                "deviation": deviation,
+            }
             for name in ("correlation_length", "start", "stop", "spacing"):
-                changed[name] = layer.convert_from_si(getattr(self.rough, name), "length")
-            given["rough"] = self.rough.model_copy(update=changed)
+                converted[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+            given["rough"] = self.rough.model_copy(update=converted)
         return given
 
 
@@ -495,12 +547,14 @@ class Preset(Block):
     max_step: Positive = key("largest time step; strong damping may need a smaller one [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
     coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
-        "factors of the spacing in the grid studies", words=FACTORS
+        "factors by which the spacing is multiplied on the two coarser lattices of a grid study",
+        words=FACTORS,
     )
-    whole: bool = key("true: studies, claims and report are made by default", True)
+    whole: bool = key("true if studies, claims and report are made by default", True)
 
     @model_validator(mode="after")
-    def _far_apart(self) -> Self:
+    def _check_factors(self) -> Self:
+        """Raise ValueError if the spacings of the grid study are too close to each other."""
         # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
         is_far_apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
@@ -510,34 +564,43 @@ class Preset(Block):
 
 class Model(Block):
     damping_ratio: NonNegative = key(
-        "beta/dx; the paper states beta = 1e-3, and its figure 4 allows dx = 0.01"
+        "damping ratio beta/dx; the paper has beta = 1e-3, and its figure 4 agrees with dx = 0.01"
     )
     release: Release = key(
-        "force at which a block is released: `total` includes the damping, as in the authors' "
-        "code; `elastic` does not, as printed"
+        "force that is compared with the threshold of release: `total` includes the damping, as in "
+        "the authors' code; `elastic` does not include it, as printed"
     )
     scheme: Scheme = key(
-        "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
-        " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
+        "`localised` computes the time of every release and stick; `fixed_step` is the textbook"
+        " scheme; `continuum` is the exact continuum limit, without `max_step` and `order`"
     )
-    friction: Friction | None = key("law of friction; by default coulomb, the paper's", None, LAW)
-    friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): stress below -(1 + 2 of it) is flagged")
-    resolved_blocks: int = key("narrower pulses (`stress`: Gaussians) are flagged [dx]", ge=1)
+    friction: Friction | None = key(
+        "friction law; by default coulomb, that of the paper", None, LAW
+    )
+    friction_ratio: NonNegative = key(
+        "r = mu_k/(mu_s - mu_k); a run is flagged if a stress falls below -(1 + 2 r)"
+    )
+    resolved_blocks: int = key(
+        "a run is flagged if a pulse (under `stress`, the Gaussian) is narrower than this [dx]",
+        ge=1,
+    )
 
 
 class Measure(Block):
-    fraction: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
+    fraction: Fraction = key(
+        "fraction of |x_minus| that the left front has covered at T_trans, under `stress`"
+    )
     front_window: float = key(
-        "last fraction of the path, from which the front speed is measured", ge=0.05, lt=1.0
+        "fraction of the path, at its end, over which the front speed is measured", ge=0.05, lt=1.0
     )
     steady_tolerance: Fraction = key(
-        "largest change of the peak velocity of a steady pulse in the last third"
+        "largest relative change of the peak velocity of a steady pulse in the last third of a run"
     )
     trailing_times: Distinct[Positive] = key(
         "times at which the trailing edge is tabulated [H/c] (figure)"
     )
     still: Fraction = key(
-        "fraction of the largest slip velocity below which the interface is at rest"
+        "fraction of the largest slip velocity below which the interface counts as at rest"
     )
 
 
@@ -547,11 +610,12 @@ class Sketch(Block):
 
 class Steps(Block):
     from_: Ratio = key("first value", alias="from")
-    to: Ratio = key("last value, above the first")
+    to: Ratio = key("last value, larger than the first")
     count: int = key("number of values", ge=2, le=10_000)
 
     @model_validator(mode="after")
-    def _upwards(self) -> Self:
+    def _check_order(self) -> Self:
+        """Raise ValueError if the last value is not above the first one."""
         require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
         return self
 
@@ -568,7 +632,8 @@ class LayerMap(Block):
     chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _chunks(self) -> Self:
+    def _check_chunks(self) -> Self:
+        """Raise ValueError if there are more chunks than points of the map."""
         points = len(self.gamma) * len(self.fracture_energy)
         require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
         return self
@@ -586,12 +651,14 @@ class Claim(Block):
 
 
 class Reading(Block):
-    simulation: str = key("simulation whose run is compared with it")
+    simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number, a column of the measured table")
     statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
-    reading_error: Positive = key("error of the reading, from the pixel size")
-    arrow: bool = key("true for a drawn arrow: fits are made with and without it", False)
+    reading_error: Positive = key("uncertainty of the reading, from the pixel size")
+    arrow: bool = key(
+        "true if this is a drawn arrow, for which fits are made with it and without it", False
+    )
 
 
 class Configuration(Block):
@@ -602,12 +669,14 @@ class Configuration(Block):
         "compromises between speed and accuracy, by name", min_length=1
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error, instead of a preset's spacing and step", None
+        "largest relative numerical error; replaces the spacing and the step of the preset", None
     )
     # Make and the command line may say yes, on or 1.
-    allow_large: Switch = key("true: simulations above the limits of cost are allowed", False)
+    allow_large: Switch = key("true if simulations above the limits of cost are allowed", False)
     model: Model = key("default values for all simulations")
-    simulations: dict[Name, Simulation] = key("sweeps by name, with a run for each combination")
+    simulations: dict[Name, Simulation] = key(
+        "sweeps by name, with one run for each combination of values"
+    )
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
     measure: Measure = key("settings for the measured numbers")
     figures: Figures = key("settings of figures that show no simulation")
@@ -620,28 +689,37 @@ class Configuration(Block):
         return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
 
     @model_validator(mode="after")
-    def _names(self) -> Self:
+    def _check_names(self) -> Self:
+        """Raise ValueError for names that are unknown or used twice."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
             allowed = "'localised' where accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
-            problem = f"scenes.{name}: also the name of a simulation"
-            require(name not in self.simulations, problem, "another name")
-            others = {*self.scenes} - {name}
-            is_taken = name == "index" or name.removesuffix("_numbers") in others
-            problem = f"scenes.{name}: a file of that name exists"
-            require(not is_taken, problem, "neither index nor SCENE_numbers")
+            self._check_scene_name(name)
+        for name, reading in self.published.items():
+            self._check_reading(f"published.{name}", reading)
+        return self
+
+    def _check_scene_name(self, name: str) -> None:
+        """Raise ValueError if a scene has the name of a simulation or of another file."""
+        problem = f"scenes.{name}: also the name of a simulation"
+        require(name not in self.simulations, problem, "another name")
+        other_names = {*self.scenes} - {name}
+        is_taken = name == "index" or name.removesuffix("_numbers") in other_names
+        problem = f"scenes.{name}: a file of that name exists"
+        require(not is_taken, problem, "neither index nor SCENE_numbers")
+
+    def _check_reading(self, key: str, reading: Reading) -> None:
+        """Raise ValueError if the number that a reading is compared with is not measured."""
+        # The kind of data that each measured column needs.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
             record_for[f"trailing_edge_{time:g}"] = "fronts"
-        for name, reading in self.published.items():
-            quantity, sweep = reading.quantity, reading.simulation
-            key = f"published.{name}"
-            check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
-            check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
-            needed, recorded = record_for[quantity], self.simulations[sweep].record
-            allowed = f"what simulations.{sweep} records; it needs record: [fronts, {needed}]"
-            require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
-        return self
+        quantity, simulation = reading.quantity, reading.simulation
+        check_name(f"{key}.simulation", simulation, self.simulations, "a name under simulations")
+        check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
+        needed, recorded = record_for[quantity], self.simulations[simulation].record
+        allowed = f"what simulations.{simulation} records; it needs record: [fronts, {needed}]"
+        require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
