@@ -21,7 +21,13 @@ SMALL_STUDIES = {
         "WEAKENINGS": (0.05, 0.8),
         "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
     },
-    "rough_checks": {"GRID_SEEDS": 1, "LENGTH_SEEDS": 2, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
+    "rough_checks": {
+        "GRID_SEEDS": 1,
+        "LENGTH_SEEDS": 2,
+        "BALANCE_SEEDS": 12,
+        "EXACT_SEEDS": 1,
+        "BUMP_SEEDS": 3,
+    },
     "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
         "DAMPING_RATIOS": {

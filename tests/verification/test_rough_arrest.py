@@ -1,4 +1,4 @@
-"""Where pulses on rough pre-stress stop, compared with a block solver that shares no code."""
+"""Arrest of pulses on rough pre-stress, compared with a solver that shares no code with ours."""
 
 import numpy as np
 import pytest
