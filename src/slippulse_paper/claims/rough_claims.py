@@ -140,7 +140,7 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
     end_of_curve = study[is_curve & is_worst].iloc[-1]
-    numbers = {"calm_pulses": calm["pulses"].sum(), "calm_rate": calm["rate_high"].max()}
+    numbers = {"calm_rate": RULE_OF_THREE / calm["distance"].sum()}
     numbers |= {f"worst_{column}": worst[column] for column in ("level", "deviation", "stop")}
     return numbers | {f"worst_{name}": end_of_curve[name] for name in ("survival", "low", "high")}
 
