@@ -3,6 +3,7 @@
 Positions were read off the figure. The study `published_figure` fits the exact solution to them.
 """
 
+import math
 from typing import Any
 
 from slippulse.measurement.inference import infer_parameters
@@ -19,7 +20,21 @@ def left(evidence: Evidence, id: str) -> Reading:
     best = infer_parameters(evidence.tables["published_figure"])["best"]
     further = read_off(evidence, "space_time_displacement")
     fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
-    return Reading(tolerance=evidence.tolerance(id), **fit, further=further, template_values=best)
+    read = evidence.readings.values()
+    own = [
+        one["reading_error"] ** 2 - one["shared_error"] ** 2
+        for one in read
+        if one.get("shared_error")
+    ]
+    fitted = [name for name, one in evidence.readings.items() if not one.get("arrow")]
+    pulls = [best["pulls"][name] for name in fitted if name in best["pulls"]]
+    template_values = best | {
+        "own_edge_error": math.sqrt(max(own, default=math.nan)),
+        "independent_chi_square": sum(pull**2 for pull in pulls),
+    }
+    return Reading(
+        tolerance=evidence.tolerance(id), **fit, further=further, template_values=template_values
+    )
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:

@@ -591,6 +591,9 @@ class Reading(Block):
     statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("error of the reading, from the pixel size")
+    shared_error: NonNegative = key(
+        "part of this error that all readings with a shared error have in common", 0.0
+    )
     arrow: bool = key("true for a drawn arrow: fits are made with and without it", False)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from slippulse.measurement.inference import independent_combinations
 from slippulse.measurement.table import measure_run
 from slippulse.model.prestress import Prestress
 from slippulse.model.release import RELEASES
@@ -71,7 +72,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             parts.append(rows)
     _, rows = panel.fitted(*NOTEBOOK_SETTINGS, FIRST_GUESS, FIRST_GUESS_STEPS)
     parts.append(rows[rows["part"] == "profile"].assign(part="notebook"))
-    readings = readings_of(settings["published"], "space_time_stress").drop(columns="arrow")
+    readings = readings_of(settings["published"], "space_time_stress")
+    readings = readings.drop(columns=["arrow", "shared_error"])
     readings = readings[readings["quantity"] == "largest_velocity"]
     for release, ratio in product(RELEASES, RIGHT_RATIOS):
         # The exact value of the largest velocity does not depend on the damping.
@@ -82,6 +84,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         rows = rows.assign(left=RIGHT_PANEL.left, width=RIGHT_PANEL.width)
         rows = rows.assign(exact=crack.peak_velocity, correction=velocity - crack.peak_velocity)
         rows["pull"] = (velocity - rows["drawn"]) / rows["reading_error"]
+        rows["independent_pull"] = rows["pull"]
         parts.append(rows.assign(weight=1.0))
     return pd.concat(parts, ignore_index=True)
 
@@ -96,9 +99,10 @@ def readings_of(published: dict, simulation: str) -> pd.DataFrame:
     """
     rows = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
     rows = rows[rows["simulation"] == simulation].rename(columns={"value": "drawn"})
-    # Readings that are no arrows do not have this key, so that the table has NaN.
+    # Readings without these keys have NaN in the table.
     rows["arrow"] = rows["arrow"].eq(True)
-    return rows[["reading", "drawn", "quantity", "reading_error", "arrow"]]
+    rows["shared_error"] = rows["shared_error"].fillna(0.0)
+    return rows[["reading", "drawn", "quantity", "reading_error", "shared_error", "arrow"]]
 
 
 def sampled(scene: Scene, left: float) -> xr.Dataset:
@@ -116,9 +120,16 @@ class LeftPanel:
     def __init__(self, readings: pd.DataFrame) -> None:
         self.readings = readings
         self.drawn, self.error = readings["drawn"].to_numpy(), readings["reading_error"].to_numpy()
+        shared = readings["shared_error"].to_numpy()
+        # The sum of squares of these combinations of deviations is the chi-square.
+        self.combinations = independent_combinations(self.error, shared)
         self.quantities = readings["quantity"].tolist()
         self.edges = [name for name in self.quantities if name.startswith(TRAILING_EDGE_PREFIX)]
         self.times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
+
+    def independent_pulls(self, values: np.ndarray) -> np.ndarray:
+        """Return deviations from the readings, combined and scaled to independent errors of 1."""
+        return self.combinations @ (values - self.drawn)
 
     def exact(self, trial: np.ndarray, ratio: float, release: str) -> np.ndarray:
         """Return the values of the exact rupture, which ends at the end of the panel."""
@@ -169,12 +180,12 @@ class LeftPanel:
         for step in range(steps + 1):
             exact = self.exact(trial, ratio, release)
             correction = self.lattice(trial, ratio, release, dx) - exact
-            misfit = (exact + correction - self.drawn) / self.error
+            misfit = self.independent_pulls(exact + correction)
             if step < steps:
                 nudges = np.diag(SLOPE_DIFFERENCE * trial)
                 nudged = [self.exact(trial + nudge, ratio, release) for nudge in nudges]
                 changes = (np.array(nudged) - exact) / nudges.sum(axis=1)[:, None]
-                slopes = changes.T / self.error[:, None]
+                slopes = self.combinations @ changes.T
                 trial = trial - np.linalg.lstsq(slopes[fitted], misfit[fitted], rcond=None)[0]
         near = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
         labels = {"release": release, "damping_ratio": ratio, "dx": dx}
@@ -184,7 +195,9 @@ class LeftPanel:
             numbers = {"tau0": trial[0], "gamma": trial[1], "tau0_error": errors[0]}
             numbers |= {"gamma_error": errors[1], "exact": exact, "correction": correction}
             numbers |= {"pull": (exact + correction - self.drawn) / self.error}
-            rows = self.readings.drop(columns="arrow").assign(part=part, **labels)
+            numbers |= {"independent_pull": self.independent_pulls(exact + correction)}
+            rows = self.readings.drop(columns=["arrow", "shared_error"])
+            rows = rows.assign(part=part, **labels)
             return rows.assign(**numbers, weight=chosen.astype(float))
 
         arrows = fit("arrows", near, self.exact(near, ratio, release), np.ones_like(fitted))
