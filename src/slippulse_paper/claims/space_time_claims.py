@@ -4,6 +4,7 @@ Positions were read off the figure. The study `published_figure` fits the exact 
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from slippulse.measurement.inference import infer_parameters
@@ -20,21 +21,25 @@ def left(evidence: Evidence, id: str) -> Reading:
     best = infer_parameters(evidence.tables["published_figure"])["best"]
     further = read_off(evidence, "space_time_displacement")
     fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
-    read = evidence.readings.values()
-    own = [
-        one["reading_error"] ** 2 - one["shared_error"] ** 2
-        for one in read
-        if one.get("shared_error")
-    ]
-    fitted = [name for name, one in evidence.readings.items() if not one.get("arrow")]
-    pulls = [best["pulls"][name] for name in fitted if name in best["pulls"]]
-    template_values = best | {
-        "own_edge_error": math.sqrt(max(own, default=math.nan)),
-        "independent_chi_square": sum(pull**2 for pull in pulls),
-    }
+    template_values = best | shares_of_errors(evidence, best["pulls"])
     return Reading(
         tolerance=evidence.tolerance(id), **fit, further=further, template_values=template_values
     )
+
+
+def shares_of_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
+    """Return the error of an edge reading that is its own, and chi-square if no error were shared.
+
+    ``pulls`` has the deviation of each reading over its error.
+    """
+    own, independent = math.nan, 0.0
+    for name, reading in evidence.readings.items():
+        shared = reading.get("shared_error", 0.0)
+        if shared:
+            own = math.sqrt(reading["reading_error"] ** 2 - shared**2)
+        if name in pulls and not reading.get("arrow"):
+            independent += pulls[name] ** 2
+    return {"own_edge_error": own, "independent_chi_square": independent}
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:

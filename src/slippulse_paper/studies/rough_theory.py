@@ -13,7 +13,7 @@ from slippulse.theory.barrier import barrier_depth
 # Barriers of the predicted death rate, in units of the level before them.
 BARRIERS = np.geomspace(0.03, 10.0, 12)
 # -zeta(1/2): how far behind 0 a walk is absorbed whose steps are an Ornstein-Uhlenbeck process, in
-# units of their deviation times their correlation length (Marshall and Watson 1985).
+# units of their deviation times their correlation length (Doering, Hagan and Levermore 1987).
 MILNE = 1.4603545088095868
 # Correlation lengths that the sums over a spectrum cover.
 PERIODS = 400
