@@ -36,7 +36,8 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
     monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
     best = infer_parameters(study_module.table({}, {}, config))["best"]
-    assert best["release"] == "total" and best["chi2"] < 0.05
+    # In units of the errors that edge readings do not share, which are small.
+    assert best["release"] == "total" and best["chi2"] < 0.3
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
     assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
     low, high = best["regions"][0.68]
