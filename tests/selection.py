@@ -17,6 +17,7 @@ SMALL_STUDIES = {
     "front_law": {"SPACING_COUNT": 5},
     "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "OTHER_LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
     | {"FRACTURE_ENERGIES": (0.05, 0.42, 0.9)},
+    "layer_healing": {"THICK_PULSES": ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5))},
     "rough_checks": {"GRID_SEEDS": 1, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
     "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
