@@ -22,8 +22,8 @@ SMALL_STUDIES = {
     "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
         "DAMPING_RATIOS": {
-            "total": (0.055, 0.075, 0.1, 0.135),
-            "elastic": (0.075, 0.12, 0.18, 0.26, 0.39),
+            "total": (0.055, 0.066, 0.08, 0.096, 0.115),
+            "elastic": (0.1, 0.13, 0.169, 0.22, 0.286),
         }
     },
 }

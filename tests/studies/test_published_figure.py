@@ -32,12 +32,11 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     values = panel.lattice(truth, ratio, "total", BETA / ratio)
     for name, value in zip(panel.readings["reading"], values, strict=True):
         config["published"][name]["value"] = float(value)
-    ratios = {"total": (0.08, 0.1, 0.13, 0.17), "elastic": (0.1, 0.15, 0.22, 0.3)}
+    ratios = {"total": (0.09, 0.104, 0.12, 0.139), "elastic": (0.1, 0.15, 0.22, 0.3)}
     monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
     monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
     best = infer_parameters(study_module.table({}, {}, config))["best"]
-    # In units of the errors that edge readings do not share, which are small.
-    assert best["release"] == "total" and best["chi2"] < 0.3
+    assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
     assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
     low, high = best["regions"][0.68]
@@ -101,11 +100,11 @@ def test_the_errors_that_readings_of_the_edge_do_not_share_are_those_of_their_sc
     """Third differences contain no offset, scale or curvature, whatever axes and run are."""
     is_edge = panel.readings["shared_error"].to_numpy() > 0.0
     assert panel.readings["reading"][is_edge].str.startswith("trailing_edge_").all()
-    rows = table[(table["part"] == "profile") & (table["damping_ratio"] == 0.075)]
-    for _, run in rows.groupby("release"):
+    rows = table[table["part"] == "profile"]
+    for _, run in rows.groupby(["release", "damping_ratio"]):
         deviations = (run["exact"] + run["correction"] - run["drawn"]).to_numpy()[is_edge]
         scatter = math.sqrt((np.diff(deviations, 3) ** 2).mean() / (1 + 9 + 9 + 1))
-        own = panel.readings["reading_error"] ** 2 - panel.readings["shared_error"] ** 2
+        own = panel.error**2 - panel.readings["shared_error"].to_numpy() ** 2
         assert np.sqrt(own[is_edge]) == pytest.approx(scatter, rel=0.1)
 
 
@@ -124,7 +123,7 @@ def test_a_shared_error_of_all_readings_of_an_edge_costs_as_much_as_that_of_one(
 def test_an_end_beyond_the_fits_is_not_known(table):
     ratio = table["damping_ratio"]
     profile = (table["part"] == "profile") & (table["release"] == "elastic")
-    kept = profile & (ratio < 0.29) & (ratio > 0.1)
+    kept = profile & (ratio < 0.29) & (ratio > 0.12)
     low, high = infer_parameters(table[kept])["elastic"]["regions"][0.95]
     assert np.isnan(low) and np.isfinite(high)
 
