@@ -64,8 +64,8 @@ friction_by_law_number = combine_laws(LAWS)
 
 
 @kernel_function()
-def compute_forces(medium, motion, sliding, history, t):
-    """Compute the force on each block, and release blocks whose stress reaches the threshold.
+def compute_forces(medium, motion, sliding, history, t, first, last):
+    """Compute the forces on blocks first..last-1, and release those that reach the threshold.
 
     The forces are written into row 2 of w. Returns the number of sliding blocks.
     """
@@ -74,7 +74,7 @@ def compute_forces(medium, motion, sliding, history, t):
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
     moving, lowest = 0, tally.min_stuck_stress
-    for i in range(1, tau.shape[0] - 1):
+    for i in range(first, last):
         elastic = inverse_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
         stress = elastic - medium.leaf_stiffness * slip[i] + tau[i]
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
@@ -92,8 +92,20 @@ def compute_forces(medium, motion, sliding, history, t):
 
 
 @kernel_function()
-def advance_blocks(medium, motion, sliding, history, dt, end):
-    """Advance velocities, then slip. A block whose velocity would be negative sticks.
+def find_sliding_range(sliding, first, last):
+    """Return the first sliding block of first..last-1 and the block after the last sliding one."""
+    while not sliding[first]:
+        first += 1
+    while not sliding[last - 1]:
+        last -= 1
+    return first, last
+
+
+@kernel_function()
+def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
+    """Advance the velocities of blocks first..last-1, then their slip.
+
+    A block whose velocity would be negative sticks.
 
     Returns the largest velocity (inf if one is not finite), and the work against friction without
     the part of alpha v.
@@ -102,7 +114,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end):
     force, tally = motion.w[ACCELERATION], history.tally
     fastest = 0.0
     friction, work = 0.0, 0.0
-    for i in range(1, slip.shape[0] - 1):
+    for i in range(first, last):
         if not sliding[i]:
             continue
         before = velocity[i]
@@ -138,13 +150,13 @@ def advance_blocks(medium, motion, sliding, history, dt, end):
 
 
 @kernel_function()
-def viscous_loss(medium, velocity, dt):
+def viscous_loss(medium, velocity, dt, first, last):
     """Return the energy that damping and friction alpha v dissipate in a step.
 
-    It is computed with the velocities at the end of the step.
+    It is computed with the velocities at the end of the step. Only blocks first..last-1 move.
     """
     strain_rate_sum, velocity_sum = 0.0, 0.0
-    for i in range(1 if medium.is_mirrored else 0, velocity.shape[0] - 1):
+    for i in range(max(first - 1, 1 if medium.is_mirrored else 0), last):
         dv = velocity[i + 1] - velocity[i]
         strain_rate_sum += dv * dv
         velocity_sum += (0.5 if medium.is_mirrored and i == 1 else 1.0) * velocity[i] * velocity[i]
@@ -175,6 +187,9 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
     """
     size, tally = motion.tau.shape[0], history.tally
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    # The stress of a block at rest changes only next to blocks that moved in the last step. The
+    # first step of a call visits all blocks, since the lattice may have been extended.
+    first, last = 1, size - 1
     for _ in range(limits.max_steps):
         t = tally.time
         if t >= limits.end_time:
@@ -185,17 +200,19 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         end = limits.end_time if dt == limits.end_time - t else t + dt
         if medium.is_mirrored:
             slip[0], velocity[0] = slip[2], velocity[2]
-        moving = compute_forces(medium, motion, sliding, history, t)
+        moving = compute_forces(medium, motion, sliding, history, t, first, last)
         if moving == 0:
             return ALL_STUCK
-        fastest, work = advance_blocks(medium, motion, sliding, history, dt, end)
+        first, last = find_sliding_range(sliding, first, last)
+        fastest, work = advance_blocks(medium, motion, sliding, history, dt, end, first, last)
         if fastest == math.inf:
             return BLOWN_UP
         tally.friction_loss += work
         if medium.is_mirrored:
             velocity[0] = velocity[2]
         if medium.beta > 0.0 or medium.alpha != 0.0:
-            tally.viscous_loss += viscous_loss(medium, velocity, dt)
+            tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
+        first, last = max(first - 1, 1), min(last + 1, size - 1)
         tally.steps += 1
         tally.block_updates += moving
         tally.time = end

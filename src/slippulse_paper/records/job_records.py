@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -81,6 +82,14 @@ def is_unchanged(path: str | Path, state: FileState) -> bool:
     return info.st_size == state.size and file_digest(path) == state.sha256
 
 
+def _is_unchanged_or_missing(path: str, state: FileState) -> bool:
+    """Return True if a file has a recorded content, or cannot be read."""
+    try:
+        return is_unchanged(path, state)
+    except OSError:
+        return True
+
+
 def record_path(output: str | Path) -> Path:
     """Return the path of the record whose first output is given."""
     path = Path(output)
@@ -146,14 +155,14 @@ class RecordedFiles:
         states, snakemake_files = self.states(), _files_recorded_by_snakemake()
         for path in self.unreadable:
             yield str(path.parent.parent / path.stem), "its record cannot be read"
-        for name, state in states.items():
-            try:
-                if not is_unchanged(name, state):
-                    yield name, "not what its job wrote"
-                elif name not in snakemake_files:
-                    yield name, "Snakemake's own record of it (in .snakemake) is lost"
-            except OSError:
-                continue
+        # Most of the time goes into digests of the files, which threads compute in parallel.
+        with ThreadPoolExecutor() as threads:
+            unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
+        for name, is_recorded in zip(states, unchanged, strict=True):
+            if not is_recorded:
+                yield name, "not what its job wrote"
+            elif name not in snakemake_files and Path(name).is_file():
+                yield name, "Snakemake's own record of it (in .snakemake) is lost"
         for path, record in self.records.items():
             folder = path.parent.parent
             for name, digest in record.inputs.items():
