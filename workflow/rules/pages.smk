@@ -3,8 +3,8 @@
 from slippulse_paper.records.provenance import changes, source_files
 
 CLAIM_STUDIES = (
-    "derivations friction_laws layer layer_healing layer_map open_choices published_figure published_scheme"
-    " rate_dependence"
+    "derivations friction_laws layer layer_healing layer_map open_choices published_figure"
+    " published_scheme rate_dependence"
     " rough_checks rough_prestress"
 ).split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
