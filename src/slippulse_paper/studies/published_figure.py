@@ -52,6 +52,8 @@ EDGE_POSITION_COUNT = 241
 TRAILING_EDGE_PREFIX = "trailing_edge_"
 # Relative change of tau_0 and gamma for a numerical slope; number of steps from the first guess.
 SLOPE_DIFFERENCE, FIRST_GUESS_STEPS = 0.01, 2
+# Number of steps from the fit without the arrows to the fit with them.
+ARROW_STEPS = 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -173,8 +175,8 @@ class LeftPanel:
     ) -> tuple[np.ndarray, pd.DataFrame]:
         """Fit tau_0 and gamma to all readings except the arrows by Gauss-Newton steps.
 
-        The fit of all readings is so near that two more steps from it, with the same slopes and the
-        same correction for the lattice, suffice.
+        The fit of all readings is so near that a few more steps from it with the same slopes
+        suffice.
         """
         trial, fitted = guess, ~self.readings["arrow"].to_numpy()
         for step in range(steps + 1):
@@ -187,12 +189,15 @@ class LeftPanel:
                 changes = (np.array(nudged) - exact) / nudges.sum(axis=1)[:, None]
                 slopes = self.combinations @ changes.T
                 trial = trial - np.linalg.lstsq(slopes[fitted], misfit[fitted], rcond=None)[0]
-        near = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
-        misfit = self.independent_pulls(self.exact(near, ratio, release) + correction)
-        near = near - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
+        near = trial
+        for _ in range(ARROW_STEPS):
+            near = near - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
+            on_lattice = self.lattice(near, ratio, release, dx)
+            misfit = self.independent_pulls(on_lattice)
+        exact_near = self.exact(near, ratio, release)
         labels = {"release": release, "damping_ratio": ratio, "dx": dx}
 
-        def fit(part: str, trial, exact: np.ndarray, chosen: np.ndarray) -> pd.DataFrame:
+        def fit(part: str, trial, exact, correction, chosen: np.ndarray) -> pd.DataFrame:
             errors = np.sqrt(np.diag(np.linalg.inv(slopes[chosen].T @ slopes[chosen])))
             numbers = {"tau0": trial[0], "gamma": trial[1], "tau0_error": errors[0]}
             numbers |= {"gamma_error": errors[1], "exact": exact, "correction": correction}
@@ -202,5 +207,5 @@ class LeftPanel:
             rows = rows.assign(part=part, **labels)
             return rows.assign(**numbers, weight=chosen.astype(float))
 
-        arrows = fit("arrows", near, self.exact(near, ratio, release), np.ones_like(fitted))
-        return trial, pd.concat([fit("profile", trial, exact, fitted), arrows])
+        arrows = fit("arrows", near, exact_near, on_lattice - exact_near, np.ones_like(fitted))
+        return trial, pd.concat([fit("profile", trial, exact, correction, fitted), arrows])
