@@ -97,12 +97,16 @@ def main(folder: str) -> int:
     settings = "profile_default/ipython_kernel_config.py"
     write(PROJECT / ".site/ipython" / settings, "c.IPKernelApp.log_level = 40\n")
     os.environ["IPYTHONDIR"] = str(PROJECT / ".site/ipython")
-    # Each page lists the others, so that all are written.
-    if Path(folder, ".buildinfo").exists():
-        shutil.rmtree(folder)
+    # Executed notebooks are written beside the pages, and do not belong into the results. Each page
+    # lists the others, so that all are written.
+    pages = PROJECT / ".site/pages"
+    shutil.rmtree(pages, ignore_errors=True)
     options = ["-q", "-a", "-W", "--keep-going", "-j", "2", "-d", str(PROJECT / ".site/doctrees")]
-    code = build([*options, "-c", str(PROJECT / "docs/site"), str(sources), folder])
+    code = build([*options, "-c", str(PROJECT / "docs/site"), str(sources), str(pages)])
     if code == 0:
+        if Path(folder, ".buildinfo").exists():
+            shutil.rmtree(folder)
+        shutil.copytree(pages, folder, dirs_exist_ok=True)
         print(f"Open {folder}/index.html")
     return code
 

@@ -19,7 +19,13 @@ for interpreter in "$@"; do
         failed=1
         continue
     }
-    echo "== $("$path" --version)"
+    # Pyenv has a command for each version, also for those that it does not run in this folder.
+    version=$("$path" --version 2>&1) || {
+        echo "$path: $version" >&2
+        failed=1
+        continue
+    }
+    echo "== $version"
     "$python" tests/library_environments.py newest --python "$path" || failed=1
 done
 

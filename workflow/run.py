@@ -29,6 +29,10 @@ KEPT_RESULTS = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
+ALLOWED_TARGETS = (
+    "allowed: a figure (fig1 to fig11, or a name in docs/figures.md), everything, scenes,"
+    " a file such as results/claims.html, or a rule of your own"
+)
 # Folders and files of results that are not made by rules.
 PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
 PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
@@ -65,6 +69,15 @@ def full_target(target: str) -> str:
     has_module = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
     is_figure = has_module or name.startswith("sweep_")
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
+
+
+def is_unknown(target: str) -> bool:
+    """Return True for a target that is neither a path nor a rule of this project."""
+    rules = "\n".join(
+        path.read_text(encoding="utf-8")
+        for path in [PROJECT / "Snakefile", *PROJECT.glob("workflow/rules/*.smk")]
+    )
+    return "/" not in target and not re.search(rf"^rule {re.escape(target)}:", rules, re.MULTILINE)
 
 
 def clean_up_after_kill() -> TextIO:
@@ -104,7 +117,8 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     problems = changed_results()
     if not problems:
         return []
-    listing = summary(options, targets)
+    # If Snakemake refuses the targets, the run itself prints the reason.
+    listing = summary(options, targets, stderr=subprocess.DEVNULL)
     required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
     names = [name for name in problems if name in required_outputs]
     if names:
@@ -113,11 +127,13 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     return ["--forcerun", *names] if names else []
 
 
-def summary(options: list[str], targets: list[str]) -> subprocess.CompletedProcess[str]:
+def summary(
+    options: list[str], targets: list[str], stderr: int | None = None
+) -> subprocess.CompletedProcess[str]:
     """Run Snakemake's --summary, which lists the files of the targets with their state."""
     summary_options = ["--profile", "none", "--workflow-profile", "none", "--summary"]
     command = [sys.executable, "-m", "snakemake", *summary_options, *options, "--", *targets]
-    return subprocess.run(command, stdout=subprocess.PIPE, text=True, check=False)
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
 
 
 def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
@@ -215,6 +231,10 @@ def replicate(given: Mapping[str, str]) -> int:
         signal.signal(number, stop)
     code = run.wait()
     lock.close()
+    unknown = [target for target in targets if code and is_unknown(target)]
+    if unknown:
+        names = ", ".join(unknown)
+        print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:
         last_run = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
         last_run["targets"] = ["everything"] if "everything" in targets else []
@@ -277,17 +297,20 @@ def outdated(summary: str) -> Iterable[tuple[str, str]]:
 
 def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     """Yield the files that differ from what their jobs wrote, and the files that no job wrote."""
-    from slippulse_paper.records.job_records import RecordedFiles
+    from slippulse_paper.records.job_records import RecordedFiles, made_without_step
 
     recorded = RecordedFiles(RESULTS)
     yield from recorded.problems()
     states = recorded.states()
+    unknown = []
     for path in sorted(RESULTS.rglob("*")):
         parts = path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
         is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
         if is_result and str(path) not in states and str(path) not in outdated:
-            yield str(path), "no job has recorded it"
+            unknown.append(str(path))
+    for name in sorted({*unknown} - made_without_step(unknown)):
+        yield name, "no job has recorded it"
 
 
 if __name__ == "__main__":

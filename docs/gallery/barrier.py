@@ -10,10 +10,11 @@
 # ---
 
 # %% [markdown]
-# # A barrier: which ones does a pulse pass?
+# # Which barriers does a pulse pass?
 #
-# A pulse enters negative pre-stress up to a depth that is known exactly. It passes a shorter
-# barrier and stops in a longer one.
+# A barrier is a region of negative pre-stress. A pulse enters negative pre-stress to a finite
+# depth, for which there is an exact formula. It passes a barrier that is shorter than this depth
+# and stops in a longer one.
 
 # %%
 import numpy as np
@@ -46,5 +47,5 @@ farthest = float(run["x"].where(np.isfinite(run["release_time"])).max())
 farthest - 22.0, depth
 
 # %% [markdown]
-# The pulse stops near the exact depth in the second barrier. The small difference is that of the
-# lattice.
+# The second barrier begins at $x = 22$. The first number is the distance that the pulse has run
+# into it, and the second one is the exact depth. The small difference is the error of the lattice.

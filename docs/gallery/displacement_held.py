@@ -12,9 +12,10 @@
 # %% [markdown]
 # # Displacement held on top: two pulses
 #
-# The top of the layer does not move. Leaf springs of stiffness $\gamma$ tie every block to it,
-# and pull back what has slipped. A crack opens at the peak of the pre-stress. After the time
-# $T_\mathrm{trans}$ the blocks in its middle stick, and two pulses run outwards.
+# The top of the layer does not move. A leaf spring of stiffness $\gamma$ ties every block to the
+# top and pulls it back when it has slipped. A crack opens at the peak of the pre-stress, at
+# $x = 0$. After the time $T_\mathrm{trans}$ the blocks in its middle stick, and two pulses run
+# outwards.
 
 # %%
 import numpy as np
@@ -34,9 +35,10 @@ run = sp.simulate(scene, samples)
 sp.plot(run)
 
 # %% [markdown]
-# The black lines are the fronts and the trailing edges. Between them the layer slips, and slip
-# velocity is shown in colour. The transition ends at the first stick, which the paper estimates
-# as $\pi/\sqrt{\gamma}$ and the exact theory gives without a lattice.
+# The black lines are the fronts, where blocks start to slip, and the trailing edges, where blocks
+# stick again. Between them the layer slips, and the colour shows the slip velocity. The transition
+# ends when the first block sticks. The paper estimates this time as $\pi/\sqrt{\gamma}$. The
+# exact theory computes it without a lattice.
 
 # %%
 numbers = sp.measure(run)
@@ -49,7 +51,7 @@ times = {
 times
 
 # %% [markdown]
-# The pulse keeps its width and its speed from then on:
+# From then on the width and the speed of the pulse are constant:
 
 # %%
 {name: numbers[name] for name in ("front_speed_right", "pulse_width", "pulse_slip")}

@@ -12,9 +12,9 @@
 # %% [markdown]
 # # A laboratory block in SI units
 #
-# A plate of PMMA that is 1 cm thick is pressed onto a base. `Layer` takes the material, the
-# friction and the normal stress in SI units. It makes a scene of the model from them, and
-# converts the run back.
+# A plate of acrylic glass (PMMA), 1 cm thick, is pressed onto a rigid base. `Layer` takes the
+# properties of the material, the friction coefficients and the normal stress in SI units. It
+# makes a scene of the model from them, and converts the results of the run to SI units.
 
 # %%
 import numpy as np
@@ -34,8 +34,8 @@ layer = sp.Layer(
 layer.wave_speed, layer.scales.time  # m/s, s
 
 # %% [markdown]
-# The shear stress is 2.8 MPa with a peak at $x = 0$ that reaches the static friction, 3 MPa. It
-# could come from a file as well.
+# The shear stress is 2.8 MPa, with a peak at $x = 0$ that reaches static friction, 3 MPa. The
+# stress could also come from a file.
 
 # %%
 x = np.linspace(-0.2, 0.2, 801)  # m
@@ -53,9 +53,9 @@ numbers = sp.measure(run)
 }
 
 # %% [markdown]
-# These are seconds, metres per second and metres. For comparison, the printed formulas of the
-# paper and the exact ones for a rupture that starts at a point, with the reason wherever they
-# differ:
+# The units are seconds, metres per second and metres. The next table compares the printed
+# formulas of the paper with the exact values for a rupture that starts at a point. Where the two
+# differ, it gives the reason:
 
 # %%
 sp.theory.layer_results(layer, 2.8e6, damping_ratio=0.1)

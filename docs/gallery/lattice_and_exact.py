@@ -12,8 +12,9 @@
 # %% [markdown]
 # # The lattice against the exact solution
 #
-# At a fixed damping ratio $\beta/\Delta x$ the lattice tends to a continuum limit, which can be
-# solved exactly. The scheme `continuum` returns it in the same form as a simulation.
+# The damping ratio is the damping $\beta$ divided by the block spacing $\Delta x$. If the spacing
+# decreases at a fixed damping ratio, the lattice tends to a continuum limit, which can be solved
+# exactly. The scheme `continuum` returns this limit in the same form as a simulation.
 
 # %%
 from dataclasses import replace
@@ -34,7 +35,7 @@ scene = sp.Scene(
 exact = sp.simulate(replace(scene, scheme="continuum"))
 
 # %% [markdown]
-# Each spacing keeps the damping ratio, so that $\beta$ falls with it.
+# The damping ratio is the same at each spacing, so that $\beta$ decreases with the spacing.
 
 # %%
 errors = {}
@@ -50,7 +51,7 @@ axes.legend()
 errors
 
 # %% [markdown]
-# The largest difference falls in proportion to the spacing.
+# The largest difference is proportional to the spacing: the order of convergence is about 1.
 
 # %%
 orders = np.diff(np.log(list(errors.values()))) / np.diff(np.log(list(errors)))

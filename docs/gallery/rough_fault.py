@@ -13,7 +13,8 @@
 # # A rough fault
 #
 # The initial stress of a real fault is not uniform. `rough` draws a random field with a given
-# mean, deviation, correlation length and roughness. A seed gives the same field on every machine.
+# mean, standard deviation, correlation length and roughness. The same seed gives the same field
+# on every machine.
 # The rupture starts where a Gaussian at $x = 0$ raises the field to static friction.
 
 # %%
@@ -35,9 +36,11 @@ run = sp.simulate(scene, samples)
 sp.plot(run)
 
 # %% [markdown]
-# A pulse forgets every change of the pre-stress within a finite distance, so that the slip
-# follows the stress with a delay. Away from the nucleation its mean is near that of a smooth
-# fault with the same mean pre-stress, which is $2\tau_0/\gamma$ without damping.
+# A pulse forgets every change of the pre-stress within a finite distance. The slip therefore
+# follows the pre-stress with a delay. On a smooth fault with the pre-stress $\tau_0$ and without
+# damping, the slip is $2\tau_0/\gamma$. Away from the nucleation, the mean slip on the rough fault
+# is close to this value for the mean pre-stress. The three numbers are the mean slip, its
+# standard deviation, and the slip on the smooth fault:
 
 # %%
 away = slice(5, 20)

@@ -12,8 +12,9 @@
 # %% [markdown]
 # # Friction that strengthens with slip velocity
 #
-# In the paper kinetic friction is constant. Here it grows in proportion to the slip velocity, $f
-# = \alpha \dot u$, which opposes the pulse. `sp.friction` has this law and others.
+# In the paper kinetic friction is constant. Here it has an additional part $f = \alpha \dot u$,
+# which is proportional to the slip velocity $\dot u$ and opposes the motion. `sp.friction` offers
+# this friction law and others.
 
 # %%
 from dataclasses import replace
@@ -36,7 +37,8 @@ run = sp.simulate(strengthening, samples)
 sp.plot(run)
 
 # %% [markdown]
-# The rupture becomes slower, wider and leaves less slip behind than without strengthening.
+# Compared with the run without strengthening, the front is slower, the pulse is wider, and it
+# leaves less slip. Each pair of numbers is the value without and with strengthening:
 
 # %%
 without, with_it = sp.measure(sp.simulate(scene)), sp.measure(run)
@@ -46,7 +48,8 @@ without, with_it = sp.measure(sp.simulate(scene)), sp.measure(run)
 }
 
 # %% [markdown]
-# Above a critical $\alpha$ no pulse is steady. It depends on the front speed:
+# Above a critical value of $\alpha$ there is no steady pulse. This value depends on the front
+# speed:
 
 # %%
 critical = sp.theory.critical_rate_strengthening(0.65, speed=with_it["front_speed_right"])

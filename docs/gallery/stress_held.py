@@ -12,9 +12,9 @@
 # %% [markdown]
 # # Stress held on top: a pulse needs a barrier
 #
-# The shear stress on top of the layer does not change, so that no spring pulls back what has
-# slipped. With equal pre-stress on both sides the rupture is a crack for ever. It turns into one
-# pulse if its left front is stopped, here by negative pre-stress.
+# The shear stress on top of the layer is constant, so that no leaf spring pulls a slipped block
+# back. If the pre-stress is the same on both sides and positive, the rupture remains a crack. It
+# turns into one pulse if its left front is stopped, here by negative pre-stress.
 
 # %%
 import numpy as np
@@ -33,9 +33,10 @@ run = sp.simulate(scene, samples)
 sp.plot(run)
 
 # %% [markdown]
-# The paper predicts where the left front stops: at the position $x_-$ up to which the integral of
-# the pre-stress from the right is zero. The front approaches this position ever more slowly, and
-# a lattice stops it at a finite time.
+# The paper predicts where the left front stops: at the position $x_-$ for which the integral of
+# the pre-stress from $x_-$ to infinity is zero. The front approaches this position ever more
+# slowly, but on a lattice it stops after a finite time. The two numbers are the predicted and
+# the simulated position:
 
 # %%
 predicted = sp.theory.prestress_balance_position(scene.prestress)
@@ -43,7 +44,7 @@ stopped = float(run["x"].where(np.isfinite(run["release_time"])).min())
 predicted, stopped
 
 # %% [markdown]
-# The same scene with 0.2 on both sides stays a crack:
+# The same scene with a pre-stress of 0.2 on both sides stays a crack:
 
 # %%
 from dataclasses import replace

@@ -12,8 +12,8 @@
 # %% [markdown]
 # # Two ruptures meet
 #
-# A second Gaussian raises the pre-stress to the static friction somewhere else, so that two
-# ruptures start at once and run into each other.
+# A second Gaussian raises the pre-stress to static friction at another position. Two ruptures
+# then start at the same time and run into each other.
 
 # %%
 import numpy as np
@@ -35,8 +35,9 @@ run = sp.simulate(scene, samples)
 sp.plot(run)
 
 # %% [markdown]
-# Pulses that meet do not pass through each other, because the stress behind each one is too low.
-# The last place to be released between the two nucleations is where they meet, in the middle:
+# When two pulses meet, they do not pass through each other, because the stress behind each pulse
+# is too low. They meet in the middle between the two nucleations, at the position that is
+# released last:
 
 # %%
 between = run["release_time"].sel(x=slice(0.0, 12.0))
@@ -44,8 +45,8 @@ meeting = float(between.idxmax())
 meeting
 
 # %% [markdown]
-# What the two have left behind is the slip of a single pulse, except around the nucleations and
-# the meeting.
+# The slip at the end is that of a single pulse, except near the nucleations and near the position
+# where the pulses meet:
 
 # %%
 run["slip"].sel(x=[-10.0, 6.0, 22.0], method="nearest").to_pandas()

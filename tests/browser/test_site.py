@@ -48,6 +48,10 @@ def opened(browser):
     return open_page
 
 
+def test_the_site_leaves_no_other_files_in_the_results(site):
+    assert (site / "index.html").exists() and not (site.parent / "jupyter_execute").exists()
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("name", PAGES)

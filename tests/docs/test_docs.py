@@ -5,6 +5,7 @@ import re
 import runpy
 import subprocess
 import sys
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -13,10 +14,13 @@ import yaml
 
 import slippulse as sp
 from docs import describe
+from slippulse_paper.records.job_records import record_path
+from slippulse_paper.steps.needs import needs_of
 
 
 def test_the_tutorial_keeps_what_it_says(project, tmp_path):
     names = runpy.run_path(str(project / "docs/run_tutorial.py"))["run"](tmp_path)
+    assert names["record"] == record_path(names["table"])
     assert len([*tmp_path.glob("*.png")]) == 3
     # Under a held stress the left front stops near where the paper has it, from below.
     balance = (1.5 + 1.0) / 0.5 * math.sqrt(math.pi / 2.0)
@@ -94,3 +98,44 @@ def test_nothing_is_loaded_that_is_not_needed(modules):
     loaded = f"sorted({UNLOADED[modules]} & set(sys.modules))"
     program = f"import sys, slippulse_paper.{modules}; print({loaded})"
     assert subprocess.check_output([sys.executable, "-c", program], text=True).strip() == "[]"
+
+
+def test_the_files_from_a_key_to_a_pixel_have_what_the_page_names(project):
+    text = (project / "docs/workflow.md").read_text(encoding="utf-8")
+    section = text.partition("## From a key to a pixel")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| `(\S+)` \| (?:`(\w+)`)? ?\|", section, re.MULTILINE)
+    assert len(rows) == section.count("\n| ") - 1 > 10
+    for path, name in rows:
+        content = (project / path).read_text(encoding="utf-8")
+        definition = rf"^\s*(def|rule) {name}\b|^{name} = "
+        assert not name or re.search(definition, content, re.MULTILINE), (path, name)
+
+
+# Modules that the recipes of CONTRIBUTING.md add.
+ADDED = {"study_pulse_spacings.py", "test_foundation.py", "logarithmic_rate.py", "NAME.py"}
+
+
+def test_modules_that_a_page_names_exist(project):
+    files = subprocess.run(
+        ["git", "ls-files", "*.py"], cwd=project, stdout=subprocess.PIPE, text=True, check=True
+    )
+    known = [f"/{path}" for path in files.stdout.splitlines()]
+    pages = [*project.glob("*.md"), *project.glob("docs/*.md"), project / "config/README.md"]
+    for page in pages:
+        if page.name == "CHANGELOG.md":
+            continue
+        for name in re.findall(r"`([\w/]+\.py)`", page.read_text(encoding="utf-8")):
+            exists = any(path.endswith(f"/{name}") for path in known)
+            assert exists or Path(name).name in ADDED, (page.name, name)
+
+
+def test_the_page_of_figures_has_every_figure_with_its_simulations(project):
+    figures, studies = needs_of("figures"), needs_of("studies")
+    page = (project / "docs/figures.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| .* \| ([^|]*) \|$", page, re.MULTILINE)
+    assert {name for name, _ in rows} == {*figures}
+    for name, simulations in rows:
+        needed = [figures[name], *(studies[study] for study in figures[name].get("studies", ()))]
+        kinds = ("data", "measured", "uncertainties", "sweeps")
+        found = {one for needs in needed for kind in kinds for one in needs.get(kind, ())}
+        assert set(re.findall(r"\w+", simulations)) == found, name

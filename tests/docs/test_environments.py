@@ -31,6 +31,13 @@ def test_the_archive_cites_what_the_citation_file_cites(project, pyproject, cita
     assert archive["keywords"] == described["keywords"]
 
 
+def test_the_site_says_how_to_cite(project, citation):
+    text = (project / "docs/index.md").read_text(encoding="utf-8")
+    [paper] = citation["references"]
+    assert paper["doi"] in text and "CITATION.cff" in text
+    assert all(author["family-names"] in text for author in paper["authors"])
+
+
 def test_every_command_of_the_container_and_of_the_workflows_is_a_target(project):
     paths = [project / "Dockerfile", project / ".devcontainer/devcontainer.json"]
     paths += sorted((project / ".github/workflows").glob("*.yml"))

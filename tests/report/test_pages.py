@@ -180,7 +180,7 @@ def test_the_ledger_has_a_page_with_failures_first():
     assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
     assert '<p class="why">It is <em>off</em>.</p>' in text and "3 of 5, 2 undecided" in text
     assert '<li id="ours">a gap of <math' in text and "follows from <code>speed</code>" in text
-    assert "1 not testable. 1 more are not counted" in text
+    assert "1 not testable. 1 further claims are not counted" in text
     assert "1.25010(10)" in text and "not measured" in text
     assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
     assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text

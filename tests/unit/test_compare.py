@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 from report.test_pages import check_accessible
 
+from slippulse_paper.records.job_records import Record, file_digest, state_of, write_record
 from slippulse_paper.report.compare import compare, main
 
 RUN = {"boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65}
@@ -192,3 +193,35 @@ def test_an_odd_tree_is_refused_in_one_line(tmp_path, capsys, case, which):
     printed = capsys.readouterr().out
     assert printed.startswith(f"{path}: cannot be read (")
     assert said in printed and printed.count("\n") == 1
+
+
+def test_verdicts_and_a_configuration_older_than_other_results_are_not_compared(tmp_path, capsys):
+    """A run of one figure leaves them as they are, so that they say nothing about its results."""
+    here, other = tree(tmp_path / "here", run={"gamma": 0.3}), tree(tmp_path / "other")
+    for folder in (here, other):
+        for step, output, name in (
+            ("measure", TABLE, "../data/sweep.nc"),
+            ("write_claims", "claims.json", TABLE),
+            ("write_index", "provenance.json", "claims.json"),
+        ):
+            path = (folder / output).parent / name
+            inputs = {name: file_digest(path)} if path.exists() else {}
+            states = {Path(output).name: state_of(folder / output)}
+            write_record(Record(step, "", "", states, inputs, 1.0), (folder / output).parent)
+    page = here / "compare.html"
+    lines = ("No verdict changed", "The two configurations are equal")
+    assert main([str(here), str(other), str(page)]) == 0
+    assert all(line in page.read_text(encoding="utf-8") for line in lines)
+    # Measured again, but not judged again.
+    (here / TABLE).write_text((here / TABLE).read_text().replace("1.0\n", "2.0\n"))
+    states = {"sweep.csv": state_of(here / TABLE)}
+    write_record(Record("measure", "", "", states, {}, 1.0), here / "measurements")
+    assert main([str(here), str(other), str(page)]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert not any(line in text for line in lines)
+    assert "The configuration was not compared" in text and "sweep: gamma" in text
+    for name in ("claims.json", "provenance.json"):
+        assert f"{here}/{name} is older than other results in that folder" in " ".join(text.split())
+    printed = capsys.readouterr().out
+    assert f"claims.json: not compared, since other results are newer than {here}" in printed
+    check_accessible(text)

@@ -184,6 +184,23 @@ def test_a_rule_that_fails_is_named(rule, reason):
         claim_of(tables, "always")
 
 
+def test_a_claim_without_a_number_names_the_flagged_runs(monkeypatch):
+    monkeypatch.setattr("slippulse_paper.claims.paper_claims.JUDGES_BY_CLAIM", {})
+    source = {"kind": "qualitative", "source": "sweep: number; predictions: exact_regime"}
+    entry = source | {"tolerance": 0.0, "sentences": []}
+    rule = {"sweeps": ["sweep"], "holds": "left > 0", "where": "left > 1"}
+    tables = evidence(flagged=2)
+    tables.entries = {"always": entry | {"rule": rule}}
+    monkeypatch.setattr(tables, "assign", lambda *_: None)
+    nothing = "This run has no number that could be judged."
+    [claim] = all_claims(tables, {}, [])
+    assert claim["verdict"] == NONE
+    assert claim["why"] == f"{nothing} 1 of 4 runs of sweep are flagged (unresolved)" + (
+        " and therefore not used."
+    )
+    assert evidence().flags_behind(entry["source"]) == ""
+
+
 def test_no_claim_compares_a_function_with_itself(project):
     """Each is judged by measured numbers of lattices, or by the solved model."""
     claims = read_text(project / "manuscript/claims.yaml")["claims"]

@@ -20,6 +20,7 @@ from slippulse_paper.records.job_records import (
     digest_of,
     file_digest,
     job_seconds,
+    made_without_step,
     read_record,
     state_of,
     write_record,
@@ -124,6 +125,22 @@ def test_a_result_that_is_not_as_made_is_named(results, name, harm, expected, ti
         elif path.exists() and path != Path(name):
             os.utime(path, ns=(before[path],) * 2)
     assert problems(results) == expected
+
+
+def test_results_of_older_inputs_are_found_through_all_jobs(results):
+    recorded = RecordedFiles(results)
+    assert recorded.older_than_inputs() == set()
+    rewrite(Path(RECORD), outputs=OTHER_STATE)
+    # The page was made from the table, and the table from other data.
+    assert RecordedFiles(results).older_than_inputs() == {TABLE, PAGE, PICTURE}
+
+
+def test_a_file_by_a_rule_of_the_user_needs_no_record(results):
+    codes = {DATA: '        run_step("simulate", ...)', TABLE: "wc -l {input}", PAGE: None}
+    for name, code in codes.items():
+        path = Path(".snakemake/metadata", base64.urlsafe_b64encode(name.encode()).decode())
+        path.write_text(json.dumps({"code": code}))
+    assert made_without_step([*codes, PICTURE, "results/unknown.txt"]) == {TABLE}
 
 
 def test_a_file_that_was_copied_elsewhere_with_its_record_is_as_made(results):

@@ -107,6 +107,11 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overla
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
+def test_make_explains_a_target_that_is_no_rule(make):
+    printed = make("replicate", "PRESET=draft", "TARGET=fig12 scenes fig3")
+    assert "TARGET: fig12, no rule of this project; allowed: a figure" in printed
+
+
 OPTIONS = [
     *(("faults", "KILLS", value) for value in ("", "0", "-1", "1.5", "1; touch written")),
     *(("replicate", "CORES", value) for value in ("0", "-1", "08", "all")),

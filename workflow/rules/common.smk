@@ -277,8 +277,9 @@ def report_changed_results():
         name, reason = next(iter(problems.items()))
         count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
         more = " ..." if len(problems) > 5 else ""
+        example = reason if len(problems) == 1 else f"{name}: {reason}"
         print(
-            f"{count} changed: {', '.join([*problems][:5])}{more} ({name}: {reason})."
+            f"{count} changed: {', '.join([*problems][:5])}{more} ({example})."
             " To make them again: make replicate, or snakemake --forcerun and their names",
             file=sys.stderr,
         )

@@ -142,12 +142,13 @@ def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
 
     A parameter is kept if it distinguishes runs that the parameters before it do not.
     """
+    candidates = [name for name in dict.fromkeys(PARAMETER_ORDER) if name in values]
     names: list[str] = []
     count = 1
-    for name in filter(values.__contains__, dict.fromkeys(PARAMETER_ORDER)):
-        number = len(combinations(values, [*names, name]))
-        if number > count:
-            names, count = [*names, name], number
+    for name in candidates:
+        count_with_name = len(combinations(values, [*names, name]))
+        if count_with_name > count:
+            names, count = [*names, name], count_with_name
     return names
 
 

@@ -27,16 +27,18 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     It also has the coordinate ``row_start``, the number of the first block of each run. With it and
     ``row_size``, the blocks of a run can be found in a selection of runs, too.
     """
-    number = {"units": "1", "long_name": VARIABLES["point"]}
-    sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), number))
-    names = [name for name in ("point", *ATTRIBUTES) if name in sweep]
-    coordinates = names[1:]
+    attributes = {"units": "1", "long_name": VARIABLES["point"]}
+    sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), attributes))
+    parameters = [name for name in ATTRIBUTES if name in sweep]
+    coordinates = list(parameters)
     if "row_size" in sweep:
         size = sweep["row_size"].values
         attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
         sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, attributes))
         coordinates.append("row_size")
-    return sweep.drop_indexes("point").set_coords(coordinates).set_xindex(names, ParameterIndex)
+    # One index over all parameters takes the place of the index that xarray makes of `point`.
+    sweep = sweep.drop_indexes("point").set_coords(coordinates)
+    return sweep.set_xindex(["point", *parameters], ParameterIndex)
 
 
 def open_sweep(path: str | Path) -> xr.Dataset:

@@ -22,24 +22,28 @@ INDEPENDENT_PREFIX = "independent "
 def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
     """Interpolate the fits of one release rule between damping ratios, cubic in log(beta/dx).
 
-    The table has one row for each damping ratio. Its columns are damping_ratio, dx, tau0, gamma,
-    tau0_error, gamma_error, chi2, and the pull of each reading,
-    (predicted - drawn)/reading_error. The chi-square is the sum of squares of the independent
-    pulls, in which errors that several readings share are taken into account.
+    The result has one row for each of INTERPOLATED_RATIOS damping ratios. Its columns are
+    damping_ratio, dx, tau0, gamma, tau0_error, gamma_error, chi2, and the pull of each reading,
+    (predicted - drawn)/reading_error. Chi-square is the sum of squares of the independent pulls,
+    in which errors that several readings share are taken into account.
     """
     by_reading = partial(profile.pivot, index="damping_ratio", columns="reading")
+    pulls = by_reading(values="pull")
     independent = by_reading(values="independent_pull").add_prefix(INDEPENDENT_PREFIX)
     columns = ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
+    # The fit at each studied damping ratio.
     numbers = profile.groupby("damping_ratio")[columns].first()
-    nodes = pd.concat([by_reading(values="pull"), independent, numbers], axis=1)
-    log_ratio = np.log(nodes.index.to_numpy())
-    log_ratios = np.linspace(log_ratio[0], log_ratio[-1], INTERPOLATED_RATIOS)
-    values = CubicSpline(log_ratio, nodes.to_numpy())(log_ratios)
-    fits = pd.DataFrame(values, columns=nodes.columns)
-    fitted = profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    chi2 = (fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted]] ** 2).sum(axis=1)
+    studied = pd.concat([pulls, independent, numbers], axis=1)
+    studied_log_ratios = np.log(studied.index.to_numpy())
+    log_ratios = np.linspace(studied_log_ratios[0], studied_log_ratios[-1], INTERPOLATED_RATIOS)
+    values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
+    fits = pd.DataFrame(values, columns=studied.columns)
+    # Only readings with a weight are fitted.
+    fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
+    fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
+    chi_square = (fitted_pulls**2).sum(axis=1)
     fits = fits.drop(columns=independent.columns)
-    return fits.assign(chi2=chi2, damping_ratio=np.exp(log_ratios))
+    return fits.assign(chi2=chi_square, damping_ratio=np.exp(log_ratios))
 
 
 def independent_combinations(errors: np.ndarray, shared_errors: np.ndarray) -> np.ndarray:
@@ -85,10 +89,12 @@ def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, An
         for confidence in CONFIDENCE_LEVELS:
             inside = chi_square_rise(confidence) - rise >= 0.0
             ends = by_ratio.loc[inside, "damping_ratio"].iloc[[0, -1]]
-            low, high = ends.where(~ends.index.isin([by_ratio.index[0], by_ratio.index[-1]]))
+            # If the region extends to the first or last studied ratio, its end there is unknown.
+            is_outermost = ends.index.isin([by_ratio.index[0], by_ratio.index[-1]])
+            low, high = ends.where(~is_outermost)
             fit["regions"][confidence] = float(low), float(high)
         fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
         fits[str(release)] = fit
-    from_best = sorted(fits.values(), key=lambda fit: fit["chi2"])
-    difference = from_best[-1]["chi2"] - from_best[0]["chi2"]
-    return fits | {"best": from_best[0], "difference": difference}
+    best_fit = min(fits.values(), key=lambda fit: fit["chi2"])
+    worst_fit = max(fits.values(), key=lambda fit: fit["chi2"])
+    return fits | {"best": best_fit, "difference": worst_fit["chi2"] - best_fit["chi2"]}

@@ -71,11 +71,12 @@ def fast_sides(run: Mapping) -> set[str]:
         if all(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        speed, start = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
-        reach = sign * (start + speed * run["end_time"])
-        if math.isfinite(reach):
-            x = np.linspace(0.0, reach, int(abs(reach) / run["dx"]) + 2)
-            if np.min(prestress_from(run)(x)) >= MIN_PRESTRESS:
+        # The position of the front at the end, by the straight line that was fitted to its path.
+        speed, intercept = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
+        front = sign * (intercept + speed * run["end_time"])
+        if math.isfinite(front):
+            crossed = np.linspace(0.0, front, int(abs(front) / run["dx"]) + 2)
+            if np.min(prestress_from(run)(crossed)) >= MIN_PRESTRESS:
                 sides.add(side)
     return sides
 

@@ -53,9 +53,11 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
             slip=np.nan,
         )
     pulses = [] if stopped else sliding_stretches(velocity)
+    # Slip velocity of the leading pulse alone, 0 everywhere if there is no pulse.
     leading_velocity = np.zeros(distance.size)
-    for pulse in pulses[-1:]:
-        leading_velocity[pulse] = velocity[pulse]
+    if pulses:
+        leading = pulses[-1]
+        leading_velocity[leading] = velocity[leading]
     peak, peak_distance = parabola_peak(distance, leading_velocity)
     stick_times, stuck_distances = front_path(run, edge="stick_time")
     width, final_slip = np.nan, np.nan
@@ -67,11 +69,14 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         elapsed = end - stick_times[behind_peak][-4:]
         trailing = float(np.mean(last_distances + speed * elapsed))
         width = front - trailing
+        # The final slip is that of stuck blocks closely behind the trailing edge, which are not
+        # remains of the nucleation.
         in_outer_half = (distance > 0.5 * trailing) & (distance < trailing - 2.0 * dx)
-        settled = in_outer_half & (velocity <= 0.0)
-        if settled.any():
-            near = distance > distance[settled].max() - max(0.5 * width, 4.0 * dx)
-            final_slip = float(np.mean(slip[settled & near]))
+        has_stuck = in_outer_half & (velocity <= 0.0)
+        if has_stuck.any():
+            farthest = distance[has_stuck].max()
+            is_near = distance > farthest - max(0.5 * width, 4.0 * dx)
+            final_slip = float(np.mean(slip[has_stuck & is_near]))
     return LeadingPulse(
         front=front,
         speed=speed,
@@ -122,13 +127,16 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     They are those of the parabola through the largest sample and its two neighbours, or of the
     sample itself if it is the first or the last.
     """
-    i = int(np.argmax(y))
-    if not 0 < i < y.size - 1:
-        return float(y[i]), float(x[i])
-    left, middle, right = y[i - 1 : i + 2]
+    top = int(np.argmax(y))
+    if not 0 < top < y.size - 1:
+        return float(y[top]), float(x[top])
+    left, middle, right = y[top - 1 : top + 2]
     curvature = left - 2.0 * middle + right
+    # Distance of the vertex of the parabola from the largest sample, in sample distances.
     shift = 0.5 * (left - right) / curvature if curvature != 0.0 else 0.0
-    return float(middle - 0.25 * (left - right) * shift), float(x[i] + shift * (x[i + 1] - x[i]))
+    value = middle - 0.25 * (left - right) * shift
+    position = x[top] + shift * (x[top + 1] - x[top])
+    return float(value), float(position)
 
 
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
@@ -161,8 +169,10 @@ def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     slip of the pulse; NaN if there is no such path.
     """
     fields = comoving(run, pulse)
+    # The path of the trailing edge begins at x = 0. Four blocks at its end are left out.
+    path_length = pulse.front - pulse.width
     end = -pulse.width - 4.0 * run.attrs["dx"]
-    third = (fields["xi"] < end) & (fields["xi"] > end - (pulse.front - pulse.width) / 3.0)
-    if not third.any() or not np.isfinite(pulse.slip) or pulse.slip == 0.0:
+    is_in_last_third = (fields["xi"] < end) & (fields["xi"] > end - path_length / 3.0)
+    if not is_in_last_third.any() or not np.isfinite(pulse.slip) or pulse.slip == 0.0:
         return np.nan
-    return float(np.ptp(fields["slip"][third]) / pulse.slip)
+    return float(np.ptp(fields["slip"][is_in_last_third]) / pulse.slip)

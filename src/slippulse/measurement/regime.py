@@ -36,23 +36,20 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
     pulse grows, decays or is steady according to the change of its largest velocity over the last
     third of the run.
     """
-    times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
-    late_sample = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
-    largest_before = np.max(velocity[late_sample])
-    change = -1.0
-    if largest_before > 0.0:
-        change = float(np.max(velocity[-1]) / largest_before) - 1.0
+    change = _change_of_largest_velocity(run)
     x, final_velocity = _final_velocity(run)
     largest = float(np.max(final_velocity))
     centre = float(final_velocity[int(np.argmin(np.abs(x)))])
-    speeds = [_late_speed(run, side) for side in ("left", "right")]
-    fast_sides = sum(speed >= 1.0 - steady_tolerance for speed in speeds)
-    sliding = final_velocity >= still * largest
-    sliding_sides = int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
-    running_sides = fast_sides or sliding_sides
+    left_speed, right_speed = (_late_speed(run, side) for side in ("left", "right"))
+    slowest_fast = 1.0 - steady_tolerance
+    fast_sides = int(left_speed >= slowest_fast) + int(right_speed >= slowest_fast)
+    slides = final_velocity >= still * largest
+    sliding_sides = int(np.any(slides[x < 0.0])) + int(np.any(slides[x > 0.0]))
+    running_sides = fast_sides if fast_sides > 0 else sliding_sides
     ways = "two-way" if running_sides == 2 else "one-way"
-    has_slow_front = running_sides == 1 and min(speeds) > steady_tolerance
-    if np.isnan(final_velocity).any() or np.isnan(velocity[-1]).any():
+    has_slow_front = running_sides == 1 and min(left_speed, right_speed) > steady_tolerance
+    final_samples = np.asarray(run["sample_velocity"])[-1]
+    if np.isnan(np.append(final_velocity, final_samples)).any():
         regime = UNDECIDED
     elif _is_arrested(run, largest, still):
         regime = "arrested"
@@ -64,9 +61,20 @@ def classify_regime(run: AnyRun, still: float, steady_tolerance: float) -> dict[
         "regime": regime,
         "centre_velocity_share": centre / largest if largest > 0.0 else np.nan,
         "largest_velocity_change": change,
-        "late_front_speed_left": speeds[0],
-        "late_front_speed_right": speeds[1],
+        "late_front_speed_left": left_speed,
+        "late_front_speed_right": right_speed,
     }
+
+
+def _change_of_largest_velocity(run: AnyRun) -> float:
+    """Return the relative change of the largest velocity over the last third of a run.
+
+    It is -1 if nothing slid at the start of this third.
+    """
+    times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
+    start = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
+    largest_before, largest_after = np.max(velocity[start]), np.max(velocity[-1])
+    return float(largest_after / largest_before) - 1.0 if largest_before > 0.0 else -1.0
 
 
 def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:

@@ -22,13 +22,13 @@ from .transition import transition_displacement, transition_stress
 
 # Columns that identify a run or describe its computation. `Scene.from_attributes` can make the
 # scene of the run from them.
-PARAMETERS = (
-    "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta",
-    "damping_ratio", "dx", "max_step", "duration", "release", "scheme", "order", "half_lattice",
-    "friction_ratio", "resolved_blocks", "run_flags", "steps", "block_updates", "energy_residual",
-    "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases", "end_time",
-    "friction", *EXTRA_TERMS,
-)  # fmt: skip
+_PARAMETERS = """
+    boundary left right width peak steps_and_bumps gamma beta damping_ratio dx max_step duration
+    release scheme order half_lattice friction_ratio resolved_blocks run_flags steps block_updates
+    energy_residual min_velocity min_stuck_stress friction_ratio_needed re_releases end_time
+    friction
+"""
+PARAMETERS = (*_PARAMETERS.split(), *EXTRA_TERMS)
 # Columns that also identify the profile of a run, if the pre-stress is a table.
 LABELS = ("profile", "seed")
 # The points of a longer table are only in the data file. The measured row has a digest of them.
@@ -52,16 +52,21 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
     steps = prestress_from(run.attrs).steps
-    row["beyond"] = steps[-1][1] if steps else row["right"]
+    row["beyond"] = row["right"]
+    if steps:
+        _, row["beyond"] = steps[-1]
     row |= columns_of_table(run, settings["front_window"])
     for side in ("right", "left"):
-        names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
-        row |= zip(names, fit_front(run, settings["front_window"], side), strict=True)
+        line = fit_front(run, settings["front_window"], side)
+        row[f"front_speed_{side}"] = line.slope
+        row[f"front_intercept_{side}"] = line.intercept
+        row[f"front_speed_error_{side}"] = line.slope_error
     row |= measure_transition(run, settings["fraction"])
     row["first_stick_time"] = run.attrs["first_stick_time"]
     times = settings["trailing_times"]
-    edges = front_position(run, times, "right", "stick_time").tolist()
-    row |= zip([f"trailing_edge_{time:g}" for time in times], edges, strict=True)
+    trailing_edges = front_position(run, times, "right", "stick_time").tolist()
+    for time, trailing_edge in zip(times, trailing_edges, strict=True):
+        row[f"trailing_edge_{time:g}"] = trailing_edge
     pulse = None
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
@@ -107,7 +112,8 @@ def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
         tau = np.asarray(run["prestress"])[crossed]
         row[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
         distance = np.abs(x[crossed])
-        crossed_last = tau[distance >= (1.0 - window) * np.max(distance, initial=0.0)]
+        is_in_window = distance >= (1.0 - window) * np.max(distance, initial=0.0)
+        crossed_last = tau[is_in_window]
         is_constant = crossed_last.size > 0 and np.ptp(crossed_last) == 0.0
         row[f"level_ahead_{side}"] = float(crossed_last[0]) if is_constant else np.nan
     return row
@@ -148,9 +154,11 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     below_left, below_right = np.flatnonzero(is_below[:peak]), np.flatnonzero(is_below[peak:])
     if not below_left.size or not below_right.size:
         return np.nan
-    i, j = int(below_left[-1]), peak + int(below_right[0])
-    left = np.interp(half, velocity[[i, i + 1]], xi[[i, i + 1]])
-    right = np.interp(half, velocity[[j, j - 1]], xi[[j, j - 1]])
+    # Velocity passes the half between a block below it and the next block towards the peak.
+    last_left, first_right = int(below_left[-1]), peak + int(below_right[0])
+    left_pair, right_pair = [last_left, last_left + 1], [first_right, first_right - 1]
+    left = np.interp(half, velocity[left_pair], xi[left_pair])
+    right = np.interp(half, velocity[right_pair], xi[right_pair])
     return float(right - left)
 
 
@@ -212,8 +220,13 @@ def far_field(run: AnyRun) -> dict[str, float]:
     early_peak = np.max(velocity[early][is_far])
     strain = np.gradient(slip[:, is_far], x[is_far], axis=1)
     final_strain = np.abs(strain[-1])
-    densities = [0.5 * (velocity[i][is_far] ** 2 + strain[i] ** 2) for i in (early, -1)]
-    early_energy, final_energy = (np.trapezoid(density, x[is_far]) for density in densities)
+
+    def energy(sample: int) -> float:
+        """Return the kinetic and strain energy in the far field at a sample."""
+        density = 0.5 * (velocity[sample][is_far] ** 2 + strain[sample] ** 2)
+        return np.trapezoid(density, x[is_far])
+
+    early_energy, final_energy = energy(early), energy(-1)
     # In units of the wave speed, the elapsed time is also the distance that a wave travels.
     stays_inside = is_far & (x + elapsed <= x[-1])
     final_velocity = np.interp(x[stays_inside] + elapsed, x, velocity[-1])

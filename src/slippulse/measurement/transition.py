@@ -61,13 +61,14 @@ def slip_time(run: AnyRun, slip: float) -> float:
     if "sample_slip" not in run:
         return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
-    history, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
-    i = int(np.argmax(history >= slip))
+    slips, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
+    after = int(np.argmax(slips >= slip))
     # The slip of the first sample is 0, so that 0 means that the slip is never reached.
-    if i == 0:
+    if after == 0:
         return np.nan
-    fraction = (slip - history[i - 1]) / (history[i] - history[i - 1])
-    return float(times[i - 1] + fraction * (times[i] - times[i - 1]))
+    before = after - 1
+    fraction = (slip - slips[before]) / (slips[after] - slips[before])
+    return float(times[before] + fraction * (times[after] - times[before]))
 
 
 def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:

@@ -22,6 +22,7 @@ def integral(prestress: Prestress, lower: float, upper: float) -> float:
     low, high = min(lower, upper), max(lower, upper)
     total = 0.0
     for interval in prestress.intervals:
+        # The part of the interval within the limits, if there is one.
         a, b = max(interval.left, low), min(interval.right, high)
         if a < b:
             total += _linear_integral(prestress, interval, a, b)
@@ -123,7 +124,7 @@ def _balance_of_table(prestress: Prestress, distance: float) -> float:
     each part of an interval the background keeps its sign, so that the integral cannot change sign
     twice. The balance lies in the first part at whose left end the integral is negative.
     """
-    x, tau = np.array(prestress.points).T
+    x, tau = prestress.point_arrays
     # A table without a Gaussian at x = 0 is released wherever it reaches 1.
     released = x[tau >= min(1.0, float(tau.max()))]
     start = 0.0 if prestress.width is not None else float(released[0])
@@ -131,16 +132,17 @@ def _balance_of_table(prestress: Prestress, distance: float) -> float:
     if not integral_from_right >= 0.0:
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
     for part in _parts_leftwards(prestress, start):
-        balance = partial(_integral_from, prestress, part, integral_from_right)
+        integral_from = partial(_integral_from, prestress, part, integral_from_right)
         left = part.left
         if left == -math.inf:
+            # The outermost part is infinite. Its length is doubled until the integral is negative.
             left = part.right - 1.0
-            while balance(left) >= 0.0:
+            while integral_from(left) >= 0.0:
                 left = part.right - 2.0 * (part.right - left)
-        integral_from_right = balance(left)
+        integral_from_right = integral_from(left)
         if integral_from_right < 0.0:
             break
-    return root_to_last_bit(balance, left, part.right)
+    return root_to_last_bit(integral_from, left, part.right)
 
 
 class _Part(NamedTuple):
@@ -168,6 +170,7 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
     """Yield the parts of the intervals to the left of ``start``, from right to left."""
     for interval in reversed(prestress.intervals):
         left, right, left_value, right_value = interval
+        # Where the background changes its sign; the right end if it does not.
         zero = right
         if left_value * right_value < 0.0:
             zero = left - left_value * (right - left) / (right_value - left_value)

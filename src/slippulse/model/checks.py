@@ -29,10 +29,20 @@ def short_repr(value: object) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
+def refusal(key: str, value: object, allowed: str) -> ValueError:
+    """Return the error about a value that is not allowed."""
+    return ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+
+
 def check_that(holds: bool, key: str, value: object, allowed: str) -> None:
     """Raise ValueError about a value unless a condition holds."""
     if not holds:
-        raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+        raise refusal(key, value, allowed)
+
+
+def first_true(mask: np.ndarray) -> int | None:
+    """Return the index of the first element that is True; None if there is none."""
+    return int(np.argmax(mask)) if np.any(mask) else None
 
 
 def check_number(key: str, value: Any, integer: bool = False, **limits: float) -> None:

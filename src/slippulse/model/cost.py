@@ -33,6 +33,10 @@ BYTES_PER_TABLE_POINT = 400.0
 UPDATES_PER_START, UPDATES_PER_EXACT_BLOCK = 1e5, 3e4
 # Where a table reaches 1 the front speed is taken at this level, since it is infinite at 1.
 MAX_LEVEL = 1.0 - 1e-9
+# Beyond this number of widths from its centre, a Gaussian no longer makes fronts faster.
+GAUSSIAN_END_IN_WIDTHS = 5.0
+# Factor by which the bound on a front speed is larger than simple estimates of it.
+SPEED_MARGIN = 1.3
 # A step ends early after this number of events.
 MAX_EVENTS_PER_STEP = 64
 # Seconds for one block update at the highest order on a slow machine.
@@ -117,18 +121,28 @@ def _distance(ends: np.ndarray, speeds: np.ndarray, start: float, duration: floa
 
 
 def _bound_scene_reach(scene: Scene) -> float:
-    """Return an upper bound on the distance from x = 0 that a front reaches on either side."""
+    """Return an upper bound on the distance from x = 0 that a front reaches on either side.
+
+    Within the Gaussians, fronts are taken to be infinitely fast.
+    """
     profile = scene.prestress
-    bumps = max((abs(centre) + 5.0 * width for centre, _, width in profile.bumps), default=0.0)
+    end_of_bumps = max(
+        (abs(centre) + GAUSSIAN_END_IN_WIDTHS * width for centre, _, width in profile.bumps),
+        default=0.0,
+    )
     width = profile.width or 0.0
-    start = max(bumps, profile.nucleation_reach) + 5.0 * width
+    start = max(end_of_bumps, profile.nucleation_reach) + GAUSSIAN_END_IN_WIDTHS * width
 
     def bound_speeds(levels: np.ndarray) -> np.ndarray:
-        # The bound is larger than the exact speed at any damping and under both release rules.
+        """Return upper bounds on the front speeds at levels of pre-stress.
+
+        They are larger than the exact speed at any damping and under both release rules.
+        """
         level = np.clip(levels if profile.points else np.max(levels), 0.0, MAX_LEVEL)
-        speed = 1.3 / np.sqrt((1.0 - level) * (1.0 + level))
+        # Without damping, the front speed is 1/sqrt(1 - tau^2).
+        speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
         if scene.release == "total":
-            speed = speed + 1.3 * scene.damping_ratio * level / (1.0 - level)
+            speed = speed + SPEED_MARGIN * scene.damping_ratio * level / (1.0 - level)
         return np.broadcast_to(speed, levels.shape)
 
     return bound_front_reach(profile, start, scene.duration, bound_speeds)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import as_numbers, check_choice, check_number, check_that, short_repr
+from .checks import as_numbers, check_choice, check_number, check_that, first_true, short_repr
 from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
@@ -136,6 +136,7 @@ class Layer:
         check_that(usable, "layer", self.mapping(), "numbers near those of a material")
 
     def _check_second_modulus(self) -> None:
+        """Raise ValueError unless exactly one of the two moduli is given, within its range."""
         given = {"lame_parameter": self.lame_parameter, "poisson_ratio": self.poisson_ratio}
         names = [name for name, value in given.items() if value is not None]
         if len(names) != 1:
@@ -454,16 +455,18 @@ class Layer:
 
     def _check_that_something_moves(self, profile: Prestress, dx: float) -> None:
         """Raise ValueError if the initial stress reaches static friction at no block."""
+        # The stress is largest at x = 0 or at a point of the table. It is examined at the blocks
+        # next to these positions.
         x = np.array([0.0, *(x for x, _ in profile.points)])
         blocks = np.concatenate([np.floor(x / dx), np.ceil(x / dx)]) * dx
         largest = float(profile(blocks).max())
-        stress = self.convert_to_si(largest, "stress")
-        allowed = (
-            f"static friction, {self.static_strength:g} Pa, somewhere, or a width_in_metres of the"
-            " Gaussian at x = 0 that starts the rupture"
-        )
-        reached = f"at most {stress:.9g} Pa at a block"
         if largest < 1.0:
+            stress = self.convert_to_si(largest, "stress")
+            reached = f"at most {stress:.9g} Pa at a block"
+            allowed = (
+                f"static friction, {self.static_strength:g} Pa, somewhere, or a width_in_metres of"
+                " the Gaussian at x = 0 that starts the rupture"
+            )
             raise ValueError(f"prestress_in_pascal: {reached}; allowed: {allowed}")
 
     def samples(self, times_in_seconds: Any, positions_in_metres: Any) -> Samples:
@@ -573,6 +576,7 @@ class Layer:
         return {name: value for name, value in asdict(self).items() if value is not None}
 
     def _check_same_layer(self, attributes: Mapping) -> None:
+        """Raise ValueError if the boundary or the gamma of a run is not that of this layer."""
         boundary, gamma = attributes["boundary"], attributes["gamma"]
         check_that(boundary == self.boundary, "run: boundary", boundary, repr(self.boundary))
         expected = self.gamma if self.top == "held" else 0.0
@@ -606,8 +610,10 @@ def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
     allowed = "two or more positions, and as many stresses"
     are_valid = have_equal_shapes and positions.size >= 2
     check_that(are_valid, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
-    for row in (np.flatnonzero(np.diff(positions) < 0.0) + 1)[:1]:
-        allowed = f">= {positions[row - 1]:.10g} m, the position in the row before"
-        given = f"position {positions[row]:.10g} m in row {row + 1}"
+    before = first_true(np.diff(positions) < 0.0)
+    if before is not None:
+        # Rows are counted from 1 in messages.
+        given = f"position {positions[before + 1]:.10g} m in row {before + 2}"
+        allowed = f">= {positions[before]:.10g} m, the position in the row before"
         raise ValueError(f"prestress_in_pascal: {given}; allowed: {allowed}")
     return positions, stresses

@@ -11,14 +11,13 @@ import sys
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
-from itertools import groupby, pairwise
-from operator import itemgetter
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
-from .checks import as_positions, check_number, check_that, short_repr
+from .checks import as_positions, check_number, check_that, first_true, refusal, short_repr
 from .removed import ExplainsRemovedNames
 
 # Allowed ranges, in the form that `check_number` takes. A side level of 1 would release infinitely
@@ -29,8 +28,12 @@ PART_RANGES: dict[str, dict[str, dict[str, Any]]] = {
     "steps": {"position": {}, "level": LEVEL_RANGE},
     "bumps": {"centre": {}, "amplitude": {}, "width": {"above": 0.0}},
 }
+# Centre, amplitude and width of each further Gaussian.
+Bumps: TypeAlias = tuple[tuple[float, float, float], ...]
 # A table of more points would take more memory than the lattice itself.
 MAX_TABLE_POINTS = 100_000
+# The representation of a profile shows at most this number of points.
+MAX_SHOWN_POINTS = 8
 # A value that differs from the threshold 1 by at most this much is set to 1, because the difference
 # is due to rounding. A table has a larger tolerance, since positions between its points are rounded
 # as well.
@@ -44,6 +47,14 @@ class Interval(NamedTuple):
     right: float
     left_value: float
     right_value: float
+
+
+class EqualBumps(NamedTuple):
+    """Bumps of the same shape at the same distance from x = 0."""
+
+    amplitude: float
+    width: float
+    centres: list[float]
 
 
 @dataclass(frozen=True, repr=False)
@@ -92,7 +103,7 @@ class Prestress(ExplainsRemovedNames):
     width: float | None = 1.0
     peak: float = 1.0
     steps: tuple[tuple[float, float], ...] = ()
-    bumps: tuple[tuple[float, float, float], ...] = ()
+    bumps: Bumps = ()
     points: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
@@ -117,12 +128,12 @@ class Prestress(ExplainsRemovedNames):
     def _check_points(self) -> None:
         """Raise ValueError if the points are not in order, or do not fit the other arguments."""
         check_that(not self.steps, "prestress.steps", self.steps, "none with points")
-        x, tau = self._table
-        _check_table(x)
-        for name, row in (("left", 0), ("right", -1)):
-            allowed = f"{float(tau[row])!r}, the outermost value of the points"
+        x, tau = self.point_arrays
+        _check_order(x)
+        for name, outermost in (("left", tau[0]), ("right", tau[-1])):
+            allowed = f"{float(outermost)!r}, the outermost value of the points"
             level = getattr(self, name)
-            check_that(level == tau[row], f"prestress.{name}", level, allowed)
+            check_that(level == outermost, f"prestress.{name}", level, allowed)
 
     @classmethod
     def through(
@@ -131,7 +142,7 @@ class Prestress(ExplainsRemovedNames):
         tau: Any,
         width: float | None = None,
         peak: float = 1.0,
-        bumps: tuple[tuple[float, float, float], ...] = (),
+        bumps: Bumps = (),
     ) -> Self:
         """Make a pre-stress that is linear between points, and constant before and after them.
 
@@ -184,7 +195,7 @@ class Prestress(ExplainsRemovedNames):
         prestress: str | None = None,
         width: float | None = None,
         peak: float = 1.0,
-        bumps: tuple[tuple[float, float, float], ...] = (),
+        bumps: Bumps = (),
     ) -> Self:
         """Read points from a CSV or netCDF file, and make a pre-stress as `through` does.
 
@@ -232,7 +243,7 @@ class Prestress(ExplainsRemovedNames):
         tolerance: float,
         width: float | None = None,
         peak: float = 1.0,
-        bumps: tuple[tuple[float, float, float], ...] = (),
+        bumps: Bumps = (),
     ) -> Self:
         """Sample a function, and make a pre-stress from the samples as `through` does.
 
@@ -268,13 +279,14 @@ class Prestress(ExplainsRemovedNames):
 
     def __repr__(self) -> str:
         """Show the arguments that differ from the defaults; of a long table only its length."""
-        given = []
+        shown = []
         for entry in fields(self):
             value = getattr(self, entry.name)
             if value != entry.default:
-                text = f"<{len(value)}>" if entry.name == "points" and value[8:] else repr(value)
-                given.append(f"{entry.name}={text}")
-        return f"{type(self).__name__}({', '.join(given)})"
+                is_long = entry.name == "points" and len(value) > MAX_SHOWN_POINTS
+                text = f"<{len(value)}>" if is_long else repr(value)
+                shown.append(f"{entry.name}={text}")
+        return f"{type(self).__name__}({', '.join(shown)})"
 
     @property
     def gaussians(self) -> list[tuple[float, float]]:
@@ -304,12 +316,13 @@ class Prestress(ExplainsRemovedNames):
 
     @cached_property
     def _symmetric_table(self) -> bool:
+        """True if the points are mirror images of each other, or if there are none."""
         # The order of the points matters: at a jump the two values change places.
         return self.points == tuple((-x, tau) for x, tau in reversed(self.points))
 
     @cached_property
-    def _table(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and values of the points, as two arrays."""
+    def point_arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions x and values tau of the points of a table, as two arrays."""
         x, tau = np.array(self.points).T
         return np.ascontiguousarray(x), np.ascontiguousarray(tau)
 
@@ -319,8 +332,10 @@ class Prestress(ExplainsRemovedNames):
         if self.points:
             return self._linear(x)
         level = np.where(x < 0.0, self.left, self.right)
+        # From x = 0 outwards, each step replaces the level beyond it, on its own side.
         for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
-            level = np.where(x * math.copysign(1.0, position) >= abs(position), value, level)
+            distance = x if position > 0.0 else -x
+            level = np.where(distance >= abs(position), value, level)
         return level
 
     def _linear(self, x: np.ndarray) -> np.ndarray:
@@ -329,10 +344,11 @@ class Prestress(ExplainsRemovedNames):
         Each side is computed from x = 0 outwards, so that a mirrored table gives mirrored values to
         the last bit.
         """
-        positions, values = self._table
+        positions, values = self.point_arrays
         right = np.interp(np.maximum(x, 0.0), positions, values)
         left = np.interp(np.maximum(-x, 0.0), -positions[::-1], values[::-1])
-        return np.where(x > 0.0, right, np.where(x < 0.0, left, np.maximum(left, right)))
+        # At a jump at x = 0, the larger of the two values holds.
+        return np.select([x > 0.0, x < 0.0], [right, left], np.maximum(left, right))
 
     @cached_property
     def intervals(self) -> tuple[Interval, ...]:
@@ -342,15 +358,18 @@ class Prestress(ExplainsRemovedNames):
         """
         if self.points:
             knots = [(-math.inf, self.left), *self.points, (math.inf, self.right)]
-            linear = (Interval(a, b, low, high) for (a, low), (b, high) in pairwise(knots))
-            # A jump of the table is an interval of length 0, which is left out.
-            return tuple(interval for interval in linear if interval.left < interval.right)
+            intervals = []
+            for (left, left_value), (right, right_value) in pairwise(knots):
+                # A jump of the table is an interval of length 0, which is left out.
+                if left < right:
+                    intervals.append(Interval(left, right, left_value, right_value))
+            return tuple(intervals)
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
+        # The level of an interval is that at a position inside it.
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
         levels = self.level(np.array([jumps[0] - 1.0, *middles, jumps[-1] + 1.0])).tolist()
-        ends = [-math.inf, *jumps, math.inf]
-        constant = zip(ends[:-1], ends[1:], levels, levels, strict=True)
-        return tuple(Interval(*ends_and_values) for ends_and_values in constant)
+        lefts, rights = [-math.inf, *jumps], [*jumps, math.inf]
+        return tuple(map(Interval, lefts, rights, levels, levels))
 
     @cached_property
     def interval_table(self) -> np.ndarray:
@@ -369,6 +388,21 @@ class Prestress(ExplainsRemovedNames):
         parts = {"steps": self.steps, "bumps": self.bumps}
         return json.dumps(parts | {"points": self.points} if self.points else parts)
 
+    @cached_property
+    def _equal_bumps(self) -> list[EqualBumps]:
+        """Bumps, from x = 0 outwards, where those that are mirror images are combined.
+
+        The sum of mirror images is added to the profile as a whole. A symmetric profile then has
+        symmetric values to the last bit.
+        """
+        centres_of: dict[tuple[float, float, float], list[float]] = {}
+        for centre, amplitude, width in self.bumps:
+            centres_of.setdefault((abs(centre), amplitude, width), []).append(centre)
+        return [
+            EqualBumps(amplitude, width, sorted(centres_of[distance, amplitude, width]))
+            for distance, amplitude, width in sorted(centres_of)
+        ]
+
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Return the pre-stress at positions x (units of H).
 
@@ -381,13 +415,9 @@ class Prestress(ExplainsRemovedNames):
             tau = self.peak + (tau - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps and not self.points:
             return tau
-        # Equal bumps on both sides of x = 0 are added to each other first. A mirrored profile then
-        # has mirrored values to the last bit.
-        bumps = sorted((abs(centre), *shape, centre) for centre, *shape in self.bumps)
-        for (_, amplitude, width), equal_bumps in groupby(bumps, key=itemgetter(0, 1, 2)):
-            centres = [bump[3] for bump in equal_bumps]
-            shapes = (np.exp(-0.5 * ((x - centre) / width) ** 2) for centre in centres)
-            tau = tau + sum(amplitude * shape for shape in shapes)
+        for amplitude, width, centres in self._equal_bumps:
+            gaussians = [np.exp(-0.5 * ((x - centre) / width) ** 2) for centre in centres]
+            tau = tau + sum(amplitude * gaussian for gaussian in gaussians)
         # The tail of a distant bump can move the peak away from the threshold by rounding.
         tolerance = TABLE_THRESHOLD_TOLERANCE if self.points else THRESHOLD_TOLERANCE
         return np.where(np.abs(tau - 1.0) <= tolerance, 1.0, tau)
@@ -460,6 +490,7 @@ def _column(name: str, values: Any) -> list[float]:
     except TypeError:
         size = 0
     check_that(2 <= size <= MAX_TABLE_POINTS, key, size, f"2 to {MAX_TABLE_POINTS} numbers")
+    # A check of the whole list is much faster than one of each value.
     if all(type(value) is float for value in listed) and np.all(np.isfinite(listed)):
         return listed
     for row, value in enumerate(listed, start=1):
@@ -467,14 +498,18 @@ def _column(name: str, values: Any) -> list[float]:
     return [*map(float, listed)]
 
 
-def _check_table(x: np.ndarray) -> None:
+def _check_order(x: np.ndarray) -> None:
     """Raise ValueError if positions decrease, or if more than two points have the same position."""
-    for row in (np.flatnonzero(np.diff(x) < 0.0) + 2)[:1].tolist():
-        allowed = f">= {x[row - 2]:.10g}, the x of the row before"
-        check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
-    for row in (np.flatnonzero(x[2:] == x[:-2]) + 3)[:1].tolist():
+    # Rows are counted from 1 in messages.
+    before = first_true(np.diff(x) < 0.0)
+    if before is not None:
+        allowed = f">= {x[before]:.10g}, the x of the row before"
+        raise refusal(f"prestress.points x in row {before + 2}", float(x[before + 1]), allowed)
+    first_of_three = first_true(x[2:] == x[:-2])
+    if first_of_three is not None:
+        row, position = first_of_three + 3, float(x[first_of_three + 2])
         allowed = "one x in at most 2 rows, between which the pre-stress jumps"
-        check_that(False, f"prestress.points x in row {row}", float(x[row - 1]), allowed)
+        raise refusal(f"prestress.points x in row {row}", position, allowed)
 
 
 def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:

@@ -5,12 +5,12 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from html import escape
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
-from .checks import check_choice, check_kind, check_number, check_that, short_repr
+from .checks import check_choice, check_kind, check_number, check_that, refusal, short_repr
 from .friction import COULOMB, Friction, friction_from
 from .prestress import Prestress, attributes_of, prestress_from
 from .recorded_law import read_recorded_law
@@ -34,7 +34,11 @@ CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "orde
 
 
 def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
-    """Add the argument ``damping_ratio`` to the class `Scene`, as an alternative to ``beta``."""
+    """Add the argument ``damping_ratio`` to the class `Scene`, as an alternative to ``beta``.
+
+    The dataclass itself has no such field. The new ``__init__`` converts the argument to ``beta``,
+    and calls the one that the dataclass has made.
+    """
     initialise_fields = scene.__init__
     signature = inspect.signature(initialise_fields)
 
@@ -42,9 +46,13 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
     def initialise(
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
-        for name in values.keys() - signature.parameters:
+        """Convert damping_ratio to beta, and call the initialiser of the dataclass."""
+        unknown_names = values.keys() - signature.parameters
+        for name in unknown_names:
             refuse_removed_argument("Scene", name)
-        arguments = signature.bind_partial(self, *given, **values).arguments
+        # The arguments by name, including those that were given by position.
+        bind = partial(signature.bind_partial, self, *given)
+        arguments = bind(**values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
@@ -210,6 +218,11 @@ class Scene:
             object.__setattr__(self, name, number_type(getattr(self, name)))
         if self.scheme == "continuum":
             refuse_extra_terms(vars(self), "with scheme 'continuum', which has no extra terms")
+        self._check_profile()
+        self._check_step()
+
+    def _check_profile(self) -> None:
+        """Raise ValueError if the lattice does not resolve the pre-stress, or would be too long."""
         width, allowed = self.prestress.width, f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
@@ -220,7 +233,6 @@ class Scene:
         for centre, _, width in self.prestress.bumps:
             reach = abs(centre) + 4.0 * width
             check_number("prestress.bumps reach", reach, at_most=max_reach)
-        self._check_step()
 
     def _check_physics(self) -> None:
         """Raise ValueError if gamma or the friction law does not fit the other parameters."""
@@ -309,10 +321,11 @@ class Scene:
         is_mapping = hasattr(attributes, "keys")
         check_that(is_mapping, "attributes", attributes, "a mapping of names to values")
         try:
-            # Numbers from a netCDF file have types of numpy; `item` converts them.
-            values = {name: getattr(v, "item", lambda v=v: v)() for name, v in attributes.items()}
             # Files from before the program knew an extra term do not have it.
-            values = DEFAULTS_OF_EXTRA_TERMS | values
+            values: dict[str, Any] = {**DEFAULTS_OF_EXTRA_TERMS}
+            for name, value in attributes.items():
+                # Numbers from a netCDF file have types of numpy.
+                values[name] = value.item() if hasattr(value, "item") else value
             values["friction"] = friction_from(read_recorded_law(values))
             values["prestress"] = prestress_from(values)
             check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
@@ -373,7 +386,7 @@ def refuse_extra_terms(values: Mapping, condition: str) -> None:
     condition : when no extra term is allowed, as the end of the message
     """
     for name, value in used_extra_terms(values).items():
-        check_that(False, name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
+        raise refusal(name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
 
 
 def gamma_without_extra_terms(attributes: Mapping) -> float:

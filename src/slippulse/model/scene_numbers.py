@@ -44,5 +44,5 @@ def number(
 
 def definitions_of(scene: type) -> dict[str, NumberDefinition]:
     """Return the definitions of all numbers of a dataclass by name."""
-    found = {item.name: item.metadata.get("definition") for item in fields(scene)}
-    return {name: definition for name, definition in found.items() if definition is not None}
+    definitions = {item.name: item.metadata.get("definition") for item in fields(scene)}
+    return {name: definition for name, definition in definitions.items() if definition is not None}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .checks import check_that
+from .checks import first_true, refusal
 from .prestress import Prestress
 
 # The loss of a point is the amount by which its value lies outside the range of the pre-stress at
@@ -15,14 +15,16 @@ MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
     """Raise ValueError if the blocks miss variations of the table, or a point that reaches 1."""
-    x, tau = np.array(prestress.points).T
-    block = x / dx
+    x, tau = prestress.point_arrays
+    in_spacings = x / dx
     # For each point: the block on its left, the nearest one, and the block on its right.
-    neighbours = dx * np.array([np.ceil(block) - 1.0, np.round(block), np.floor(block) + 1.0])
-    released = np.any(prestress(neighbours) >= 1.0, axis=0)
-    for row in np.flatnonzero((tau >= 1.0) & ~released)[:1].tolist():
+    left, right = np.ceil(in_spacings) - 1.0, np.floor(in_spacings) + 1.0
+    neighbours = dx * np.array([left, np.round(in_spacings), right])
+    is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
+    missed = first_true((tau >= 1.0) & ~is_released)
+    if missed is not None:
         allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
-        check_that(False, f"prestress.points {tau[row]:g} at x", float(x[row]), allowed)
+        raise refusal(f"prestress.points {tau[missed]:g} at x", float(x[missed]), allowed)
     at_blocks = prestress.level(neighbours)
     above = np.maximum(tau - at_blocks.max(axis=0), 0.0)
     below = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
@@ -34,4 +36,4 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
         allowed = (
             f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
         )
-        check_that(False, key, float(x[worst]), allowed)
+        raise refusal(key, float(x[worst]), allowed)

@@ -49,7 +49,8 @@ def plot(run: xr.Dataset) -> Picture:
     Raises
     ------
     TypeError
-        If `run` is not such a Dataset. `slippulse.point` takes one run out of a sweep.
+        If `run` is not such a Dataset. `slippulse.point` takes one run out of a sweep, which can be
+        drawn if the sweep was recorded with ``record=("fronts", "fields")``.
     ValueError
         If an attribute of the run is invalid.
 
@@ -61,15 +62,27 @@ def plot(run: xr.Dataset) -> Picture:
     >>> samples = sp.Samples(np.linspace(0.0, 8.0, 81), np.linspace(-9.0, 9.0, 181))
     >>> figure = sp.plot(sp.simulate(scene, samples))
     """
-    is_run = isinstance(run, xr.Dataset) and "end_time" in run.attrs
-    if not is_run or not all(name in run and run[name].dims == ("x",) for name in DRAWN_VARIABLES):
-        raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
+    _check_drawable(run)
     layer = layer_of(run.attrs)
     if layer is not None:
         run = layer.from_si(run)
     check_run_attributes(run.attrs)
     with house_style():
         return _draw(run, layer)
+
+
+def _check_drawable(run: object) -> None:
+    """Raise TypeError, with what to do, unless the argument is one run with all drawn variables."""
+    name, allowed = type(run).__name__, "a Dataset that simulate returned"
+    if isinstance(run, xr.Dataset) and {"point", "block"} & {*run.dims}:
+        name, allowed = "a sweep", "one run of it, such as point(sweep, 0)"
+    elif isinstance(run, xr.Dataset) and "end_time" in run.attrs:
+        missing = [name for name in DRAWN_VARIABLES if name not in run or run[name].dims != ("x",)]
+        if not missing:
+            return
+        name = f"without {', '.join(missing)}"
+        allowed = "a run with these, which a sweep has if record is ('fronts', 'fields')"
+    raise TypeError(f"run: {name}; allowed: {allowed}")
 
 
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:

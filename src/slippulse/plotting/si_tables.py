@@ -36,16 +36,19 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     ]
     table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
     table = table if "unit" in table else table.assign(unit="")
+    # Units of the axes, by column or quantity.
     units = {}
     for column, quantity in COLUMN_QUANTITIES.items():
         numbers = layer.convert_to_si(table[column], quantity)
         unit = readable_unit(quantity, numbers)
         table[column], units[column] = numbers / unit.value, unit.text
+    # The quantity in the column `value` of each row, NaN for a dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
-    on_axes = table["role"].isin(AXIS_ROLES)
-    for quantity, rows in table[on_axes].groupby(quantities[on_axes]):
+    is_on_axis = table["role"].isin(AXIS_ROLES)
+    for quantity, rows in table[is_on_axis].groupby(quantities[is_on_axis]):
         units[str(quantity)] = _convert_values(table, rows.index, str(quantity), layer)
-    for index in table.index[(table["role"] == "parameter") & quantities.notna()]:
+    is_parameter = (table["role"] == "parameter") & quantities.notna()
+    for index in table.index[is_parameter]:
         # Each parameter has its own prefix.
         _convert_values(table, pd.Index([index]), quantities[index], layer)
     unit = readable_unit("length", layer.thickness)

@@ -122,13 +122,22 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     rows = spaced_indices(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
     # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
-    kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.nanmax(velocity)))))
+    largest_velocity = np.nanmax(velocity)
+    decimals = 4 - int(np.floor(np.log10(largest_velocity)))
+    kept = velocity[np.ix_(rows, columns)].round(decimals)
     # Samples that are 0 are left out, except in the first row and column, which define the grid.
-    written = kept != 0.0
-    written[0], written[:, 0] = True, True
-    grid = {"time": time[written], "position": position[written], "value": kept[written]}
-    largest = pd.DataFrame([{"role": "largest", "value": np.nanmax(velocity)}])
-    return pd.concat([pd.DataFrame({"role": "map", **grid}), largest])
+    is_written = kept != 0.0
+    is_written[0], is_written[:, 0] = True, True
+    grid = pd.DataFrame(
+        {
+            "role": "map",
+            "time": time[is_written],
+            "position": position[is_written],
+            "value": kept[is_written],
+        }
+    )
+    largest = pd.DataFrame([{"role": "largest", "value": largest_velocity}])
+    return pd.concat([grid, largest])
 
 
 def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
@@ -153,12 +162,15 @@ def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
 
     The stick time is NaN for blocks that did not stick.
     """
-    x = run["x"].values
     slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = np.union1d(slipped[spaced_indices(slipped.size, FRONT_POINTS)], slipped[-1:])
+    spaced = slipped[spaced_indices(slipped.size, FRONT_POINTS)]
+    # The last block is kept as well, so that the front is drawn to its end.
+    kept = np.union1d(spaced, slipped[-1:])
+    x = run["x"].values[kept]
+    release, stick = run["release_time"].values[kept], run["stick_time"].values[kept]
     return [
-        pd.DataFrame({"role": role, "position": x[kept], "time": run[edge].values[kept]})
-        for role, edge in (("front", "release_time"), ("trailing", "stick_time"))
+        pd.DataFrame({"role": "front", "position": x, "time": release}),
+        pd.DataFrame({"role": "trailing", "position": x, "time": stick}),
     ]
 
 
@@ -184,16 +196,15 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
         "color": GREY,
         "fontsize": SMALL_TEXT,
         "path_effects": TEXT_OUTLINE,
+        "transform": axes.get_xaxis_transform(),
     }
-    look["transform"] = axes.get_xaxis_transform()
     # Both names are written between the two lines, at different heights.
-    places: list[Look] = [
-        {"y": 0.98, "ha": "left", "va": "top"},
-        {"y": 0.02, "ha": "right", "va": "bottom"},
-    ]
-    for strength, place in zip(rows.sort_values("value").itertuples(), places, strict=True):
+    kinetic_look = look | {"y": 0.98, "ha": "left", "va": "top"}
+    static_look = look | {"y": 0.02, "ha": "right", "va": "bottom"}
+    kinetic, static = rows.sort_values("value").itertuples()
+    for strength, text_look in ((kinetic, kinetic_look), (static, static_look)):
         axes.axvline(strength.value, color=GREY, linewidth=0.6, linestyle=":")
-        axes.text(x=strength.value, s=strength.series, **place, **look)
+        axes.text(x=strength.value, s=strength.series, **text_look)
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:

@@ -54,18 +54,21 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
         row["pulse_state"] = pulse_state(run, pulse)
         row["pulse_shape_deviation"] = shape_deviation(run, pulse, row.get("level_ahead_right"))
     if "transition_time" in row:
-        if run.attrs["boundary"] == "displacement":
-            left, right = run.attrs["left"], run.attrs["right"]
-            paper = paper_transition_displacement(left, run.attrs["gamma"])
-            if left != right:
-                # In the paper's formulas the length depends on the level, but the time does not.
-                paper = paper[0], math.nan
-        else:
-            paper = paper_transition_stress(prestress_from(run.attrs))
-        if used_extra_terms(run.attrs):
-            paper = math.nan, math.nan
-        row["paper_transition_time"], row["paper_transition_length"] = paper
+        time, length = _paper_transition(run)
+        row["paper_transition_time"], row["paper_transition_length"] = time, length
     return row
+
+
+def _paper_transition(run: AnyRun) -> tuple[float, float]:
+    """Return T_trans and L_trans by the paper's formulas; NaN where these do not hold."""
+    if used_extra_terms(run.attrs):
+        return math.nan, math.nan
+    if run.attrs["boundary"] == "stress":
+        return paper_transition_stress(prestress_from(run.attrs))
+    left, right = run.attrs["left"], run.attrs["right"]
+    time, length = paper_transition_displacement(left, run.attrs["gamma"])
+    # The length depends on the level of pre-stress, but the time does not.
+    return time, length if left == right else math.nan
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
@@ -84,13 +87,26 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     has_exact_pulse = is_coulomb and not used_extra_terms(run.attrs)
     if not np.isfinite([pulse.width, pulse.speed]).all() or not has_exact_pulse:
         return "none"
-    _, distances = front_path(run)
-    block_at_front = np.argmin(np.abs(np.asarray(run["x"]) - distances[-1]))
-    tau = float(np.asarray(run["prestress"])[block_at_front])
+    tau = _prestress_at_front(run)
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:
         return "unsteady"
+    return _compare_with_steady_pulse(run, pulse, tau)
+
+
+def _prestress_at_front(run: AnyRun) -> float:
+    """Return the pre-stress of the last block that was released on the right."""
+    _, distances = front_path(run)
+    block_at_front = np.argmin(np.abs(np.asarray(run["x"]) - distances[-1]))
+    return float(np.asarray(run["prestress"])[block_at_front])
+
+
+def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> str:
+    """Return "steady", "unsteady" or "thick_front" for a pulse with a front faster than the waves.
+
+    The pulse is compared with the steady one at the pre-stress tau and the measured speed.
+    """
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
     layer = beta * pulse.speed / (pulse.speed**2 - 1.0)

@@ -56,5 +56,7 @@ def _acceleration(pulse: SteadyPulse) -> float:
     """
     nodes, weights = np.polynomial.legendre.leggauss(32)
     xi = -0.5 * pulse.width * (1.0 + nodes)
-    shape = np.cos(np.pi * xi / pulse.width)
-    return float(np.sum(weights * pulse.profile(xi)[2] * shape) / np.sum(weights * shape**2))
+    half_wave = np.cos(np.pi * xi / pulse.width)
+    acceleration = pulse.profile(xi).acceleration
+    projection = np.sum(weights * acceleration * half_wave)
+    return float(projection / np.sum(weights * half_wave**2))

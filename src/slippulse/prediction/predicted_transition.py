@@ -35,19 +35,34 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
     """Return one row of `predictions`."""
+    if run.boundary == "displacement":
+        return _row_under_displacement(run)
+    return _row_under_stress(run, fraction)
+
+
+def _gaussian_width(profile: Prestress) -> float | None:
+    """Return the width of a profile that is a single Gaussian; None for any other profile."""
+    has_parts = profile.steps or profile.bumps or profile.points
+    return profile.width if profile.peak == 1.0 and not has_parts else None
+
+
+def _row_under_displacement(run: Run) -> dict[str, float]:
+    """Return the numbers of the first stick of a single Gaussian between equal levels."""
+    profile = run.prestress
+    if not (_gaussian_width(profile) and profile.left == profile.right > 0.0):
+        return {**NO_TRANSITION}
+    find_stick = partial(_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release)
+    return NO_TRANSITION | value_or(find_stick, NO_TRANSITION)
+
+
+def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
+    """Return the balance distance and, for a single Gaussian, the numbers of the arrest."""
     row = {**NO_TRANSITION}
     profile, ratio = run.prestress, rounded_damping_ratio(run)
-    # The theory needs a profile of a single Gaussian. The balance position needs none.
-    has_parts = profile.steps or profile.bumps or profile.points
-    width = profile.width if profile.peak == 1.0 and not has_parts else None
-    if run.boundary == "displacement":
-        if width and profile.left == profile.right > 0.0:
-            arguments = profile, run.gamma, ratio, run.release
-            row |= value_or(lambda: _first_stick(*arguments), NO_TRANSITION)
-        return row
     if far_level(run, "left") < 0.0 == far_level(run, "right"):
         balance_position = value_or_nan(partial(prestress_balance_position, profile))
         row["exact_balance_distance"] = -balance_position
+    width = _gaussian_width(profile)
     if width and profile.left < 0.0 == profile.right:
         find_arrest = partial(_arrest, profile.left, ratio, run.release, fraction)
         for_unit_width = value_or(find_arrest, NO_TRANSITION)

@@ -182,13 +182,13 @@ def _nucleation_width(prestress: Prestress) -> float:
     Like the width W of a Gaussian, it is the distance at which the pre-stress above the far level
     has fallen to exp(-1/2) of its maximum.
     """
-    x, tau = np.array(prestress.points).T
-    start, outside = int(np.argmax(tau)), max(prestress.left, prestress.right)
+    x, tau = prestress.point_arrays
+    start, far_level = int(np.argmax(tau)), max(prestress.left, prestress.right)
     if tau[start] < 1.0:
         return math.inf
-    fallen = x[tau <= outside + math.exp(-0.5) * (tau[start] - outside)]
-    ahead = np.abs(fallen - x[start])
-    return float(np.min(ahead[ahead > 0.0], initial=math.inf))
+    has_fallen = tau <= far_level + math.exp(-0.5) * (tau[start] - far_level)
+    distances = np.abs(x[has_fallen] - x[start])
+    return float(np.min(distances[distances > 0.0], initial=math.inf))
 
 
 def _spacings_with_springs(demand: Demand) -> list[float]:
@@ -225,7 +225,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
     """Return the distances from the nucleation at which the pre-stress falls to 0, if it does."""
     if prestress.points:
-        x, tau = np.array(prestress.points).T
+        x, tau = prestress.point_arrays
         start = 0.0 if prestress.width is not None else x[np.argmax(tau)]
         negative = np.abs(x[tau < 0.0] - start)
         return [float(np.min(negative))] if negative.size else []

@@ -37,14 +37,15 @@ def solve_exactly(
     # Without a nucleation everything stays at rest.
     rupture = exact_rupture(scene) if nucleation_intervals(scene.prestress) else None
     # The positions are the multiples of dx in the part that is released, and a margin.
-    ends = [end.x for pair in rupture.front_ends for end in pair] if rupture else [0.0]
-    first, last = min(ends), max(ends)
+    first, last = 0.0, 0.0
+    if rupture:
+        left_ends, right_ends = zip(*rupture.front_ends, strict=True)
+        first = min(end.x for end in left_ends)
+        last = max(end.x for end in right_ends)
     check_number("dx", scene.dx, at_least=(last - first) / MAX_POSITIONS)
-    start, end = (
-        math.floor(first / scene.dx) - MARGIN_BLOCKS,
-        math.ceil(last / scene.dx) + MARGIN_BLOCKS,
-    )
-    x = np.arange(start, end + 1) * scene.dx
+    first_block = math.floor(first / scene.dx) - MARGIN_BLOCKS
+    last_block = math.ceil(last / scene.dx) + MARGIN_BLOCKS
+    x = np.arange(first_block, last_block + 1) * scene.dx
     fields = _fields(rupture, x, scene.duration)
     numbers = _numbers(rupture, fields, scene.duration)
     recorded = _sampled(rupture, samples) if samples is not None else {}
@@ -98,8 +99,8 @@ def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float)
             "releases": int(np.isfinite(fields["release_time"]).sum()),
             "sticks": int(np.isfinite(fields["stick_time"]).sum()),
             "min_velocity": 0.0,
-            "first_stick_time": stick[0] if stick else math.nan,
-            "first_stick_position": stick[1] if stick else math.nan,
+            "first_stick_time": stick.time if stick else math.nan,
+            "first_stick_position": stick.x if stick else math.nan,
             "limit_position": limit.x if limit else math.nan,
             "limit_time": limit.time if limit else math.nan,
             "limit_reason": limit.reason if limit else "",

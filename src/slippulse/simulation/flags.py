@@ -58,8 +58,8 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
             # This form of the condition also flags a residual that is NaN.
             "energy": not numbers["energy_residual"] <= MAX_ENERGY_RESIDUAL,
         }
-    names = [*filter(flags.get, flags), *solution.flags]
-    return {"pulse_blocks": blocks, "run_flags": ",".join(names)}
+    raised = [name for name, is_raised in flags.items() if is_raised]
+    return {"pulse_blocks": blocks, "run_flags": ",".join([*raised, *solution.flags])}
 
 
 def lowest_stress(scene: Scene, solution: Solution) -> float:
@@ -81,10 +81,11 @@ def first_stick_undone(scene: Scene, solution: Solution) -> bool:
 
 
 def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
-    """Return True if waves of a few blocks may have stopped the first block, just behind a front.
+    """Return True if the first stick may be due to waves of a few blocks just behind a front.
 
-    The front must be slow and the damping weak. In the continuum another position sticks first, and
-    later. Under a stress boundary, only a rupture between two negative levels sticks at all.
+    The front must be held back by negative pre-stress, and the damping must be weak. In the
+    continuum another position sticks first, at a later time. Under a stress boundary, only a
+    rupture between two negative levels sticks at all.
     """
     numbers, profile = solution.numbers, scene.prestress
     time, position = numbers["first_stick_time"], numbers["first_stick_position"]
@@ -93,10 +94,12 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
         return False
     if first_stick_undone(scene, solution):
         return False
+    # Distance of the front from x = 0 at the first stick, on the side of this stick.
     side = math.copysign(1.0, position)
     front = np.max(side * solution.x, where=solution.release_time <= time, initial=0.0)
     is_held_back = bool(profile(side * front) < 0.0)
-    return is_held_back and front - abs(position) <= MAX_BLOCKS_BEHIND_FRONT * scene.dx
+    distance_to_front = front - abs(position)
+    return is_held_back and distance_to_front <= MAX_BLOCKS_BEHIND_FRONT * scene.dx
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:

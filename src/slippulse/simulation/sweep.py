@@ -1,6 +1,6 @@
 """Solutions as Datasets: of one scene, or of many scenes that are solved in threads and joined."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from threading import Event
 
@@ -35,35 +35,49 @@ def solve_sweep(
     results: dict[int, Recorded] = {}
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
     stopped = Event()
+    report = progress if progress is not None else _ignore_progress
 
-    def check(done: float) -> None:
+    def check(fraction_done: float) -> None:
+        """Raise SweepStopped if the sweep was stopped; report the progress of a single scene."""
         if stopped.is_set():
             raise SweepStopped
-        if progress is not None and len(scenes) == 1:
-            progress(done, 1)
+        if len(scenes) == 1:
+            report(fraction_done, 1)
 
     def solve_one(i: int) -> None:
+        """Solve the scene of this number and keep its solution."""
         results[i] = recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
 
     # Exact solutions are computed in Python, which runs only one thread at a time. The main thread
     # solves them itself, because only the main thread can be interrupted at once.
-    in_main_thread = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
+    is_exact = any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
-            # Items are None if this thread solves the scenes, and futures if the pool does.
-            finished: Iterable = map(solve_one, order)
-            if not in_main_thread:
-                finished = as_completed([pool.submit(solve_one, i) for i in order])
-            for count, future in enumerate(finished, start=1):
-                if future is not None:
-                    future.result()
-                if progress is not None:
-                    progress(count, len(scenes))
+            finished = _solve_all(solve_one, order, None if is_exact or threads == 1 else pool)
+            for count, _ in enumerate(finished, start=1):
+                report(count, len(scenes))
         except BaseException:
             stopped.set()
             pool.shutdown(cancel_futures=True)
             raise
     return combine([results[i] for i in range(len(scenes))], record)
+
+
+def _solve_all(
+    solve_one: Callable[[int], None], order: Sequence[int], pool: ThreadPoolExecutor | None
+) -> Iterator[None]:
+    """Solve scenes by their numbers, in a pool or in this thread, and yield after each of them."""
+    if pool is None:
+        yield from map(solve_one, order)
+        return
+    futures = [pool.submit(solve_one, i) for i in order]
+    for future in as_completed(futures):
+        # This raises the error of a scene, if there was one.
+        yield future.result()
+
+
+def _ignore_progress(done: float, total: int) -> None:
+    """Do nothing; it takes the place of a function that reports progress."""
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:

@@ -13,7 +13,9 @@ import numpy as np
 from ..model.friction_laws.law import LawKink
 
 # Rows of `Motion.w`: time derivatives of slip.
-SLIP, VELOCITY, ACCELERATION = 0, 1, 2
+SLIP = 0
+VELOCITY = 1
+ACCELERATION = 2
 # At the end of a step, row 2 holds the change of slip in the step instead.
 SLIP_INCREMENT = 2
 

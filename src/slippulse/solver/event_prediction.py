@@ -41,26 +41,28 @@ def find_crossing(coefficients, degree, lower, upper):
 
     If rounding hides the change of sign at the upper time, the result is the upper time.
     """
-    start = evaluate_polynomial(coefficients, degree, lower)
-    end = evaluate_polynomial(coefficients, degree, upper)
-    rising = start < 0.0
+    at_lower = evaluate_polynomial(coefficients, degree, lower)
+    at_upper = evaluate_polynomial(coefficients, degree, upper)
+    is_rising = at_lower < 0.0
+    # Start from linear interpolation, or from the middle if the sign does not change.
     root = 0.5 * (lower + upper)
-    if (end > 0.0) == rising and end != start:
-        root = lower + (upper - lower) * start / (start - end)
+    if (at_upper > 0.0) == is_rising and at_upper != at_lower:
+        root = lower + (upper - lower) * at_lower / (at_lower - at_upper)
     # Newton's method converges quadratically: after a step of 1e-9 the root is exact to rounding.
-    close = NEWTON_TOLERANCE * upper
+    tolerance = NEWTON_TOLERANCE * upper
     for _ in range(MAX_NEWTON_STEPS):
+        # Horner's rule for the value and the slope of the polynomial.
         value = coefficients[degree]
-        change = 0.0
+        slope = 0.0
         for k in range(degree - 1, -1, -1):
-            change = value + root * change
+            slope = value + root * slope
             value = coefficients[k] + root * value
-        if (value > 0.0) == rising:
+        if (value > 0.0) == is_rising:
             upper = root
         else:
             lower = root
-        candidate = root - value / change if change != 0.0 else upper
-        if abs(candidate - root) <= close or upper - lower <= close:
+        candidate = root - value / slope if slope != 0.0 else upper
+        if abs(candidate - root) <= tolerance or upper - lower <= tolerance:
             return min(max(candidate, lower), upper)
         root = candidate if lower < candidate < upper else 0.5 * (lower + upper)
     return root
@@ -74,11 +76,9 @@ def find_turning_point(coefficients, slopes, degree, lower, upper):
     """
     for k in range(degree):
         slopes[k] = (k + 1) * coefficients[k + 1]
-    if (
-        evaluate_polynomial(slopes, degree - 1, lower)
-        * evaluate_polynomial(slopes, degree - 1, upper)
-        < 0.0
-    ):
+    at_lower = evaluate_polynomial(slopes, degree - 1, lower)
+    at_upper = evaluate_polynomial(slopes, degree - 1, upper)
+    if at_lower * at_upper < 0.0:
         return find_crossing(slopes, degree - 1, lower, upper)
     return upper
 
@@ -111,17 +111,19 @@ def predict_release(medium, motion, prediction, block, now, h, top):
     curvature = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     slip = w[SLIP, block] + offset[block]
     elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.inverse_dx2 * curvature
-    # The stress minus 1 is a polynomial of the time since the step began.
+    # The stress minus 1 is a polynomial of the time since the step began. The block is at rest, so
+    # that its terms come from the time derivatives of the slip of its two neighbours.
     coefficients = prediction.coefficients
     coefficients[0] = elastic - medium.leaf_stiffness * slip + motion.tau[block] - 1.0
-    scale, damping = 1.0, 0.0
+    inverse_factorial, damping = 1.0, 0.0
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
     for k in range(1, top + 1):
         neighbours = w[k, block - 1] + w[k, block + 1]
-        coefficients[k - 1] += scale * damping * neighbours
-        scale *= RECIPROCALS[k]
-        coefficients[k] = scale * medium.inverse_dx2 * neighbours
+        # The damping force contains the velocity, whose derivative k - 1 is derivative k of slip.
+        coefficients[k - 1] += inverse_factorial * damping * neighbours
+        inverse_factorial *= RECIPROCALS[k]
+        coefficients[k] = inverse_factorial * medium.inverse_dx2 * neighbours
     excess = evaluate_polynomial(coefficients, top, now)
     if excess >= 0.0:
         return now, excess + 1.0
@@ -157,8 +159,8 @@ def predict_releases(medium, motion, segments, prediction, first, last, now, h):
 @inlined_kernel
 def find_next_event(segments, prediction):
     """Return the earliest predicted event. Its time is inf if there is none."""
-    block, is_stick, is_law_kink = -1, False, False
-    earliest = math.inf
+    block, earliest = -1, math.inf
+    is_stick = is_law_kink = False
     for r in range(segments.count.n):
         for edge in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
             if prediction.release_time[edge] < earliest:
@@ -177,9 +179,10 @@ def has_simultaneous_event(segments, prediction, medium, block, latest):
 
     Its own mirror image counts as well. Such events must happen together.
     """
+    # Two events interact if the blocks that they change overlap or are neighbours.
     near = 2 * EVENT_REACH + 1
-    # The change at the axis is symmetric. The slopes of friction of the mirror images, however, are
-    # not stored, so a kink of the law counts block 1 as its own mirror image.
+    # Block 1 on the axis is its own mirror image, and does not interact with itself. The slopes of
+    # friction of the mirror images, however, are not stored, so with a kink of the law it counts.
     nearest = 2 if medium.law_kink is None else 1
     others = 1 if medium.is_mirrored and nearest <= block <= 1 + EVENT_REACH else 0
     for r in range(segments.count.n):
@@ -206,29 +209,31 @@ def list_due_releases(segments, prediction, latest, due):
 
 
 @kernel_function()
-def predict_stick(coefficients, slopes, degree, after, now, h):
+def predict_stick(coefficients, slopes, degree, velocity_after, now, h):
     """Return the time until h at which a velocity falls below 0, inf if it does not.
 
-    ``after`` is the velocity at h.
+    The coefficients are those of the velocity. ``velocity_after`` is the velocity at h.
     """
-    before = evaluate_polynomial(coefficients, degree, now)
-    if after >= 0.0:
-        if after <= ROUNDING_TOLERANCE:
+    velocity_now = evaluate_polynomial(coefficients, degree, now)
+    if velocity_after >= 0.0:
+        if velocity_after <= ROUNDING_TOLERANCE:
             # If a block was released just before the end of the step, its acceleration is 0 apart
             # from rounding.
-            if abs(before) <= ROUNDING_TOLERANCE:
+            if abs(velocity_now) <= ROUNDING_TOLERANCE:
                 return math.inf
             return find_crossing(coefficients, degree, now, h)
+        # The velocity may be negative for a part of the step, around its minimum.
         turn = find_turning_point(coefficients, slopes, degree, now, h)
         if evaluate_polynomial(coefficients, degree, turn) >= -ROUNDING_TOLERANCE:
             return math.inf
         return find_crossing(coefficients, degree, now, turn)
-    if before <= ROUNDING_TOLERANCE:
+    if velocity_now <= ROUNDING_TOLERANCE:
         turn = find_turning_point(coefficients, slopes, degree, now, h)
         if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
-            # The block is released at this instant: the zero at the start is its release.
+            # The block is released at this instant: the zero at the start is its release, and the
+            # velocity falls to 0 again after its maximum.
             return find_crossing(coefficients, degree, turn, h)
-    return find_crossing(coefficients, degree, now, h) if before > 0.0 else now
+    return find_crossing(coefficients, degree, now, h) if velocity_now > 0.0 else now
 
 
 @kernel_function(inline=True)
@@ -241,6 +246,7 @@ def predict_sticks(motion, prediction, first, last, suspects, now, h, top):
     w, velocity = motion.w, motion.velocity
     coefficients = prediction.coefficients
     for i in range(first, last):
+        # A velocity that is negative only for a part of the step shows it in its tangent.
         if velocity[i] >= 0.0 and w[VELOCITY, i] + h * w[ACCELERATION, i] >= 0.0:
             continue
         if not math.isfinite(velocity[i]):
@@ -278,7 +284,11 @@ def predict_law_kink(coefficients, slopes, degree, now, h):
 
 @kernel_function(inline=True)
 def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
-    """Predict until time h when the blocks first..last-1 reach the kink of their law."""
+    """Predict until time h when the blocks first..last-1 reach the kink of their law.
+
+    The polynomial is the slip or slip rate minus its value at the kink. It is multiplied by -1 for
+    a block that is beyond the kink, so that it rises to 0 in either direction.
+    """
     if law_kink is not None:
         w, coefficients = motion.w, prediction.coefficients
         degree = top - law_kink.rate
@@ -288,9 +298,8 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
             # its tangent, as in `predict_sticks`.
             after = sign
             if law_kink.rate == 1:
-                farthest = max(
-                    sign * motion.velocity[i], sign * (w[VELOCITY, i] + h * w[ACCELERATION, i])
-                )
+                tangent_after = w[VELOCITY, i] + h * w[ACCELERATION, i]
+                farthest = max(sign * motion.velocity[i], sign * tangent_after)
                 after = farthest - sign * law_kink.end
             if after < 0.0:
                 continue
@@ -298,8 +307,8 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
             for k in range(degree + 1):
                 coefficients[k] = factor * w[k + law_kink.rate, i]
                 factor *= RECIPROCALS[k + 1]
-            reached = motion.slip_at_release[i] + law_kink.end
-            coefficients[0] -= sign * (reached if law_kink.rate else reached - motion.offset[i])
+            at_kink = motion.slip_at_release[i] + law_kink.end
+            coefficients[0] -= sign * (at_kink if law_kink.rate else at_kink - motion.offset[i])
             root = predict_law_kink(coefficients, prediction.slopes, degree, now, h)
             if root < math.inf:
                 n = prediction.event_count.n
@@ -311,10 +320,12 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
 @kernel_function(inline=True)
 def drop_predicted_events(prediction, first, last):
     """Drop the predicted sticks and kinks of the blocks first..last-1."""
-    block, time, is_law_kink = prediction.event_block, prediction.event_time, prediction.is_law_kink
+    block, time = prediction.event_block, prediction.event_time
+    is_law_kink = prediction.is_law_kink
     kept = 0
     for q in range(prediction.event_count.n):
         if not first <= block[q] < last:
-            block[kept], time[kept], is_law_kink[kept] = block[q], time[q], is_law_kink[q]
+            block[kept], time[kept] = block[q], time[q]
+            is_law_kink[kept] = is_law_kink[q]
             kept += 1
     prediction.event_count.n = kept

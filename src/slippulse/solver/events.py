@@ -63,11 +63,13 @@ def velocity_at(w, i, top, s):
 def start_sliding(centre, medium, motion, block, now, top):
     """Release a block at the time ``now``, and return its friction.
 
-    ``centre`` receives the time derivatives of its slip.
+    ``centre`` receives the time derivatives of its slip at that time.
     """
     w, offset = motion.w, motion.offset
     strain = motion.strain
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
+    # The equation of motion of the block at the start of the step, with the changes of slip by
+    # earlier events of the step (offset). The block itself does not move yet.
     curvature = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     elastic = (strain[block] - strain[block - 1]) / medium.dx + inverse_dx2 * curvature
     force = elastic + motion.tau[block]
@@ -75,7 +77,8 @@ def start_sliding(centre, medium, motion, block, now, top):
     centre[ACCELERATION] = force + damping * (w[VELOCITY, block - 1] + w[VELOCITY, block + 1])
     friction = begin_weakening(motion, medium.law_kink, block)
     centre[ACCELERATION] -= friction
-    # The shift in time from the start of the step needs two more derivatives than the step keeps.
+    # Its higher time derivatives contain only those of the two neighbours. The shift to the time of
+    # the event needs two more derivatives than the step keeps.
     for k in range(1, top + 1):
         centre[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
@@ -88,13 +91,14 @@ def start_sliding(centre, medium, motion, block, now, top):
 def hold_block(centre, w, offset, block, now, top):
     """Stop a block at the time ``now``, and return the velocity that it had.
 
-    ``centre`` receives minus the time derivatives of its slip.
+    ``centre`` receives minus the time derivatives of its slip at that time, from derivative 2 on.
     """
     centre[SLIP] = 0.0
     for k in range(1, top + 1):
         centre[k] = w[k, block]
         w[k, block] = 0.0
     shift_polynomial(centre, np.int64(0), top, top, now)
+    # The slip since the start of the step remains, although the polynomial of the block is now 0.
     offset[block] += centre[SLIP]
     for k in range(2, top + 1):
         centre[k] = -centre[k]
@@ -132,9 +136,11 @@ def change_weakening(centre, motion, law_kink, block, now, top):
 def spread_difference(difference, medium, motion, event, left, right, top):
     """Compute the derivatives of the difference from its derivatives at the centre.
 
-    The numbers of sliding blocks to the left and to the right of the event limit its reach.
+    ``left`` and ``right`` are the numbers of adjacent sliding blocks on each side of the event,
+    which limit its reach.
     """
     rows, centre = difference.rows, difference.centre
+    # Column p of the difference is the block p + column of the lattice.
     column = np.uint64(event.block) - np.uint64(CENTRE_COLUMN)
     for k in range(2, top + 1):
         for p in range(np.uint64(COLUMN_COUNT)):
@@ -153,7 +159,10 @@ def spread_difference(difference, medium, motion, event, left, right, top):
 
 @kernel_function(inline=True)
 def evaluate_difference(out, rows, lowest, top, s):
-    """Compute derivative ``lowest`` of the difference at time s, in all columns except the last."""
+    """Compute derivative ``lowest`` of the difference at a time s after the event, in ``out``.
+
+    The last column, a block at rest, is left out.
+    """
     columns = np.uint64(COLUMN_COUNT - 1)
     for p in range(columns):
         out[p] = rows[top, p]
@@ -165,16 +174,19 @@ def evaluate_difference(out, rows, lowest, top, s):
 
 @kernel_function(inline=True)
 def add_difference(motion, difference, first, last, block, now, h, top):
-    """Add the difference to the motion of the blocks first..last-1.
+    """Add the difference of an event of ``block`` at the time ``now`` to blocks first..last-1.
 
-    It changes their polynomials and their velocities at time h.
+    It changes their velocities at time h and their polynomials around the start of the step.
     """
-    w, offset, velocity = motion.w, motion.offset, motion.velocity
+    w, offset = motion.w, motion.offset
+    velocity = motion.velocity
     rows, values = difference.rows, difference.values
+    # Block i of the lattice is column i + column of the difference.
     column = np.uint64(CENTRE_COLUMN) - np.uint64(block)
     evaluate_difference(values, rows, 1, top, h - now)
     for i in block_range(first, last):
         velocity[i] += values[i + column]
+    # The start of the step is the time -now, counted from the event.
     evaluate_difference(values, rows, 0, top, -now)
     for i in block_range(first, last):
         offset[i] += values[i + column]
@@ -184,19 +196,52 @@ def add_difference(motion, difference, first, last, block, now, h, top):
             w[m, i] += values[i + column]
 
 
+@kernel_function(inline=True)
+def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
+    """Return the sum of dv da over the pairs of a block and a neighbour, at an event of the block.
+
+    Here dv is the difference of the two slip velocities, and da the change of the difference of
+    the accelerations. The velocity of the block is 0, and only its own acceleration changes.
+    """
+    if medium.beta <= 0.0:
+        return 0.0
+    neighbour_velocities = velocity_at(w, block + 1, top, now)
+    is_on_axis = medium.is_mirrored and block == 1
+    if not is_on_axis:
+        neighbour_velocities += velocity_at(w, block - 1, top, now)
+    return -acceleration_change * neighbour_velocities
+
+
+@kernel_function(inline=True)
+def update_mirror_image(medium, motion, first, top):
+    """Return the first block that an event changed, and update block 0 if it is one of them.
+
+    On a mirrored lattice, block 0 is the mirror image of block 2. ``first`` is the first changed
+    block apart from mirror images.
+    """
+    if not medium.is_mirrored or first > 2:
+        return first
+    w, offset = motion.w, motion.offset
+    offset[0] = offset[2]
+    for m in range(1, top + 1):
+        w[m, 0] = w[m, 2]
+    return np.int64(0)
+
+
 @inlined_kernel
 def apply_event(medium, motion, segments, prediction, difference, event, h, top):
     """Change the motion within reach of an event, and predict the next events there until time h.
 
     Returns an `EventEffect`.
     """
-    w, offset, velocity = motion.w, motion.offset, motion.velocity
+    w, offset = motion.w, motion.offset
+    velocity = motion.velocity
     centre, law_kink = difference.centre, medium.law_kink
     block, now, is_stick, at_law_kink = event
-    velocity_before = loss_change = work_change = friction = 0.0
+    velocity_before = work_change = friction = 0.0
     left, right = count_sliding_neighbours(segments, block)
-    is_on_axis = medium.is_mirrored and block == 1
-    if is_on_axis:
+    if medium.is_mirrored and block == 1:
+        # The block on the axis has the mirror images of its right neighbours on its left.
         left = right
     if is_stick:
         velocity_before = hold_block(centre, w, offset, block, now, top)
@@ -206,12 +251,7 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
         work_change = change_weakening(centre, motion, law_kink, block, now, top)
     else:
         friction = start_sliding(centre, medium, motion, block, now, top)
-    if medium.beta > 0.0:
-        # Only the block of the event changes its acceleration, and its velocity is 0.
-        neighbours = velocity_at(w, block + 1, top, now)
-        if not is_on_axis:
-            neighbours += velocity_at(w, block - 1, top, now)
-        loss_change = -centre[ACCELERATION] * neighbours
+    loss_change = change_of_loss_slope(medium, w, block, centre[ACCELERATION], now, top)
     work_change += friction * centre[ACCELERATION]
     spread_difference(difference, medium, motion, event, left, right, top)
     if is_stick:
@@ -222,17 +262,12 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
-    with_ghost = medium.is_mirrored and first <= 2
-    if with_ghost:
-        offset[0] = offset[2]
-        for m in range(1, top + 1):
-            w[m, 0] = w[m, 2]
+    first_changed = update_mirror_image(medium, motion, first, top)
 
     lowest = predict_releases(medium, motion, segments, prediction, first - 1, last + 1, now, h)
     drop_predicted_events(prediction, first, last)
     is_finite = predict_sticks(motion, prediction, first, last, last - first, now, h, top)
     predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
-    first_changed = 0 if with_ghost else first
     return EventEffect(
         is_finite, first_changed, last, velocity_before, lowest, loss_change, work_change
     )

@@ -31,7 +31,7 @@ from .arrays import (
 from .jit import kernel_entry, kernel_function
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
-from .taylor import BLOW_UP_FACTOR, record_release, record_stick
+from .taylor import BLOW_UP_FACTOR, next_step, record_release, record_stick
 
 # A front is locked to a fraction of dx/dt if it repeats the same cycle until its end: each time, a
 # few blocks are released after the same numbers of steps. If such a cycle takes fewer steps than
@@ -45,7 +45,8 @@ def combine_laws(laws: Sequence[type[Friction]]):
     """Return a compiled function that computes the friction of any of some laws.
 
     Its arguments are the position of the law in the list, the slip since the release, the slip
-    velocity and the two parameters of the law.
+    velocity and the two parameters of the law. Kernels cannot choose from a list of functions, so
+    that each compiled function handles the first law and calls another one for the rest.
     """
     if not laws:
         return kernel_function()(lambda law, slip, velocity, parameter_1, parameter_2: 0.0)
@@ -67,13 +68,13 @@ friction_by_law_number = combine_laws(LAWS)
 def compute_forces(medium, motion, sliding, history, t, first, last):
     """Compute the forces on blocks first..last-1, and release those that reach the threshold.
 
-    The forces are written into row 2 of w. Returns the number of sliding blocks.
+    The forces are written into the row ACCELERATION of w. Returns the number of sliding blocks.
     """
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     force, tau = motion.w[ACCELERATION], motion.tau
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
-    moving, lowest = 0, tally.min_stuck_stress
+    sliding_count, lowest = 0, tally.min_stuck_stress
     for i in range(first, last):
         elastic = inverse_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
         stress = elastic - medium.leaf_stiffness * slip[i] + tau[i]
@@ -86,9 +87,9 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
             if stress + drag >= 1.0:
                 sliding[i] = True
                 record_release(history, i, t)
-        moving += sliding[i]
+        sliding_count += sliding[i]
     tally.min_stuck_stress = lowest
-    return moving
+    return sliding_count
 
 
 @kernel_function()
@@ -155,12 +156,17 @@ def viscous_loss(medium, velocity, dt, first, last):
 
     It is computed with the velocities at the end of the step. Only blocks first..last-1 move.
     """
-    strain_rate_sum, velocity_sum = 0.0, 0.0
+    if medium.beta <= 0.0 and medium.alpha == 0.0:
+        return 0.0
+    # Sums of (v_{i+1} - v_i)^2 and of v_i^2. On a mirrored lattice they are doubled below, so that
+    # block 1 on the axis counts half.
+    dv_squared, v_squared = 0.0, 0.0
     for i in range(max(first - 1, 1 if medium.is_mirrored else 0), last):
         dv = velocity[i + 1] - velocity[i]
-        strain_rate_sum += dv * dv
-        velocity_sum += (0.5 if medium.is_mirrored and i == 1 else 1.0) * velocity[i] * velocity[i]
-    loss = medium.beta / medium.dx * strain_rate_sum + medium.alpha * medium.dx * velocity_sum
+        dv_squared += dv * dv
+        weight = 0.5 if medium.is_mirrored and i == 1 else 1.0
+        v_squared += weight * velocity[i] * velocity[i]
+    loss = medium.beta / medium.dx * dv_squared + medium.alpha * medium.dx * v_squared
     return (2.0 if medium.is_mirrored else 1.0) * dt * loss
 
 
@@ -191,17 +197,16 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
     # first step of a call visits all blocks, since the lattice may have been extended.
     first, last = 1, size - 1
     for _ in range(limits.max_steps):
-        t = tally.time
-        if t >= limits.end_time:
+        start = tally.time
+        if start >= limits.end_time:
             return END_REACHED
         if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
-        dt = min(limits.largest_step, limits.end_time - t)
-        end = limits.end_time if dt == limits.end_time - t else t + dt
+        dt, end = next_step(limits, start)
         if medium.is_mirrored:
             slip[0], velocity[0] = slip[2], velocity[2]
-        moving = compute_forces(medium, motion, sliding, history, t, first, last)
-        if moving == 0:
+        sliding_count = compute_forces(medium, motion, sliding, history, start, first, last)
+        if sliding_count == 0:
             return ALL_STUCK
         first, last = find_sliding_range(sliding, first, last)
         fastest, work = advance_blocks(medium, motion, sliding, history, dt, end, first, last)
@@ -210,11 +215,10 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         tally.friction_loss += work
         if medium.is_mirrored:
             velocity[0] = velocity[2]
-        if medium.beta > 0.0 or medium.alpha != 0.0:
-            tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
+        tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
         first, last = max(first - 1, 1), min(last + 1, size - 1)
         tally.steps += 1
-        tally.block_updates += moving
+        tally.block_updates += sliding_count
         tally.time = end
         if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
             return BLOWN_UP
@@ -253,12 +257,13 @@ def has_locked_front(solution: Solution) -> bool:
     for side in (-1.0, 1.0):
         released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
         times = np.sort(solution.release_time[released])
-        counts = np.rint(np.diff(times) / step)
-        for cycle in range(1, MAX_CYCLE_BLOCKS + 1):
-            last = counts[-MIN_CYCLE_REPEATS * cycle :]
-            repeats = (
-                last.size == MIN_CYCLE_REPEATS * cycle and (last[cycle:] == last[:-cycle]).all()
-            )
-            if repeats and last[:cycle].sum() < MIN_UNBIASED_CYCLE_STEPS:
+        # Numbers of steps from one release to the next one.
+        steps_between = np.rint(np.diff(times) / step)
+        for blocks in range(1, MAX_CYCLE_BLOCKS + 1):
+            last = steps_between[-MIN_CYCLE_REPEATS * blocks :]
+            is_long_enough = last.size == MIN_CYCLE_REPEATS * blocks
+            repeats = is_long_enough and (last[blocks:] == last[:-blocks]).all()
+            steps_of_cycle = last[:blocks].sum()
+            if repeats and steps_of_cycle < MIN_UNBIASED_CYCLE_STEPS:
                 return True
     return False

@@ -93,20 +93,21 @@ def subtract_friction(motion, first, last, law_kink):
 @kernel_function(inline=True)
 def friction_power(medium, motion, segments, law_kink):
     """Return the power that piecewise linear friction dissipates, and its time derivative."""
-    total, change = 0.0, 0.0
+    # Sums over blocks of friction times velocity, and of the time derivative of this product.
+    power, slope = 0.0, 0.0
     if law_kink is not None:
         w, weakening_slope = motion.w, motion.weakening_slope
         for r in range(segments.count.n):
             for i in block_range(segments.edges[2 * r], segments.edges[2 * r + 1]):
                 weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
                 friction = friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
-                total += weight * friction * w[VELOCITY, i]
-                growth = (
+                power += weight * friction * w[VELOCITY, i]
+                slope_of_block = (
                     friction * w[ACCELERATION, i]
                     - weakening_slope[i] * w[law_kink.rate + 1, i] * w[VELOCITY, i]
                 )
-                change += weight * growth
-    return medium.dx * total, medium.dx * change
+                slope += weight * slope_of_block
+    return medium.dx * power, medium.dx * slope
 
 
 @kernel_function()

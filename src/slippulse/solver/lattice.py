@@ -120,8 +120,9 @@ class Lattice:
         for values, kept in zip(self.motion, old, strict=True):
             values[..., inside] = kept
         traits = self.scene.friction.traits
-        away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
-        self.motion.law_factor[:] = away >= traits.nucleation_half_length
+        distance = np.abs(np.arange(size) + self.first_block) * self.scene.dx
+        self.motion.law_factor[:] = distance >= traits.nucleation_half_length
+        # The new blocks are those before and behind the old ones.
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
@@ -135,6 +136,7 @@ class Lattice:
         release_time[inside] = self.history.release_time
         stick_time[inside] = self.history.stick_time
         self.history = arrays.History(release_time, stick_time, self.tally)
+        # Array positions have changed by the number of blocks on the left.
         self.tally.first_stuck_block += left
         sampled = self.sampled - self.first_block
         outside = (sampled < 1) | (sampled > size - 2)

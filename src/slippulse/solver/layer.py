@@ -151,34 +151,43 @@ class Columns(NamedTuple):
 
 @kernel_function()
 def update_stresses(elastic, fields, first, last):
-    """Advance the stresses of columns first..last-1 by one step."""
+    """Advance the stresses of columns first..last-1 by one step.
+
+    These are the three equations on the right of the module docstring. Differences between
+    neighbours take the place of derivatives, since ``ratio`` contains the spacing.
+    """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
     for j in range(rows + 1):
         direct, lateral = ratio * elastic.direct[j], ratio * elastic.lateral[j]
         normal = ratio * elastic.normal[j]
-        over, under = elastic.above[j], elastic.below[j]
+        # v_y half a cell above and below the row. An outer row has only one of the two.
+        weight_above, weight_below = elastic.above[j], elastic.below[j]
         above, below = vy[min(j, rows - 1), first:last], vy[max(j - 1, 0), first:last]
-        v, right = vx[j, first:last], vx[j, first + 1 : last + 1]
+        left, right = vx[j, first:last], vx[j, first + 1 : last + 1]
         s_xx, s_yy = sxx[j, first:last], syy[j, first:last]
         for i in range(s_xx.shape[0]):
-            along, across = right[i] - v[i], over * above[i] - under * below[i]
-            s_xx[i] += direct * along + lateral * across
-            s_yy[i] += lateral * along + normal * across
+            dvx_dx = right[i] - left[i]
+            dvy_dy = weight_above * above[i] - weight_below * below[i]
+            s_xx[i] += direct * dvx_dx + lateral * dvy_dy
+            s_yy[i] += lateral * dvx_dx + normal * dvy_dy
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
     factor = ratio * elastic.shear
     for j in range(rows):
         low, high = vx[j, first:last], vx[j + 1, first:last]
         left, right = vy[j, first - 1 : last - 1], vy[j, first:last]
-        s = sxy[j, first:last]
-        for i in range(s.shape[0]):
-            s[i] += factor * (high[i] - low[i] + right[i] - left[i])
+        s_xy = sxy[j, first:last]
+        for i in range(s_xy.shape[0]):
+            s_xy[i] += factor * (high[i] - low[i] + right[i] - left[i])
 
 
 @kernel_function()
 def update_velocities(elastic, fields, first, last):
-    """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom."""
+    """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom.
+
+    These are the two equations on the left of the module docstring.
+    """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
     for j in range(rows):
@@ -190,12 +199,12 @@ def update_velocities(elastic, fields, first, last):
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
     for j in range(1, elastic.moving_rows):
-        over, under = elastic.above[j], elastic.below[j]
+        weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]
         low, high = sxy[j - 1, first:last], sxy[min(j, rows - 1), first:last]
         v = vx[j, first:last]
         for i in range(v.shape[0]):
-            v[i] += ratio * (right[i] - left[i] + over * high[i] - under * low[i])
+            v[i] += ratio * (right[i] - left[i] + weight_above * high[i] - weight_below * low[i])
 
 
 @kernel_function()
@@ -215,7 +224,12 @@ def compute_strength(elastic, fields, fault, i):
 
 @kernel_function()
 def advance_node(elastic, fields, fault, i, dt, time):
-    """Advance v_x and the slip of one node at the bottom by one step, and add the work done."""
+    """Advance v_x and the slip of one node at the bottom by one step, and add the work done.
+
+    A node at rest is released when its load reaches the strength, and sticks when its velocity
+    falls to 0.
+    """
+    # The bottom row has half the height of a cell, so that the difference of s_xx counts half.
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
     resistance = compute_strength(elastic, fields, fault, i)
     if not fault.sliding[i]:
@@ -248,7 +262,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
     moved = 0.5 * dt * (earlier + later)
     if elastic.is_mirrored and i == 1:
         moved *= 0.5
-    # The friction that acted follows from the change of velocity, also when the node sticks.
+    # The friction that acted follows from the change of velocity, also when the node sticks. A node
+    # on the axis of symmetry counts half.
     friction = load - (later - earlier) / (2.0 * elastic.ratio)
     fault.work[0] += abs(fault.tau[i]) * moved
     fault.work[1] += (fault.tau[i] - friction) * moved
@@ -259,6 +274,7 @@ def advance_layer(elastic, fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in some columns of the grid."""
     centre = columns.centre
     for number in range(steps[0], steps[1]):
+        # Number of columns that a compressional wave has crossed since t = 0.
         wave = int(number * elastic.ratio)
         reach = columns.nucleation + wave + PRECURSOR_CELLS
         first, last = max(1, centre - reach), min(fault.tau.shape[0] - 1, centre + reach)
@@ -314,10 +330,12 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
     """
     # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
-    normal[-1] = scene.top == "held"
+    normal[-1] = 1.0 if scene.top == "held" else 0.0
+    # The bottom row has only a value above it, and the top row only one below it, which counts
+    # twice since these rows have half the height.
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
-    above[[0, -1]] = 2.0, 0.0
-    below[[0, -1]] = 0.0, 2.0
+    above[0], above[-1] = 2.0, 0.0
+    below[0], below[-1] = 0.0, 2.0
     lateral = 1.0 - scene.gamma
     elastic = Elastic(
         ratio=ratio,
@@ -333,8 +351,15 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
         lateral=lateral * normal,
         normal=normal,
     )
-    rows = {name: scene.cells + (name not in ("vy", "sxy")) for name in Fields._fields}
-    fields = Fields(**{name: np.zeros((count, x.size)) for name, count in rows.items()})
+    on_rows, between_rows = (scene.cells + 1, x.size), (scene.cells, x.size)
+    fields = Fields(
+        vx=np.zeros(on_rows),
+        vy=np.zeros(between_rows),
+        sxx=np.zeros(on_rows),
+        syy=np.zeros(on_rows),
+        sxy=np.zeros(between_rows),
+    )
+    # A quarter of a cell is added, so that rounding does not decide about the outermost node.
     tau, nucleus = scene.prestress(x), np.abs(x) <= scene.nucleation + 0.25 / scene.cells
     fault = Fault(
         tau=tau,
@@ -364,6 +389,8 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes = columns.copy()
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
+    # The strain energy of normal stresses in plane strain, with 1 - gamma as `lateral`, and that of
+    # shear stress.
     lateral = elastic.lateral.max()
     direct = earlier.sxx * later.sxx + earlier.syy * later.syy
     crossed = earlier.sxx * later.syy + earlier.syy * later.sxx

@@ -7,29 +7,40 @@ from .jit import kernel_function
 
 
 @kernel_function(inline=True)
+def find_edge(edges, edge_count, block):
+    """Return the position of the first edge that is at least ``block``."""
+    position = 0
+    while position < edge_count and edges[position] < block:
+        position += 1
+    return position
+
+
+@kernel_function(inline=True)
 def toggle_block(segments, block):
     """Add a block at rest to the segments, or remove a sliding block from them.
 
-    Either way, each side of the block that was an edge of a segment no longer is one, and each
-    other side becomes an edge.
+    A block has two sides, numbered ``block`` and ``block + 1``. Either way, each side that was an
+    edge of a segment no longer is one, and each other side becomes an edge.
     """
-    edges, n = segments.edges, 2 * segments.count.n
-    q = 0
-    while q < n and edges[q] < block:
-        q += 1
-    left = q < n and edges[q] == block
-    other = q + 1 if left else q
-    right = other < n and edges[other] == block + 1
-    if left and right:
-        for k in range(q, n - 2):
+    edges, edge_count = segments.edges, 2 * segments.count.n
+    position = find_edge(edges, edge_count, block)
+    is_left_edge = position < edge_count and edges[position] == block
+    following = position + 1 if is_left_edge else position
+    is_right_edge = following < edge_count and edges[following] == block + 1
+    if is_left_edge and is_right_edge:
+        # Remove both edges.
+        for k in range(position, edge_count - 2):
             edges[k] = edges[k + 2]
         segments.count.n -= 1
-    elif left or right:
-        edges[q] = block + 1 if left else block
+    elif is_left_edge:
+        edges[position] = block + 1
+    elif is_right_edge:
+        edges[position] = block
     else:
-        for k in range(n - 1, q - 1, -1):
+        # Insert both edges.
+        for k in range(edge_count - 1, position - 1, -1):
             edges[k + 2] = edges[k]
-        edges[q], edges[q + 1] = block, block + 1
+        edges[position], edges[position + 1] = block, block + 1
         segments.count.n += 1
 
 

@@ -60,9 +60,12 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     if not lattice.localised:
         strain = np.append(np.diff(slip) / dx, 0.0)
+    # Weights of the blocks, and of the bonds between each block and the next one. On a mirrored
+    # lattice each counts twice, except block 1 on the axis; block 0 is a mirror image.
     weight, bond = np.full((2, lattice.size), 2.0 if medium.is_mirrored else 1.0)
     if medium.is_mirrored:
-        weight[:2], bond[0] = (0.0, 1.0), 0.0
+        weight[0], weight[1] = 0.0, 1.0
+        bond[0] = 0.0
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
         # Symplectic Euler is a leapfrog scheme. Its velocities belong to the time half a step
@@ -85,8 +88,9 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
         "friction_loss": totals["friction_loss"],
     }
     work, *others = parts.values()
+    missing = abs(work - sum(others))
     largest = max(map(abs, parts.values()))
-    return parts | {"energy_residual": abs(work - sum(others)) / largest if largest else 0.0}
+    return parts | {"energy_residual": missing / largest if largest else 0.0}
 
 
 def compute_numbers(lattice: Lattice, status: int) -> dict:
@@ -98,19 +102,22 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     medium, motion = lattice.medium, lattice.motion
     dx = medium.dx
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    # The stress at the end, of all blocks except the ghost blocks.
     elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
     stress = (motion.tau - medium.leaf_stiffness * slip)[1:-1] + elastic
     if medium.damping_counts_for_release:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
-    stuck = ~lattice.sliding[1:-1]
-    lowest = float(np.min(stress[stuck], initial=totals["min_stuck_stress"]))
+    is_stuck = ~lattice.sliding[1:-1]
+    lowest = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
+    # A block would slide backwards at a stress of -(1 + 2 mu_k/(mu_s - mu_k)).
+    friction_ratio_needed = max(0.0, -(lowest + 1.0) / 2.0)
     first_stuck = (totals["first_stuck_block"] + lattice.first_block) * dx
     return compute_energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
         **{name: totals[name] for name in KEPT_COUNTERS},
         "min_stuck_stress": lowest,
-        "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
+        "friction_ratio_needed": friction_ratio_needed,
         "first_stick_time": totals["first_stick_time"],
         "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.is_mirrored),
@@ -119,7 +126,8 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
 
 def extract_solution(lattice: Lattice, status: int) -> Solution:
     """Return the solution of a lattice whose kernel stopped for the reason ``status``."""
-    motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
+    motion, history = lattice.motion, lattice.history
+    recorder = lattice.recorder
     # If the kernel stopped early, the lattice is at rest at the times of all missing samples.
     inside = recorder.blocks >= 0
     rest = slice(lattice.tally.samples_taken, None)
@@ -127,7 +135,9 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     recorder.velocity[rest, inside] = motion.w[VELOCITY, recorder.blocks[inside]]
     blocks = np.arange(lattice.size) + lattice.first_block
     released = blocks[np.isfinite(history.release_time)]
-    first, last = (released.min(), released.max()) if released.size else (0, 0)
+    first, last = 0, 0
+    if released.size:
+        first, last = released.min(), released.max()
     keep = (blocks >= first - MARGIN_BLOCKS) & (blocks <= last + MARGIN_BLOCKS)
     if lattice.is_mirrored:
         keep &= blocks >= 0
@@ -135,8 +145,12 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     keep[0] = keep[-1] = False
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
+        """Return the kept blocks, with their mirror images times a sign if half was solved."""
         kept = values[keep]
-        return np.concatenate([sign * kept[:0:-1], kept]) if lattice.is_mirrored else kept.copy()
+        if not lattice.is_mirrored:
+            return kept.copy()
+        mirror_images = sign * kept[:0:-1]
+        return np.concatenate([mirror_images, kept])
 
     return Solution(
         x=unfold(blocks, -1) * lattice.scene.dx,

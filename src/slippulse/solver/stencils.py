@@ -8,6 +8,7 @@ over a narrow pulse.
 
 import numpy as np
 
+from .arrays import ACCELERATION, SLIP, SLIP_INCREMENT, VELOCITY
 from .jit import kernel_function
 
 UNSIGNED_ONE = np.uint64(1)
@@ -26,21 +27,28 @@ def second_difference(w, k, i):
 
 
 @kernel_function(inline=True)
-def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf_stiffness, damping):
-    """Compute accelerations from differences of strain, leaf springs, pre-stress and damping."""
+def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping):
+    """Compute accelerations from differences of strain, leaf springs, pre-stress and damping.
+
+    ``leaf`` is the stiffness of the leaf springs, and ``damping`` is beta/dx^2.
+    """
     for i in block_range(first, last):
         # Where slip is large (gamma -> 0), second differences of slip would lose digits. The stored
         # strain does not.
-        force = (
-            inverse_dx * (strain[i] - strain[i - UNSIGNED_ONE]) - leaf_stiffness * w[0, i] + tau[i]
+        elastic = inverse_dx * (strain[i] - strain[i - UNSIGNED_ONE])
+        force = elastic - leaf * w[SLIP, i] + tau[i]
+        w[ACCELERATION, i] = (
+            force + damping * second_difference(w, VELOCITY, i) if damping != 0.0 else force
         )
-        w[2, i] = force + damping * second_difference(w, 1, i) if damping != 0.0 else force
 
 
 @kernel_function(inline=True)
-def next_derivative(w, k, i, inverse_dx2, leaf_stiffness, damping):
-    """Return time derivative k of the slip of block i, from the derivatives k - 2 and k - 1."""
-    elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf_stiffness * w[k - 2, i]
+def next_derivative(w, k, i, inverse_dx2, leaf, damping):
+    """Return time derivative k of the slip of block i, from the derivatives k - 2 and k - 1.
+
+    It is derivative k - 2 of the equation of motion.
+    """
+    elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
     return elastic + damping * second_difference(w, k - 1, i) if damping != 0.0 else elastic
 
 
@@ -56,9 +64,10 @@ def add_two_taylor_terms(nested, w, k, weight, lower_weight, first, last):
 
 @kernel_function(inline=True)
 def compute_velocities(out, w, first, last, step, order):
-    """Compute the velocities of blocks first..last-1 after a time ``step``.
+    """Compute the velocities of blocks first..last-1 after a time ``step``, in ``out``.
 
-    Returns the number of blocks that may stop by then.
+    The Taylor polynomial of degree ``order`` is summed from its highest terms on. Returns the
+    number of blocks that may stop by then.
     """
     k = order
     if order % 2 == 1:
@@ -87,7 +96,7 @@ def compute_velocities(out, w, first, last, step, order):
 def advance_slip(w, velocity, first, last, step, order):
     """Advance slip by its Taylor polynomial, and set the velocity.
 
-    The change of slip is left in row 2 of ``w``.
+    The change of slip is left in row SLIP_INCREMENT of ``w``.
     """
     nested = w[order + 1]
     k = order
@@ -99,9 +108,9 @@ def advance_slip(w, velocity, first, last, step, order):
     for i in block_range(first, last):
         rest = w[3, i] + fourth * (w[4, i] + fifth * nested[i] if k == 4 else nested[i])
         increment = step * (w[1, i] + half * (w[2, i] + third * rest))
-        w[2, i] = increment
-        w[0, i] += increment
-        w[1, i] = velocity[i]
+        w[SLIP_INCREMENT, i] = increment
+        w[SLIP, i] += increment
+        w[VELOCITY, i] = velocity[i]
 
 
 @kernel_function(reorder=True)
@@ -113,7 +122,7 @@ def sum_strain_rate_products(w, first, last):
     """
     square, product = 0.0, 0.0
     for i in block_range(first, last):
-        dv = w[1, i + UNSIGNED_ONE] - w[1, i]
+        dv = w[VELOCITY, i + UNSIGNED_ONE] - w[VELOCITY, i]
         square += dv * dv
-        product += dv * (w[2, i + UNSIGNED_ONE] - w[2, i])
+        product += dv * (w[ACCELERATION, i + UNSIGNED_ONE] - w[ACCELERATION, i])
     return square, product

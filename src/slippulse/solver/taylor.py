@@ -46,6 +46,17 @@ SIMULTANEITY_TOLERANCE = 1e-11
 BLOW_UP_FACTOR = 100.0
 
 
+@kernel_function(inline=True)
+def next_step(limits, start):
+    """Return the length of the step from a time ``start`` on, and the time at its end.
+
+    The last step ends exactly at the end time, without rounding.
+    """
+    time_left = limits.end_time - start
+    length = min(limits.largest_step, time_left)
+    return length, limits.end_time if length == time_left else start + length
+
+
 @kernel_function()
 def record_release(history, block, time):
     """Record the time of a first release. A later release removes the stick time."""
@@ -69,7 +80,10 @@ def record_stick(history, block, time):
 
 @kernel_function()
 def take_samples(recorder, motion, tally, start, end, order):
-    """Take the samples due by ``end`` from the Taylor polynomials around ``start``."""
+    """Take the samples due by the time ``end`` from the Taylor polynomials around ``start``.
+
+    Slip has a polynomial of degree ``order`` + 1, and its velocity one of degree ``order``.
+    """
     times, blocks = recorder.times, recorder.blocks
     w = motion.w
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
@@ -77,15 +91,16 @@ def take_samples(recorder, motion, tally, start, end, order):
         s = min(max(times[n], start), end) - start
         for p in range(blocks.shape[0]):
             i = blocks[p]
+            # Positions outside the lattice have no block.
             if i < 0:
                 continue
-            u, v = 0.0, 0.0
+            slip_change, velocity_change = 0.0, 0.0
             for k in range(order + 1, 0, -1):
-                u = s / k * (w[k, i] + u)
+                slip_change = s / k * (w[k, i] + slip_change)
             for k in range(order, 0, -1):
-                v = s / k * (w[k + 1, i] + v)
-            recorder.slip[n, p] = w[SLIP, i] + motion.offset[i] + u
-            recorder.velocity[n, p] = w[VELOCITY, i] + v
+                velocity_change = s / k * (w[k + 1, i] + velocity_change)
+            recorder.slip[n, p] = w[SLIP, i] + motion.offset[i] + slip_change
+            recorder.velocity[n, p] = w[VELOCITY, i] + velocity_change
         tally.samples_taken += 1
 
 
@@ -96,23 +111,26 @@ def compute_dissipation(medium, motion, segments):
     Damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2, and friction that is linear
     in slip velocity dissipates alpha dx times the sum of v_i^2.
     """
-    square, product = 0.0, 0.0
-    rate, change = 0.0, 0.0
+    # Sums of dv^2 and dv da over pairs of neighbours, and of v^2 and v a over blocks.
+    dv_squared, dv_da = 0.0, 0.0
+    v_squared, v_a = 0.0, 0.0
     for r in range(segments.count.n):
-        start, end = segments.edges[2 * r], segments.edges[2 * r + 1]
-        at_axis = medium.is_mirrored and start == 1
-        s, p = stencils.sum_strain_rate_products(motion.w, start if at_axis else start - 1, end)
-        square += s
-        product += p
+        first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
+        at_axis = medium.is_mirrored and first == 1
+        square, product = stencils.sum_strain_rate_products(
+            motion.w, first if at_axis else first - 1, last
+        )
+        dv_squared += square
+        dv_da += product
         if medium.alpha != 0.0:
-            # The block at x = 0 has no mirror image.
+            # The sums are doubled below, but the block at x = 0 has no mirror image.
             half, w = 0.5 if at_axis else 0.0, motion.w
-            s, p = friction.sum_velocity_products(w, start, end)
-            rate += s - half * w[VELOCITY, 1] * w[VELOCITY, 1]
-            change += p - half * w[VELOCITY, 1] * w[ACCELERATION, 1]
+            square, product = friction.sum_velocity_products(w, first, last)
+            v_squared += square - half * w[VELOCITY, 1] * w[VELOCITY, 1]
+            v_a += product - half * w[VELOCITY, 1] * w[ACCELERATION, 1]
     sides = 2.0 if medium.is_mirrored else 1.0
     viscous, drag = sides * medium.beta / medium.dx, sides * medium.alpha * medium.dx
-    return viscous * square + drag * rate, 2.0 * (viscous * product + drag * change)
+    return viscous * dv_squared + drag * v_squared, 2.0 * (viscous * dv_da + drag * v_a)
 
 
 @kernel_function()
@@ -132,7 +150,7 @@ def add_slope_change(slope_changes, change, time):
 
 
 @kernel_function()
-def loss_of_step(h, rate, change, slope_changes):
+def loss_of_step(h, dissipation, slope, slope_changes):
     """Return the energy lost in a step of length h, without the part from the end of the step.
 
     The loss is h (2 D_0 + D_1)/3 + h^2 D_0'/6, correct to third order in h, where D_0 and D_0' are
@@ -141,17 +159,22 @@ def loss_of_step(h, rate, change, slope_changes):
     h D_1/3 is added there. An event at time s that changes the slope by k adds k (h - s)^2/2 to the
     loss. Since D_1 contains the event already, h k (h - s)/3 is subtracted again.
     """
-    without_events = h * 2.0 * rate / 3.0 + h * h * change / 6.0
-    first = slope_changes.moment_0 * h - slope_changes.moment_1
-    second = (
+    without_events = h * 2.0 * dissipation / 3.0 + h * h * slope / 6.0
+    # The sums of k (h - s) and of k (h - s)^2 over the events of the step.
+    sum_of_first_powers = slope_changes.moment_0 * h - slope_changes.moment_1
+    sum_of_squares = (
         slope_changes.moment_0 * h * h - 2.0 * slope_changes.moment_1 * h + slope_changes.moment_2
     )
-    return without_events + second / 2.0 - h * first / 3.0
+    return without_events + sum_of_squares / 2.0 - h * sum_of_first_powers / 3.0
 
 
 @kernel_function(inline=True)
 def fill_derivatives(medium, motion, segments, alpha, top):
-    """Compute the time derivatives 2 to ``top`` of slip on all segments, in the rows of w."""
+    """Compute the time derivatives 2 to ``top`` of slip on all segments, in the rows of w.
+
+    Each derivative of the equation of motion gives the next one from the two before it. On a
+    mirrored lattice, block 0 is the mirror image of block 2.
+    """
     w, is_mirrored = motion.w, medium.is_mirrored
     leaf_stiffness, damping = medium.leaf_stiffness, medium.damping
     for r in range(segments.count.n):
@@ -304,6 +327,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
 def apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top):
     """Let all events until the time ``latest`` happen together, after a step that ended early."""
     prediction, tally = scratch.prediction, history.tally
+    # The step is over, so that an array of its events can hold the blocks to be released.
     due = scratch.step_events.first
     count = event_prediction.list_due_releases(segments, prediction, latest, due)
     for q in range(prediction.event_count.n):
@@ -330,7 +354,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 ):
     """Advance until a limit, and return the reason why it stopped.
 
-    When no more steps follow, the loss of energy is complete and row 2 of w is the acceleration.
+    Each step goes through the numbered stages of the module docstring. When no more steps follow,
+    the loss of energy is complete and row 2 of w is the acceleration.
     """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
@@ -341,21 +366,22 @@ def advance(  # noqa: C901, PLR0912, PLR0915
     work_slope_changes = step_events.work_slope_changes
     has_losses = medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.max_steps):
-        t = tally.time
+        start = tally.time
         if medium.alpha == 0.0:
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
-        rate, change = 0.0, 0.0
+        # The losses of the step before still lack the part from its end, which is known now.
+        dissipation, dissipation_slope = 0.0, 0.0
         if has_losses:
-            rate, change = compute_dissipation(medium, motion, segments)
-            tally.viscous_loss += tally.pending_step * rate / 3.0
-        power, growth = friction.friction_power(medium, motion, segments, medium.law_kink)
+            dissipation, dissipation_slope = compute_dissipation(medium, motion, segments)
+            tally.viscous_loss += tally.pending_step * dissipation / 3.0
+        power, power_slope = friction.friction_power(medium, motion, segments, medium.law_kink)
         tally.friction_loss += tally.pending_step * power / 3.0
         tally.pending_step = 0.0
         if segments.count.n == 0:
             return ALL_STUCK
-        if t >= limits.end_time:
+        if start >= limits.end_time:
             return END_REACHED
         # The events of a step may reach beyond the end of the lattice.
         last = segments.edges[2 * segments.count.n - 1]
@@ -365,10 +391,12 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         clear_slope_changes(loss_slope_changes)
         clear_slope_changes(work_slope_changes)
 
-        h = min(limits.largest_step, limits.end_time - t)
-        end = limits.end_time if h == limits.end_time - t else t + h
+        # The step lasts from the time `start` to `end`, and has the length h. Times of events are
+        # counted from its start.
+        h, end = next_step(limits, start)
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
             return BLOWN_UP
+        # At first, the blocks that move in this step are those that slide.
         for q in range(2 * segments.count.n):
             moved.edges[q] = segments.edges[q]
         moved.count.n = segments.count.n
@@ -383,19 +411,21 @@ def advance(  # noqa: C901, PLR0912, PLR0915
             early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
                 segments, prediction, medium, event.block, latest
             )
+            instant = min(start + event.time, end)
             if early:
-                h, end = event.time, min(t + event.time, end)
+                h, end = event.time, instant
                 set_velocities_at_early_end(motion, scratch, h, order)
                 break
-            instant = min(t + event.time, end)
-            take_samples(recorder, motion, tally, t, instant, order)
+            take_samples(recorder, motion, tally, start, instant, order)
             if not take_event(medium, motion, segments, scratch, history, event, instant, h):
                 return BLOWN_UP
-        take_samples(recorder, motion, tally, t, end, order)
+        take_samples(recorder, motion, tally, start, end, order)
 
         if has_losses:
-            tally.viscous_loss += loss_of_step(h, rate, change, loss_slope_changes)
-        tally.friction_loss += loss_of_step(h, power, growth, work_slope_changes)
+            tally.viscous_loss += loss_of_step(
+                h, dissipation, dissipation_slope, loss_slope_changes
+            )
+        tally.friction_loss += loss_of_step(h, power, power_slope, work_slope_changes)
         tally.pending_step = h
         fastest = finish_step(medium, motion, scratch, tally, order, h)
         if early:

@@ -15,6 +15,8 @@ from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
+# Beyond this number of widths from its centre, a Gaussian is 0 to rounding.
+GAUSSIAN_END_IN_WIDTHS = 48.0
 # Number of characteristics in each of the three sections of the far pulse.
 SAMPLES_PER_SECTION = 400
 
@@ -52,19 +54,25 @@ class ArrestingCrack(ExplainsRemovedNames):
         self.prestress = prestress
         # Beyond this position the profile is 0 to rounding, and the right front runs at the wave
         # speed.
-        self.end = max([48.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
+        width = prestress.width or 0.0
+        self.end = max([GAUSSIAN_END_IN_WIDTHS * width, *(x for x, _ in prestress.points)])
         self.fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=self.end
         )
+        # The left end of the two fast fronts, where tau falls to 0.
         self.zero = float(self.fronts.edges[0])
 
     def _entry_of(self, position: float) -> float:
-        """Return the entry of the characteristic that ends on the left front at a position."""
-        last, balance = self.end - 1e-9, partial(integral, self.prestress, position)
-        if balance(last) <= 0.0:
+        """Return the entry of the characteristic that ends on the left front at a position.
+
+        The integral of tau from the position to the entry is 0.
+        """
+        integral_to = partial(integral, self.prestress, position)
+        last = self.end - 1e-9
+        if integral_to(last) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, the limit of the left front"
             raise ValueError(f"position: {position!r}; allowed: a position farther from {limit}")
-        return root_between(balance, self.zero, last, xtol=1e-13)
+        return root_between(integral_to, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
         """Return the time at which the left front reaches a position.
@@ -95,12 +103,14 @@ class ArrestingCrack(ExplainsRemovedNames):
         ExactTransition
         """
         check_number("fraction", fraction, above=0.0, below=1.0)
-        position, fronts = fraction * self.balance_position, self.fronts
-        time = self.time_at(position)
-        right, last = fronts.front_at(time, 0.0, 1.0), float(fronts.edge_times[-1])
-        if time > last:
-            right = right + time - last
-        return ExactTransition(time, right - position)
+        left = fraction * self.balance_position
+        time = self.time_at(left)
+        right = self.fronts.front_at(time, 0.0, 1.0)
+        # From the end of its curve on, the right front runs at the wave speed, 1.
+        end_time = float(self.fronts.edge_times[-1])
+        if time > end_time:
+            right = right + time - end_time
+        return ExactTransition(time, right - left)
 
     @property
     def peak_velocity(self) -> float:
@@ -114,15 +124,17 @@ class ArrestingCrack(ExplainsRemovedNames):
         -------
         tuple of arrays : x - t of the characteristics, and du/dt on them
         """
-        right = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
-        left = np.linspace(0.0, self.zero, SAMPLES_PER_SECTION)
-        entries = np.concatenate([right, left[1:]])
-        delay = entries - self.fronts.arrival(entries)
-        # The samples are denser towards x_minus, which is never reached.
+        # Characteristics that enter on the right front, and on the fast part of the left front.
+        on_right = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
+        on_left = np.linspace(0.0, self.zero, SAMPLES_PER_SECTION)
+        on_fast = np.concatenate([on_right, on_left[1:]])
+        fast_phase = on_fast - self.fronts.arrival(on_fast)
+        # Those that start on the slow part of the left front, at (X, t) with t = e + T(e) - X. The
+        # samples are denser towards x_minus, which is never reached.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES_PER_SECTION)[1:]
-        slow = self.zero + (self.balance_position - self.zero) * fraction
-        entered = np.array([self._entry_of(x) for x in slow])
-        slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
-        positions = np.concatenate([entries, slow])
+        on_slow = self.zero + (self.balance_position - self.zero) * fraction
+        entries = np.array([self._entry_of(x) for x in on_slow])
+        slow_phase = 2.0 * on_slow - entries - self.fronts.arrival(entries)
+        positions = np.concatenate([on_fast, on_slow])
         velocity = [0.5 * integral(self.prestress, x, self.end) for x in positions]
-        return np.concatenate([delay, slow_delay]), np.array(velocity)
+        return np.concatenate([fast_phase, slow_phase]), np.array(velocity)

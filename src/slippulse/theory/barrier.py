@@ -71,15 +71,14 @@ def barrier_depth(
     speed = float(front_speed(tau0, damping_ratio, release))
     place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
     check_number(f"front speed {place}", speed, at_most=MAX_SPEED)
-    # The depth is computed at gamma = 1, behind a front that is as long as the memory of its pulse.
-    memory = (
-        MEMORY_FACTOR
-        * pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
-        / (speed - 1.0)
-        * speed
-    )
-    proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
-    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / MAX_PANEL_LENGTH)) + 1)
+    # The depth is computed at gamma = 1, behind a front that is as long as the memory of its pulse:
+    # a wave from the trailing edge, which follows at the pulse width, catches up over this length.
+    width = pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
+    memory = MEMORY_FACTOR * width / (speed - 1.0) * speed
+    # sqrt(dx^2 - dt^2) per unit of length along the front.
+    proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+    panel_count = max(4, math.ceil(memory * proper_length / MAX_PANEL_LENGTH))
+    edges = np.linspace(-memory, 0.0, panel_count + 1)
     panels = straight_panels(edges, -1.0 / speed, tau0)
     background = uniform_background(tau_barrier)
     level = Prestress(left=tau_barrier, right=tau_barrier, width=None)

@@ -66,14 +66,17 @@ class SteadyPulse:
         xi = as_numbers("xi", xi)
         p, q = self.growth, self.wavenumber
         inside = (xi <= 0.0) & (xi >= -self.width)
-        y = np.where(inside, xi, 0.0)
-        sine, cosine = np.sin(q * y), np.cos(q * y)
-        decay = np.exp(p * y)
-        slip = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
-        slip = np.select([inside, xi < -self.width], [slip, self.slip])
-        size = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
-        velocity = np.where(inside, -size * decay * sine, 0.0)
-        acceleration = np.where(inside, self.speed * size * decay * (p * sine + q * cosine), 0.0)
+        inner_xi = np.where(inside, xi, 0.0)
+        sine, cosine = np.sin(q * inner_xi), np.cos(q * inner_xi)
+        decay = np.exp(p * inner_xi)
+        # The solution around u = tau_0/gamma with u = u' = 0 at the front.
+        inner_slip = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
+        slip = np.select([inside, xi < -self.width], [inner_slip, self.slip])
+        # Derivatives by time: d/dt = -v d/dxi.
+        amplitude = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
+        velocity = np.where(inside, -amplitude * decay * sine, 0.0)
+        inner_acceleration = self.speed * amplitude * decay * (p * sine + q * cosine)
+        acceleration = np.where(inside, inner_acceleration, 0.0)
         return PulseProfile(slip, velocity, acceleration)
 
 
@@ -104,11 +107,12 @@ def pulse_at_speed(
             roots = np.roots([beta * v, inertia, -alpha * v, gamma])
             complex_root = roots[np.argmax(roots.imag)]
             p, q = float(complex_root.real), float(complex_root.imag)
-        width = np.pi / q
-        slip = tau0 / gamma * (1.0 + np.exp(-p * width))
+        # With u = u' = 0 at the front, the slip at the end xi = -pi/q follows.
+        width = float(np.pi / q)
+        slip = float(tau0 / gamma * (1.0 + np.exp(-p * width)))
+        # The peak is where the acceleration is 0, at xi = -arctan2(q, p)/q.
         amplitude = v * tau0 * np.hypot(p, q) / gamma
-        peak = amplitude * np.exp(-p / q * np.arctan2(q, p))
-        width, slip, peak = float(width), float(slip), float(peak)
+        peak = float(amplitude * np.exp(-p / q * np.arctan2(q, p)))
         # Python's floats can overflow without an error.
         if not all(0.0 < size < math.inf for size in (width, slip, peak)):
             raise OverflowError

@@ -45,24 +45,34 @@ NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODE
 # longer curve computes only the requested ones, unless more than MAX_SEPARATE_COLUMNS are requested
 # at a time: a slow front needs a few of them at each of its steps.
 MAX_EAGER_PANELS, MAX_SEPARATE_COLUMNS = 500, 32
+# The most steps of Newton's method for a parameter on a panel.
+MAX_NEWTON_STEPS = 40
 # Quantities of which each panel has a polynomial: x, T, T + x, T - x and tau dx/ds. All of them
 # except the last are monotonic on a panel.
 PANEL_FIELDS = ("x", "time", "t_plus_x", "t_minus_x", "source")
 
 
 def power_basis(count: int) -> np.ndarray:
-    """Return the matrix from Legendre coefficients to coefficients of powers."""
-    units = enumerate(np.eye(count))
-    return np.array([np.pad(legendre.leg2poly(unit), (0, count - 1 - k)) for k, unit in units]).T
+    """Return the matrix from coefficients of a Legendre series to coefficients of powers.
+
+    Row m belongs to the power m, and column k to the Legendre polynomial of degree k.
+    """
+    columns = []
+    for degree, unit in enumerate(np.eye(count)):
+        powers = legendre.leg2poly(unit)
+        columns.append(np.pad(powers, (0, count - 1 - degree)))
+    return np.array(columns).T
 
 
 def with_slopes(powers: np.ndarray) -> np.ndarray:
-    """Return coefficients of polynomials and of their derivatives, for `value_and_slope`.
+    """Return coefficients of polynomials and of their derivatives, as `value_and_slope` takes them.
 
     powers has the shape [power, polynomial], and its number of powers is a multiple of 4.
     """
-    inner = powers[1:] * np.arange(1.0, len(powers))[:, None]
-    slopes = np.append(inner, np.zeros_like(powers[:1]), axis=0)
+    exponents = np.arange(1.0, len(powers))
+    slopes = powers[1:] * exponents[:, None]
+    # The highest power of the derivatives is added with the coefficient 0.
+    slopes = np.append(slopes, np.zeros_like(powers[:1]), axis=0)
     return np.stack([powers, slopes], axis=1).reshape(-1, 8, powers.shape[1])
 
 
@@ -95,19 +105,31 @@ class Panel(NamedTuple):
 
     def mirrored(self) -> "Panel":
         """Return the panel reflected at x = 0."""
-        ends = (-self.x_ends[1], -self.x_ends[0]), self.time_ends[::-1]
-        return Panel(-self.x[::-1], self.time[::-1], self.source[::-1], *ends)
+        left, right = self.x_ends
+        return Panel(
+            x=-self.x[::-1],
+            time=self.time[::-1],
+            source=self.source[::-1],
+            x_ends=(-right, -left),
+            time_ends=self.time_ends[::-1],
+        )
 
     def until(self, s: float, x_end: float) -> "Panel":
         """Return the part of the panel from its left end to the parameter s, where x is x_end."""
-        half = 0.5 * (s + 1.0)
-        parameters = np.append(half * (1.0 + NODES) - 1.0, s)
-        resample = legendre.legvander(parameters, NODE_COUNT - 1) @ NODES_TO_SERIES
+        fraction = 0.5 * (s + 1.0)
+        nodes_and_end = np.append(fraction * (1.0 + NODES) - 1.0, s)
+        resample = legendre.legvander(nodes_and_end, NODE_COUNT - 1) @ NODES_TO_SERIES
         x = resample @ self.x
         time = resample @ self.time
-        source = half * (resample @ self.source)
-        ends = (self.x_ends[0], x_end), (self.time_ends[0], float(time[-1]))
-        return Panel(x[:-1], time[:-1], source[:-1], *ends)
+        # The source is tau dx/ds, and dx/ds of the shorter panel is smaller by the fraction.
+        source = fraction * (resample @ self.source)
+        return Panel(
+            x=x[:-1],
+            time=time[:-1],
+            source=source[:-1],
+            x_ends=(self.x_ends[0], x_end),
+            time_ends=(self.time_ends[0], float(time[-1])),
+        )
 
 
 def turned_to_right(side: float, panels: list[Panel]) -> list[Panel]:
@@ -141,12 +163,12 @@ class Curve:
         self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
         self.panels, self.restarts = panels, restarts
+        # The fields of all panels as arrays, [panel, node] and [panel, left or right end].
         columns = map(np.array, zip(*panels, strict=True))
-        self.x, self.time, self.source, x_ends, time_ends = columns
-        self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
-        self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
+        self.x, self.time, self.source, self.x_ends, self.time_ends = columns
+        self.edges = np.append(self.x_ends[:, 0], self.x_ends[-1, 1])
+        self.edge_times = np.append(self.time_ends[:, 0], self.time_ends[-1, 1])
         self.t_plus_x, self.t_minus_x = self.time + self.x, self.time - self.x
-        self.x_ends, self.time_ends = x_ends, time_ends
 
     def joined(self, other: "Curve") -> "Curve":
         """Return this curve followed by another that begins at its right end, without restarts."""
@@ -174,23 +196,20 @@ class Curve:
     def coefficients(self, columns: np.ndarray) -> np.ndarray:
         """Return the given columns of `powers`, computed on demand if the curve is long."""
         count = len(self.panels)
-        if (
-            count <= MAX_EAGER_PANELS
-            or columns.size > MAX_SEPARATE_COLUMNS
-            or "powers" in self.__dict__
-        ):
+        are_all_computed = "powers" in self.__dict__
+        is_short = count <= MAX_EAGER_PANELS
+        if is_short or are_all_computed or columns.size > MAX_SEPARATE_COLUMNS:
             return self.powers.take(columns, axis=-1)
-        fields = (self.x, self.time, self.t_plus_x, self.t_minus_x, self.source)
+        fields = [getattr(self, name) for name in PANEL_FIELDS]
+        # A column is the number of the panel, plus `count` for each field before (see `columns`).
         values = [fields[k // count][k % count] for k in columns]
         return NODES_TO_POWERS @ np.reshape(values, (-1, NODE_COUNT)).T
 
     @cached_property
     def powers(self) -> np.ndarray:
         """Coefficients of the polynomials of PANEL_FIELDS, one field after another."""
-        return (
-            NODES_TO_POWERS
-            @ np.concatenate([self.x, self.time, self.t_plus_x, self.t_minus_x, self.source]).T
-        )
+        values = np.concatenate([getattr(self, name) for name in PANEL_FIELDS])
+        return NODES_TO_POWERS @ values.T
 
     def columns(self, name: str, panel: np.ndarray) -> np.ndarray:
         """Return the columns of a field on some panels, in `end_values` and `powers`."""
@@ -224,11 +243,13 @@ class Curve:
         On the left T - x rises to xi = t - y, going left from y; on the right T + x rises to eta =
         t + y, going right.
         """
+        exits_to_right, exits_to_left = self._lowest_exits
         right, meets_right = _panels_of_crossings(
-            self.edges, regions=self._lowest_exits[0], y=y, level=eta
+            self.edges, regions=exits_to_right, y=y, level=eta
         )
+        # The left side is searched as the right side of the mirrored curve.
         mirrored, meets_left = _panels_of_crossings(
-            -self.edges[::-1], regions=self._lowest_exits[1], y=-y, level=xi
+            -self.edges[::-1], regions=exits_to_left, y=-y, level=xi
         )
         left = len(self.panels) - 1 - mirrored
         columns = np.concatenate([self.columns("t_minus_x", left), self.columns("t_plus_x", right)])
@@ -244,8 +265,11 @@ class Curve:
         The exit of a panel is the value at the end where the characteristic leaves it.
         """
         _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
-        right = _lowest_exit_beyond(t_plus_x[1], self.edges, self.restarts[0])
-        return right, _lowest_exit_beyond(t_minus_x[0, ::-1], self.edges[::-1], self.restarts[1])
+        at_right_ends, at_left_ends = t_plus_x[1], t_minus_x[0]
+        left_restarts, right_restarts = self.restarts
+        to_right = _lowest_exit_beyond(at_right_ends, self.edges, left_restarts)
+        to_left = _lowest_exit_beyond(at_left_ends[::-1], self.edges[::-1], right_restarts)
+        return to_right, to_left
 
     def front_at(self, time: float, x: float, side: float) -> float:
         """Return the position at a time of the front that runs to one side from x.
@@ -255,49 +279,61 @@ class Curve:
         """
         later = np.flatnonzero((side * self.edges > side * x) & (self.edge_times > time))
         if not later.size:
-            return float(self.edges[-1 if side > 0.0 else 0])
-        panel = later[:1] - 1 if side > 0.0 else later[-1:]
+            return float(self.edges[-1] if side > 0.0 else self.edges[0])
+        # The panel between the nearest edge that is reached later and the edge before it.
+        panel = np.array([later[0] - 1 if side > 0.0 else later[-1]])
         s = self._solve(self.columns("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
         return side * max(side * front, side * x)
 
     def _solve(self, columns: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """Return the parameters where monotonic fields (by column) have given levels."""
+        """Return the parameters where monotonic fields (by column) have given levels.
+
+        Newton's method starts from linear interpolation between the ends of the panel. Its steps do
+        not leave the panel.
+        """
         at_left, at_right = self.end_values[:, columns]
         span = at_right - at_left
-        flat = np.abs(span) < 1e-13
-        out = (2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0).clip(-1.0, 1.0)
+        is_flat = np.abs(span) < 1e-13
+        fraction = (level - at_left) / np.where(is_flat, 1.0, span)
+        out = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
         # Where a slow front has stopped, the end of the panel is a double root. Newton's steps only
         # halve the distance to it, or leave the panel, so a level at an end is not iterated.
         distance = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         todo = np.flatnonzero(distance > 1e-15 * np.abs(level))
-        min_slope = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
-        s, level, rising, min_slope = np.array([out, level, np.sign(span), min_slope])[:, todo]
+        # The sign of the slope is known, since the field is monotonic, and a lower bound of its
+        # size limits the step.
+        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
+        s, level, sign, min_slope = np.array([out, level, np.sign(span), min_slope])[:, todo]
         coefficients = self.coefficients(columns[todo])
-        for _ in range(40):
+        for _ in range(MAX_NEWTON_STEPS):
             if not todo.size:
                 break
             value, slope = value_and_slope(coefficients, s)
-            new = (s + rising * (level - value) / np.maximum(rising * slope, min_slope)).clip(
-                -1.0, 1.0
-            )
-            out[todo] = new
-            going = np.abs(new - s) >= 1e-9
+            step = sign * (level - value) / np.maximum(sign * slope, min_slope)
+            next_s = (s + step).clip(-1.0, 1.0)
+            out[todo] = next_s
+            going = np.abs(next_s - s) >= 1e-9
             todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
-            s, level, rising, min_slope = np.array([new, level, rising, min_slope])[:, going]
+            s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, going]
         return out
 
 
 def _lowest_exit_beyond(
     exits: np.ndarray, edges: np.ndarray, restarts: Sequence[float]
 ) -> list[np.ndarray]:
-    """Return the lowest exit value of each panel and the later ones in its region.
+    """Return, for each panel, the lowest exit value of this panel and of those beyond it.
 
-    A region ends at a restart; there is one array for each region.
+    Only panels of the same region count, and the result has one array for each region. A region
+    ends at a restart, because a characteristic that leaves its region across a slow front meets no
+    source farther on.
     """
-    # A characteristic that leaves its region across a slow front meets no source farther on.
     cuts = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
-    return [np.minimum.accumulate(region[::-1])[::-1] for region in np.split(exits, cuts)]
+    lowest = []
+    for region in np.split(exits, cuts):
+        from_far_end = np.minimum.accumulate(region[::-1])
+        lowest.append(from_far_end[::-1])
+    return lowest
 
 
 def _panels_of_crossings(
@@ -305,18 +341,20 @@ def _panels_of_crossings(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the panels, from y on, on which a field rises to a level for the last time.
 
-    The mask that is returned with them is False where there is no such panel.
+    regions are the lowest exits (`_lowest_exit_beyond`): beyond a panel whose lowest exit is at
+    least the level, the field stays above the level up to the end of the region. The mask that is
+    returned with the panels is False where there is no such panel.
     """
-    # On the way from y the field first falls, from above the level, down to the front.
     count = edges.size - 1
     start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
-    panel, first = np.full(y.shape, count), 0
-    for lowest in regions:
-        last = first + lowest.size
-        candidate = first + np.searchsorted(lowest, level, side="left")
-        inside = (start < last) & (candidate < last)
-        panel = np.where(inside & (panel == count), candidate, panel)
-        first = last
+    panel, first_of_region = np.full(y.shape, count), 0
+    for lowest_exits in regions:
+        end_of_region = first_of_region + lowest_exits.size
+        candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
+        is_in_region = (start < end_of_region) & (candidate < end_of_region)
+        is_missing = panel == count
+        panel = np.where(is_in_region & is_missing, candidate, panel)
+        first_of_region = end_of_region
     return np.minimum(panel, count - 1), panel < count
 
 
@@ -328,10 +366,12 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """
     square = s * s
     fourth = square * square
+    # Horner's rule in s^4 for the four polynomials q_m and for those of the derivative.
     out = coefficients[-1] * fourth
     for row in coefficients[-2:0:-1]:
         out += row
         out *= fourth
     out += coefficients[0]
+    # q_0 + s^2 q_2 and q_1 + s^2 q_3, and then the sum of the first and s times the second.
     out = out[:4] + square * out[4:]
     return out[:2] + s * out[2:]

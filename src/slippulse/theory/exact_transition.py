@@ -55,9 +55,9 @@ def exact_transition_displacement(
     )
     stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        reach = float(front_speed(level, damping_ratio, release)) * stick + _distance_to_uniform(
-            prestress
-        )
+        # The fronts are longer than the past of the stick, and are computed up to its time.
+        speed = float(front_speed(level, damping_ratio, release))
+        reach = speed * stick + _distance_to_uniform(prestress)
         fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
         )
@@ -66,7 +66,8 @@ def exact_transition_displacement(
 
 def _distance_to_uniform(prestress: Prestress) -> float:
     """Return the distance beyond which the pre-stress is uniform."""
-    return max([20.0 * (prestress.width or 0.0), *(x for x, _ in prestress.points)])
+    width = prestress.width or 0.0
+    return max([20.0 * width, *(x for x, _ in prestress.points)])
 
 
 def uniform_transition_time(
@@ -101,4 +102,6 @@ def uniform_transition_time(
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges, slowness, tau))
-    return float(Part(curve, 1.0, 10.0).find_stick_times(np.zeros(1))[0] / np.sqrt(float(gamma)))
+    # The time is computed at gamma = 1.
+    (stick,) = Part(curve, gamma=1.0, until=10.0).find_stick_times(np.zeros(1))
+    return float(stick / np.sqrt(float(gamma)))

@@ -70,15 +70,17 @@ class FastFront:
         check_runaway(self.gamma, self.alpha)
         self.gamma, self.alpha = float(self.gamma), float(self.alpha)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
-        # A panel begins at each feature, so that no feature lies unnoticed between two nodes.
-        centre, width = np.array(prestress.gaussians).reshape(-1, 2).T[..., None]
-        features = centre + width * FEATURE_MULTIPLES
+        # A panel begins at each feature, so that no feature lies unnoticed between two nodes. They
+        # are indexed [Gaussian, feature].
+        centres, widths = np.array(prestress.gaussians).reshape(-1, 2).T
+        features = centres[:, None] + widths[:, None] * FEATURE_MULTIPLES
         self.features = np.unique(features)
         # Features of Gaussians that a front crosses in a small fraction of a wave period.
-        narrow = (width[:, 0] * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
-        self.narrow_features = features[narrow].ravel()
-        levels = np.array(prestress.intervals)[:, 2:]
-        lowest = float(np.min(prestress(self.features), initial=np.min(levels)))
+        is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
+        self.narrow_features = features[is_narrow].ravel()
+        _, _, left_values, right_values = prestress.interval_table.T
+        lowest_level = np.min([left_values, right_values])
+        lowest = float(np.min(prestress(self.features), initial=lowest_level))
         check_number("lowest prestress", lowest, at_least=MIN_PRESTRESS)
         self.pieces = split_into_pieces(prestress)
         self._piece_ends = [piece.right for piece in self.pieces]
@@ -99,14 +101,17 @@ class FastFront:
 
     @property
     def marks(self) -> list[float]:
-        """Positions where the background jumps or where the front turns fast or slow."""
-        return [
-            piece.right
-            for piece, after in pairwise(self.pieces)
-            if piece.above != after.above
-            or piece.background.right_value != after.background.left_value
-            or not self.prestress.points
-        ]
+        """Positions where the background jumps or where the front turns fast or slow.
+
+        Without a table of points, they are the right ends of all pieces except the last one.
+        """
+        marks = []
+        for piece, after in pairwise(self.pieces):
+            turns = piece.above != after.above
+            jumps = piece.background.right_value != after.background.left_value
+            if turns or jumps or not self.prestress.points:
+                marks.append(piece.right)
+        return marks
 
     def piece_right_of(self, x: float) -> Piece:
         """Return the piece that contains x, or that begins at x."""
@@ -115,20 +120,22 @@ class FastFront:
     def max_panel_length(self, background: Interval) -> float:
         """Return the length of the longest panel.
 
-        The phase of the waves changes by MAX_PHASE along it.
+        The phase of the waves changes by at most MAX_PHASE along it.
         """
         level = max(background.left_value, background.right_value)
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
-        proper = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
-        length = min(MAX_PHASE / max(proper, 1e-3), MAX_SCALED_LENGTH)
+        # sqrt(dx^2 - dT^2) per unit of x.
+        proper_length = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
+        length = min(MAX_PHASE / max(proper_length, 1e-3), MAX_SCALED_LENGTH)
         return length / self.kernel_rate / self.refinement
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
-        """Return panels from a point towards stop, and the point where they end.
+        """Return panels from a point to the right, and the point where they end.
 
-        They end where tau < 0, at the time until, or at stop.
+        They end where tau turns negative, at the position stop, or at the end of the piece in which
+        the time until is reached.
         """
         x, time = start
         panels: list[Panel] = []
@@ -155,28 +162,35 @@ class FastFront:
             raise self._too_many_panels_error(background, end - start.x)
         # Panels that are short enough for the waves, and begin at every feature.
         inner = self.features[(self.features > start.x) & (self.features < end)]
-        rough = np.concatenate([[start.x], inner, [end]])
-        count = self.refinement * np.ceil(np.diff(rough) / max_length).astype(int)
-        parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
+        stretches = np.concatenate([[start.x], inner, [end]])
+        counts = self.refinement * np.ceil(np.diff(stretches) / max_length).astype(int)
+        parts = []
+        for (left, right), count in zip(pairwise(stretches), counts, strict=True):
+            parts.append(np.linspace(left, right, count + 1))
         edges = np.unique(np.concatenate(parts))
         edges[0], edges[-1] = start.x, end
+        # Panels on which 1/v or tau is not resolved are halved.
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
             tau = continued_prestress(self.prestress, background, x)
             slowness = self.slowness(tau)
-            tails = np.abs(np.stack([slowness, tau]) @ NODES_TO_SERIES[-2:].T).max(axis=(0, 2))
-            size = 2.0 * half[:, 0]
-            split = (tails * size > SERIES_TOLERANCE) & (size > MIN_PANEL_LENGTH)
-            if not split.any():
+            last_coefficients = np.stack([slowness, tau]) @ NODES_TO_SERIES[-2:].T
+            largest_tail = np.abs(last_coefficients).max(axis=(0, 2))
+            length = 2.0 * half[:, 0]
+            is_split = (largest_tail * length > SERIES_TOLERANCE) & (length > MIN_PANEL_LENGTH)
+            if not is_split.any():
                 break
             if edges.size > MAX_PANELS:
                 raise self._too_many_panels_error(background, end - start.x)
-            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
-        times = start.time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (slowness @ WEIGHTS))])
-        within = times[:-1, None] + (half * slowness) @ NODES_TO_INTEGRALS.T
-        columns = x, within, tau * half, pairwise(edges), pairwise(times)
-        return [Panel(*row) for row in zip(*columns, strict=True)]
+            middles = 0.5 * (edges[:-1] + edges[1:])
+            edges = np.sort(np.concatenate([edges, middles[is_split]]))
+        # T is the integral of 1/v; dx/ds is half of the length of a panel.
+        durations = half[:, 0] * (slowness @ WEIGHTS)
+        times = start.time + np.concatenate([[0.0], np.cumsum(durations)])
+        node_times = times[:-1, None] + (half * slowness) @ NODES_TO_INTEGRALS.T
+        columns = x, node_times, tau * half, pairwise(edges), pairwise(times)
+        return [Panel._make(row) for row in zip(*columns, strict=True)]
 
     def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
         """Return the error for a front that needs too many panels."""
@@ -189,10 +203,14 @@ class FastFront:
 
 
 def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Panel]:
-    """Return panels of T = slowness |x| in uniform pre-stress; x = 0 is an edge of them."""
+    """Return panels of T = slowness |x| in uniform pre-stress tau.
+
+    x = 0 is one of the edges of the panels, or beyond them.
+    """
     panels = []
     for left, right in pairwise(edges.tolist()):
-        half, slope = 0.5 * (right - left), slowness if left + right > 0.0 else -slowness
+        half = 0.5 * (right - left)
+        slope = slowness if left + right > 0.0 else -slowness
         x = left + half * (1.0 + NODES)
         source = np.full(NODE_COUNT, tau * half)
         panels.append(

@@ -45,27 +45,31 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
     # the last block.
     curvature = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
     curvature[-1, -3:] = curvature[-2, -3:]
+    # The equation of motion for the slips, the velocities and, in the last place, the constant 1,
+    # which is multiplied by the pre-stress, here 1.
     size = 2 * count
+    slips, velocities = slice(0, count), slice(count, size)
     system = np.zeros((size + 1, size + 1))
-    system[:count, count:size] = np.eye(count)
-    system[count:size, :count] = curvature - springs * np.eye(count)
-    system[count:size, count:size] = damping_ratio * curvature
-    system[count:size, -1] = 1.0
+    system[slips, velocities] = np.eye(count)
+    system[velocities, slips] = curvature - springs * np.eye(count)
+    system[velocities, velocities] = damping_ratio * curvature
+    system[velocities, -1] = 1.0
     step = expm(system / (speed * SUBSTEPS_PER_PERIOD))
     period = np.linalg.matrix_power(step, SUBSTEPS_PER_PERIOD)
+    period_matrix, period_load = period[:size, :size], period[:size, size]
     # One period later each block is one position farther behind, and a block at rest leads.
-    to_next_block = np.kron(np.eye(2), np.eye(count, k=-1))
-    matrix = np.eye(size) - to_next_block @ period[:size, :size]
-    load = to_next_block @ period[:size, size]
-    state = np.linalg.solve(matrix, load)
+    shift = np.kron(np.eye(2), np.eye(count, k=-1))
+    state = np.linalg.solve(np.eye(size) - shift @ period_matrix, shift @ period_load)
     states = [np.append(state, 1.0)]
     for _ in range(SUBSTEPS_PER_PERIOD):
         states.append(step @ states[-1])
-    history = np.array(states)[:, :size]
-    slip, velocity = history[:, :count], history[:, count:]
+    history = np.array(states)
+    first_slip, first_velocity = history[:, slips][:, 0], history[:, velocities][:, 0]
+    # The stress on the stuck block ahead of block 0, for unit pre-stress.
     gain = damping_ratio if release == "total" else 0.0
-    ahead = 1.0 + slip[:, 0] + gain * velocity[:, 0]
+    ahead = 1.0 + first_slip + gain * first_velocity
     prestress = 1.0 / ahead[-1]
-    # The last block must slide until the next one is released.
-    admissible = np.all(prestress * ahead[:-1] < 1.0) and np.all(velocity[1:, 0] > 0.0)
-    return SteadyFront(float(prestress), prestress * ahead, bool(admissible))
+    stays_stuck = np.all(prestress * ahead[:-1] < 1.0)
+    # The block released last must slide until the next one is released.
+    slides = np.all(first_velocity[1:] > 0.0)
+    return SteadyFront(float(prestress), prestress * ahead, bool(stays_stuck and slides))

@@ -153,12 +153,14 @@ def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str)
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """Return ln(v - 1) estimated from its limits for weak and strong damping and from b = 1."""
     distance_to_1 = 1.0 - tau
-    undamped = np.log(tau) * 2.0 - np.log(
-        distance_to_1 * (1.0 + tau) + np.sqrt(distance_to_1 * (1.0 + tau))
-    )
+    # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).
+    one_minus_square = distance_to_1 * (1.0 + tau)
+    undamped = np.log(tau) * 2.0 - np.log(one_minus_square + np.sqrt(one_minus_square))
     if release == "elastic":
+        # With strong damping v = 1/sqrt(1 - tau).
         damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
         return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
+    # At b = 1, v - 1 = tau/(1 - tau). It grows in proportion to b beyond.
     weight = np.minimum(ratio, 1.0)
     damped = np.log(tau / distance_to_1) + np.log(np.maximum(ratio, 1.0))
     return (1.0 - weight) * undamped + weight * damped

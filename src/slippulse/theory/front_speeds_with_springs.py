@@ -16,7 +16,11 @@ from .front_speeds import MIN_LOG_EXCESS, Lattice, front_speed, speeds_into
 NEARLY_ONE_DISTANCE = 1e-7
 # Leaf springs (gamma dx^2) and drag (alpha dx) below the minimum make no difference. With stronger
 # leaf springs than the maximum no front outruns the waves.
-MIN_SPRINGS, MAX_SPRINGS, MIN_DRAG = 1e-30, 1e30, 1e-15
+MIN_SPRINGS, MAX_SPRINGS = 1e-30, 1e30
+MIN_DRAG = 1e-15
+# Next to tau_0 = 1, leaf springs (times 1 + beta/dx) below this fraction of v^2, and drag below
+# this fraction of v, are included as small corrections.
+SMALL_CORRECTION = 1e-5
 # Factor by which a front is at least faster than the speed at which slip runs away.
 SPEED_MARGIN = 1.0 + 1e-6
 # The least pre-stress is first searched at this number of speeds.
@@ -72,13 +76,9 @@ def lattice_front_speed(
     lattice = Lattice(
         ratio=np.array([float(damping_ratio)]), release=release, springs=springs, drag=drag
     )
-    if 1.0 - tau0 < NEARLY_ONE_DISTANCE and damping_ratio > 0.0 and springs <= MAX_SPRINGS:
-        speed = front_speed(tau0, damping_ratio, release)
-        if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
-            # The coefficient of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
-            strength = damping_ratio * speed if release == "total" else 0.0
-            slowed = springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
-            return speed * (1.0 - slowed)
+    speed = _speed_nearly_one(tau0, lattice)
+    if speed is not None:
+        return speed
     slowest, least_prestress = _least_prestress(tau0, lattice)
     if tau0 <= least_prestress:
         rate = f", rate_strengthening = {rate_strengthening:g}" if drag else ""
@@ -90,6 +90,28 @@ def lattice_front_speed(
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
         return float(np.sqrt(springs) / (2.0 * tau0 * np.arcsin(argument)))
     return float(speeds_into(np.array([float(tau0)]), lattice, slowest)[0])
+
+
+def _speed_nearly_one(tau0: float, lattice: Lattice) -> float | None:
+    """Return the speed next to tau_0 = 1, to first order in the leaf springs.
+
+    It is None if tau_0 is not that near to 1, or if leaf springs or drag are not small.
+    """
+    springs, release = lattice.springs, lattice.release
+    damping_ratio = float(lattice.ratio[0])
+    is_near = 1.0 - tau0 < NEARLY_ONE_DISTANCE
+    if not (is_near and damping_ratio > 0.0 and springs <= MAX_SPRINGS):
+        return None
+    speed = front_speed(tau0, damping_ratio, release)
+    has_weak_springs = springs * (1.0 + damping_ratio) < SMALL_CORRECTION * speed**2
+    has_weak_drag = abs(lattice.drag) < SMALL_CORRECTION * speed
+    if not (has_weak_springs and has_weak_drag):
+        return None
+    # The coefficient of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
+    strength = damping_ratio * speed if release == "total" else 0.0
+    coefficient = strength / 6.0 + 1.0 / 24.0
+    slowed = springs / speed**2 * coefficient / (strength + 1.0)
+    return speed * (1.0 - slowed)
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
@@ -126,28 +148,35 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
 
 
 def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
-    """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress."""
+    """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress.
+
+    If tau_0 is above the pre-stress of the slowest front, these are the values of that front.
+    """
     springs, ratio = lattice.springs, lattice.ratio
     if springs > MAX_SPRINGS:
         return 0.0, 1.0
-    slow = max(1.0, np.sqrt(4.0 + springs) / np.pi)
+    slowest_speed = max(1.0, np.sqrt(4.0 + springs) / np.pi)
     if lattice.drag < 0.0:
         # Slip runs away behind a slower front.
-        slow = max(slow, SPEED_MARGIN / np.sqrt(1.0 - 0.25 * lattice.drag**2 / springs))
-    first = float(np.log(slow - 1.0)) if slow > 1.0 else MIN_LOG_EXCESS
-    least = float(np.exp(lattice.log_prestress(np.array([first]), ratio)[0]))
+        inverse_runaway_speed = np.sqrt(1.0 - 0.25 * lattice.drag**2 / springs)
+        slowest_speed = max(slowest_speed, SPEED_MARGIN / inverse_runaway_speed)
+    log_excess = float(np.log(slowest_speed - 1.0)) if slowest_speed > 1.0 else MIN_LOG_EXCESS
+    least = float(np.exp(lattice.log_prestress(np.array([log_excess]), ratio)[0]))
     # Usually the slowest front has the least pre-stress, and each higher pre-stress has one speed.
     if tau0 > least:
-        return first, least
-    slowest = 1.0 + np.exp(first)
-    last = np.log(slowest * (1.0 + ratio[0]) * (1.0 + springs)) + 5.0
-    inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN_SPEEDS - 1))
-    x = np.concatenate([[first], inner])
+        return log_excess, least
+    slowest_speed = 1.0 + np.exp(log_excess)
+    log_range = np.log(slowest_speed * (1.0 + ratio[0]) * (1.0 + springs)) + 5.0
+    faster = np.geomspace(1e-6, np.exp(log_range), SCAN_SPEEDS - 1)
+    log_excesses = np.append(log_excess, np.log(slowest_speed - 1.0 + faster))
     for _ in range(NARROW_SCANS + 1):
-        log_tau = lattice.log_prestress(x, np.full(x.size, ratio[0]))
+        log_tau = lattice.log_prestress(log_excesses, np.full(log_excesses.size, ratio[0]))
         lowest = int(np.argmin(log_tau))
-        slow, least = float(x[lowest]), float(np.exp(log_tau[lowest]))
-        if slow == first:
+        log_excess_of_least = float(log_excesses[lowest])
+        least = float(np.exp(log_tau[lowest]))
+        if log_excess_of_least == log_excess:
             break
-        x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], NARROW_SCAN_SPEEDS)
-    return slow, least
+        below = log_excesses[max(lowest - 1, 0)]
+        above = log_excesses[min(lowest + 1, log_excesses.size - 1)]
+        log_excesses = np.linspace(below, above, NARROW_SCAN_SPEEDS)
+    return log_excess_of_least, least

@@ -46,10 +46,19 @@ class Knots(NamedTuple):
         fall = self.velocity_by_xi + self.velocity_by_eta
         return (self.velocity_by_xi - self.velocity_by_eta) / np.where(fall == 0.0, np.nan, fall)
 
+    def at(self, chosen: slice | np.ndarray) -> "Knots":
+        """Return some of the knots, chosen by a slice or by their numbers."""
+        return Knots._make(values[chosen] for values in self)
+
     def joined(self, other: "Knots") -> "Knots":
-        """Return these knots combined with others, in order of position."""
-        _, first = np.unique(np.append(self.x, other.x), return_index=True)
-        return Knots._make(np.append(a, b)[first] for a, b in zip(self, other, strict=True))
+        """Return these knots combined with others, in order of position.
+
+        Where both have a knot at one position, that of these knots is kept.
+        """
+        pairs = zip(self, other, strict=True)
+        together = Knots._make(np.append(values, others) for values, others in pairs)
+        _, first_of_equal = np.unique(together.x, return_index=True)
+        return together.at(first_of_equal)
 
     def interval_of(self, x: np.ndarray) -> np.ndarray:
         """Return the interval of each position; the first or last one outside of the knots."""
@@ -70,8 +79,9 @@ class Knots(NamedTuple):
         This is so if the slope of its edge, continued to change as it does now, would exceed 1.
         """
         k = np.arange(self.x.size - 1)
-        steepness = np.abs([self.slope[:-1], self.slope[1:]])
-        k = k[self.outruns_waves(k) & (steepness.max(axis=0) + np.abs(np.diff(self.slope)) > 1.0)]
+        steepest_end = np.abs([self.slope[:-1], self.slope[1:]]).max(axis=0)
+        may_exceed_1 = steepest_end + np.abs(np.diff(self.slope)) > 1.0
+        k = k[self.outruns_waves(k) & may_exceed_1]
         return self.x[k] + OFF_CENTRE_FRACTION * (self.x[k + 1] - self.x[k])
 
     def has_end_kinds(self, k: np.ndarray, one: int, other: int) -> np.ndarray:
@@ -89,46 +99,57 @@ class Knots(NamedTuple):
 
     def has_jump(self, k: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the edge jumps or turns from fast to slow."""
-        change = np.abs(self.stick[k + 1] - self.stick[k])
-        steep = change >= (self.x[k + 1] - self.x[k]) * (1.0 + EQUALITY_TOLERANCE)
-        is_resolved = ~self.touches_brief_slip(k) & ~self.has_end_kinds(
+        duration = np.abs(self.stick[k + 1] - self.stick[k])
+        length = self.x[k + 1] - self.x[k]
+        is_slower_than_waves = duration >= length * (1.0 + EQUALITY_TOLERANCE)
+        # Between two slow knots, and next to a brief slip, the edge may be slow without a jump.
+        may_be_slow = self.touches_brief_slip(k) | self.has_end_kinds(
             k, SLOWER_THAN_WAVES, SLOWER_THAN_WAVES
         )
-        return (steep & is_resolved) | self.has_end_kinds(k, FASTER_THAN_WAVES, SLOWER_THAN_WAVES)
+        turns_slow = self.has_end_kinds(k, FASTER_THAN_WAVES, SLOWER_THAN_WAVES)
+        return (is_slower_than_waves & ~may_be_slow) | turns_slow
 
     def ends_before_jumps(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return, for each interval with a jump, the knot before the jump and the interval length.
 
-        It is the last knot at which the edge is faster than the waves.
+        The knot before the jump is the one that the edge reaches faster than the waves.
         """
         k = k[self.has_jump(k)]
-        left, right = self.kind[k], self.kind[k + 1]
-        # The edge is fast up to the earlier of the two knots, unless only the other one is of the
-        # kind FASTER_THAN_WAVES.
-        right_first = self.stick[k] >= self.stick[k + 1]
-        at_right = np.where(left == right, right_first, right == FASTER_THAN_WAVES)
-        return np.where(at_right, k + 1, k), self.x[k + 1] - self.x[k]
+        left_kind, right_kind = self.kind[k], self.kind[k + 1]
+        # If only one of the two knots is of the kind FASTER_THAN_WAVES, the edge is fast up to that
+        # knot. If both are of one kind, the edge is fast up to the knot that sticks first.
+        right_sticks_first = self.stick[k] >= self.stick[k + 1]
+        is_right = np.where(
+            left_kind == right_kind, right_sticks_first, right_kind == FASTER_THAN_WAVES
+        )
+        return np.where(is_right, k + 1, k), self.x[k + 1] - self.x[k]
 
     def interpolate(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Return stick times at positions x in the intervals k, by cubic interpolation."""
+        """Return stick times at positions x in the intervals k, by Hermite's cubic polynomial."""
         span = self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
-        bow = span * ((1.0 - s) * self.slope[k] - s * self.slope[k + 1])
+        # The term with the rise joins the two stick times, with slope 0 at both knots. The term
+        # with the bow is 0 at both knots and gives the curve its slopes there.
         rise = self.stick[k + 1] - self.stick[k]
+        bow = span * ((1.0 - s) * self.slope[k] - s * self.slope[k + 1])
         return self.stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
     def predicts_middle(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
-        """Return a mask of the intervals k whose cubic predicts the knot in its middle."""
-        one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
+        """Return a mask of the intervals k in which interpolation predicts the knot in the middle.
+
+        All three knots must be of one kind. Where they are FASTER_THAN_WAVES, the cubic must also
+        agree with the stick time and the slope in the middle; elsewhere it is not used.
+        """
+        is_one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         half = middle.x - self.x[k]
         cubic_slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
-        near = (
-            np.abs(middle.stick - self.interpolate(k, middle.x))
-            <= 2.0 * STICK_TIME_TOLERANCE * half
-        )
-        # The closer the edge comes to the wave speed, the smaller a change of its slope must be to
-        # be accepted.
+        time_error = np.abs(middle.stick - self.interpolate(k, middle.x))
+        slope_error = np.abs(middle.slope - cubic_slope)
+        # The closer the edge comes to the wave speed (slope 1), the smaller an error of the slope
+        # must be.
         steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
-        near &= np.abs(middle.slope - cubic_slope) <= np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
-        return one_kind & (near | (middle.kind != FASTER_THAN_WAVES))
+        largest_slope_error = np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
+        cubic_agrees = time_error <= 2.0 * STICK_TIME_TOLERANCE * half
+        cubic_agrees &= slope_error <= largest_slope_error
+        return is_one_kind & (cubic_agrees | (middle.kind != FASTER_THAN_WAVES))

@@ -89,50 +89,58 @@ class _Exponentials:
         """Return positions behind xi = 0 that resolve the first turns of each exponential."""
         rates = np.abs(self.exponents)
         nearest, farthest = MIN_SAMPLE_DISTANCE / rates.max(), MAX_SAMPLE_DISTANCE / rates.min()
-        return -nearest * SAMPLE_FACTOR ** np.arange(
-            math.log(farthest / nearest) / math.log(SAMPLE_FACTOR)
-        )
+        count = math.log(farthest / nearest) / math.log(SAMPLE_FACTOR)
+        return -nearest * SAMPLE_FACTOR ** np.arange(count)
 
     def first_turn(self) -> tuple[np.ndarray, bool]:
-        """Return the samples around the first minimum of slip velocity behind its peak.
+        """Return the two samples around the first minimum of slip velocity behind its peak.
 
-        The flag is True if the slip stops before it.
+        They are empty if there is no minimum. The flag is True if the slip stops before it. Slip
+        velocity is -v U', so that it falls, going back from the front, where U'' < 0, and the slip
+        stops where U' >= 0.
         """
         xi = self.samples()
-        falls = self.at(xi, 2) < 0.0
-        turns = np.flatnonzero(falls[:-1] & (self.at(xi, 2) >= 0.0)[1:])
-        turn = turns[0] if turns.size else xi.size
-        return xi[turn : turn + 2], bool((self.at(xi, 1) >= 0.0)[: turn + 1].any())
+        curvature = self.at(xi, 2)
+        is_minimum = (curvature < 0.0)[:-1] & (curvature >= 0.0)[1:]
+        minima = np.flatnonzero(is_minimum)
+        turn = minima[0] if minima.size else xi.size
+        has_stopped = self.at(xi, 1) >= 0.0
+        return xi[turn : turn + 2], bool(has_stopped[: turn + 1].any())
 
     def creeps_forever(self) -> bool:
         """Return True if slip goes on for ever.
 
-        This is so without a growing exponential, oscillation or overshoot.
+        This is so without a growing exponential, oscillation or overshoot. The first exponential
+        grows behind the front. The second one decays most slowly, and a negative amplitude means
+        that slip approaches its end from below.
         """
-        growing = abs(self.amplitudes[0]) > ABSENT_FRACTION * np.abs(self.amplitudes[1:]).max()
-        return bool(
-            self.amplitudes[1].real < 0.0 and not growing and not self.exponents[1:].imag.any()
-        )
+        growing, *decaying = np.abs(self.amplitudes)
+        is_growing_absent = growing <= ABSENT_FRACTION * max(decaying)
+        oscillates = bool(self.exponents[1:].imag.any())
+        overshoots = self.amplitudes[1].real >= 0.0
+        return bool(is_growing_absent and not oscillates and not overshoots)
 
 
 def _zone_and_tail(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
 ) -> tuple[float, _Exponentials]:
-    """Return the end of the weakening zone, and the slip U beyond it.
+    """Return the end xi of the weakening zone behind a front at speed v, and the slip U beyond it.
 
-    The end is NaN if the slip stops inside the zone.
+    xi of the slip U is counted from the end of the zone. The end is NaN if the slip stops inside
+    the zone.
     """
     b, inertia = beta * v, (v - 1.0) * (v + 1.0)
     zone = _Exponentials(
         b=b, inertia=inertia, stiffness=gamma - 1.0 / weakening, load=tau0 - 1.0, start=np.zeros(3)
     )
     xi = zone.samples()
-    weak = zone.at(xi) >= weakening
-    first = int(np.argmax(weak))
-    if not weak[first] or (zone.at(xi, 1) >= 0.0)[:first].any():
+    is_weak = zone.at(xi) >= weakening
+    first_weak = int(np.argmax(is_weak))
+    has_stopped = zone.at(xi, 1) >= 0.0
+    if not is_weak[first_weak] or has_stopped[:first_weak].any():
         return math.nan, zone
-    before = 0.0 if first == 0 else float(xi[first - 1])
-    end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
+    before = 0.0 if first_weak == 0 else float(xi[first_weak - 1])
+    end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first_weak]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
     return end, _Exponentials(b=b, inertia=inertia, stiffness=gamma, load=tau0, start=start)
 
@@ -164,13 +172,17 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
     def too_fast(v: float) -> float:
-        """Return 1 if v is above the speed of the rupture, -1 if not."""
+        """Return 1 if v is above the speed of the rupture, -1 if not.
+
+        At a lower speed the slip stops before the first minimum of slip velocity.
+        """
         end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
         if math.isnan(end):
             return -1.0
         _, stops = tail.first_turn()
         return -1.0 if stops else 1.0
 
+    # The slowest rupture is between the first trial speed that is too fast and the one before.
     upper = MIN_SPEED
     while upper < MAX_SPEED and too_fast(upper) < 0.0:
         upper *= SPEED_FACTOR
@@ -182,9 +194,11 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     zone_end, tail = _zone_and_tail(speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
     turn, _ = tail.first_turn()
     if tail.creeps_forever() or not turn.size:
-        return SteadyRupture(speed, math.inf, tau0 / gamma)
-    stick = root_between(lambda x: float(tail.at(x, 2)), float(turn[1]), float(turn[0]))
-    return SteadyRupture(speed, -(zone_end + stick), float(tail.at(stick)))
+        return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
+    # The pulse sticks where U' = U'' = 0. At this speed, U' is 0 where U'' is.
+    nearer, farther = turn.tolist()
+    stick = root_between(lambda xi: float(tail.at(xi, 2)), farther, nearer)
+    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=float(tail.at(stick)))
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
@@ -230,7 +244,6 @@ def rate_pulse(
     v = float(front_speed(tau0, damping_ratio))
     inertia = (v - 1.0) * (v + 1.0)
     half_period = math.pi * math.sqrt(inertia / gamma)
-
     evaluations = count()
 
     def slopes(distance: float, state: np.ndarray) -> list[float]:
@@ -242,25 +255,32 @@ def rate_pulse(
         resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]
 
-    def strain(distance: float, state: np.ndarray) -> float:
-        """Return the strain, which is 0 where the slip stops."""
-        return state[1]
+    def stop_event(distance: float, state: np.ndarray) -> float:
+        """Return the strain, which falls to 0 where the slip stops."""
+        _, strain = state
+        return strain
 
-    def curvature(distance: float, state: np.ndarray) -> float:
+    def peak_event(distance: float, state: np.ndarray) -> float:
         """Return the derivative of the strain, which is 0 at the peak of slip velocity."""
-        return slopes(distance, state)[1]
+        _, strain_slope = slopes(distance, state)
+        return strain_slope
 
-    strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
+    # The integration ends at a stop.
+    stop_event.terminal, stop_event.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS_PER_HALF_PERIOD}
     span = (0.0, MAX_HALF_PERIODS * half_period)
     with np.errstate(over="ignore", invalid="ignore"):
-        path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
-    if not len(path.y_events[1]):
+        path = solve_ivp(slopes, span, [0.0, 0.0], events=[stop_event, peak_event], **accuracy)
+    _, states_at_peaks = path.y_events
+    if not len(states_at_peaks):
         allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
-    peak = v * max(float(state[1]) for state in path.y_events[1])
-    if path.status != 1:
+    peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
+    # The status is 1 if the integration ended at a terminal event.
+    has_stopped = path.status == 1
+    if not has_stopped:
         return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)
+    final_slip, _ = path.y[:, -1]
     return SteadyRupture(
-        speed=v, width=float(path.t[-1]), slip=float(path.y[0, -1]), peak_velocity=peak
+        speed=v, width=float(path.t[-1]), slip=float(final_slip), peak_velocity=peak
     )

@@ -56,10 +56,10 @@ MIN_FAINT_INTERVAL = 1e-2
 
 
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
-    """Return positions between pairs of sliding ones that have stuck until a time.
+    """Return positions that have stuck until a time, between pairs of positions that slide then.
 
-    The result is empty if nothing has stuck. x is [left and right, pair]. first is the position
-    that sticks at this time, if it is known.
+    The result is empty if nothing has stuck. x has the pairs, [left and right, pair]. first is the
+    position that sticks at this time, if it is known.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:
@@ -69,20 +69,25 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
     velocity = velocity_at(x)
     is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
-        min_length = np.where(
-            velocity.min(axis=0) > ROUNDING_ERROR, MIN_INTERVAL, MIN_INTERVAL_AT_REST
-        )
+        both_move = velocity.min(axis=0) > ROUNDING_ERROR
+        min_length = np.where(both_move, MIN_INTERVAL, MIN_INTERVAL_AT_REST)
         min_length[is_faint] = MIN_FAINT_INTERVAL
+        # Only pairs between which something may still have stuck are cut into parts.
         is_open = x[1] - x[0] > min_length * part.scale
         is_open &= ~stays_positive(part, x=x, velocity=velocity, time=time)
         is_open &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
-        edges = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
-        inner_velocity = velocity_at(edges[1:-1])
-        if np.any(inner_velocity < -ROUNDING_ERROR):
-            return edges[1:-1][inner_velocity < -ROUNDING_ERROR]
-        values = np.concatenate([velocity[:1, is_open], inner_velocity, velocity[1:, is_open]])
+        # The ends of the parts and du/dt there, [end, pair].
+        ends = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
+        inner_velocity = velocity_at(ends[1:-1])
+        has_stuck = inner_velocity < -ROUNDING_ERROR
+        if np.any(has_stuck):
+            return ends[1:-1][has_stuck]
+        end_velocity = np.concatenate(
+            [velocity[:1, is_open], inner_velocity, velocity[1:, is_open]]
+        )
         is_faint = np.tile(is_faint[is_open], PARTS_PER_CUT)
-        x, velocity = (np.array([rows[:-1], rows[1:]]).reshape(2, -1) for rows in (edges, values))
+        x = np.array([ends[:-1], ends[1:]]).reshape(2, -1)
+        velocity = np.array([end_velocity[:-1], end_velocity[1:]]).reshape(2, -1)
     return np.empty(0)
 
 
@@ -92,40 +97,47 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     x and velocity (du/dt) are [left and right, pair]. Both positions and everything in their past
     must slide until the time, or a front has just arrived there.
     """
-    (left, right), curve, alpha = x, part.curve, part.alpha
+    left, right = x
+    curve, alpha = part.curve, part.alpha
     span, middle = right - left, 0.5 * (left + right)
+    # The point c is at the middle at this time.
     apex_time = time - 0.5 * (right - left)
     # Where the past of a begins on the curve, and where that of b ends.
     begin, end = curve.crossings(middle, time - left, time + right)
     domains = part.domains(middle, apex_time)
-    k, slipped = domains.stiffness, curve.arrival(middle) < apex_time
+    k = domains.stiffness
+    apex_slides = curve.arrival(middle) < apex_time
     # In the order of A_BEGINS, C_BEGINS, C_ENDS and B_ENDS.
-    points = [
-        np.concatenate(at) for at in zip(begin, domains.left, domains.right, end, strict=True)
-    ]
-
-    # In units of exp(alpha t/2), where t is the time.
+    crossings = (begin, domains.left, domains.right, end)
+    panel = np.concatenate([crossing.panel for crossing in crossings])
+    s = np.concatenate([crossing.s for crossing in crossings])
+    # w and F are divided by exp(alpha t/2) at the time t of the two positions.
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
 
     def gains(sign: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return what pre-stress of one sign adds to F: from c to a and to b, and in total."""
+        """Return the size of the part of F that pre-stress of one sign contributes.
+
+        The first array has the sum of the gains from c to a and from c to b, and the second one all
+        that the past of the two positions contributes.
+        """
         source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
-        panel_integrals = source @ WEIGHTS
-        panel, s, _ = points
-        cut = np.sum(partial_weights(s) * source[panel], axis=-1)
-        integral = ((np.cumsum(panel_integrals) - panel_integrals)[panel] + cut).reshape(4, -1)
+        by_panel = source @ WEIGHTS
+        before_panel = np.cumsum(by_panel) - by_panel
+        in_panel = np.sum(partial_weights(s) * source[panel], axis=-1)
+        integral = (before_panel[panel] + in_panel).reshape(4, -1)
         outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
         return outside_c, integral[B_ENDS] - integral[A_BEGINS]
 
-    at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
-    lost, negative = gains(-1.0)
+    velocity_at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
+    lost, negative_part = gains(-1.0)
     if k > 0.0:
-        added, _ = gains(1.0)
-        curved = k * span**2 / 16.0 * (at_apex + added)
-        lowest = sum(velocity) - at_apex - added - curved
+        gained, _ = gains(1.0)
+        by_springs = k * span**2 / 16.0 * (velocity_at_apex + gained)
+        lowest = sum(velocity) - velocity_at_apex - gained - by_springs
     else:
-        lowest = at_apex - lost
-    to_end = time - left - curve.evaluate("t_minus_x", end.panel, end.s)
-    to_begin = time + right - curve.evaluate("t_plus_x", begin.panel, begin.s)
-    is_before_first_zero = (negative <= 0.0) & (k * to_end * to_begin < SQUARED_FIRST_ZERO)
-    return (slipped & (lowest > 0.0)) | is_before_first_zero
+        lowest = velocity_at_apex - lost
+    # The largest argument of J0 in the triangle, squared.
+    d_xi = time - left - curve.evaluate("t_minus_x", end.panel, end.s)
+    d_eta = time + right - curve.evaluate("t_plus_x", begin.panel, begin.s)
+    is_before_first_zero = (negative_part <= 0.0) & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)
+    return (apex_slides & (lowest > 0.0)) | is_before_first_zero

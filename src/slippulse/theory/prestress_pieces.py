@@ -63,47 +63,50 @@ def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
 
     A piece has no length where the pre-stress only touches the value.
     """
-    # Positions dense enough to show every change of a Gaussian. Between them the pre-stress is
-    # linear.
-    fine = np.linspace(
-        -GAUSSIAN_EXTENT, GAUSSIAN_EXTENT, int(2 * GAUSSIAN_EXTENT * SAMPLES_PER_WIDTH) + 1
-    )
-    rows = [centre + width * fine for centre, width in prestress.gaussians]
-    samples = np.unique(np.concatenate([[], *rows]))
-    out = []
+    # Positions dense enough to show every change of a Gaussian. Between the Gaussians the
+    # pre-stress is linear.
+    sample_count = int(2 * GAUSSIAN_EXTENT * SAMPLES_PER_WIDTH) + 1
+    in_widths = np.linspace(-GAUSSIAN_EXTENT, GAUSSIAN_EXTENT, sample_count)
+    of_gaussians = [centre + width * in_widths for centre, width in prestress.gaussians]
+    samples = np.unique(np.concatenate([[], *of_gaussians]))
+    pieces = []
     for background in prestress.intervals:
         above, changes = _sign_changes(
             prestress, background=background, samples=samples, value=value
         )
         for start, end in pairwise([background.left, *changes, background.right]):
-            out.append(Piece(left=start, right=end, background=background, above=above))
+            pieces.append(Piece(left=start, right=end, background=background, above=above))
             above = not above
-    return out
+    return pieces
 
 
 def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
-    """Return the intervals with tau >= 1 from left to right.
+    """Return the left and right end of each interval with tau >= 1, from left to right.
 
-    An interval is a point where tau only touches 1.
+    An interval is a point where tau only touches 1. Neighbouring pieces are one interval.
     """
-    merged: list[tuple[float, float]] = []
-    for left, right, _, above in split_into_pieces(prestress, 1.0):
-        if above and merged and left <= merged[-1][1]:
-            merged[-1] = (merged[-1][0], right)
-        elif above:
-            merged.append((left, right))
-    return merged
+    lefts: list[float] = []
+    rights: list[float] = []
+    for piece in split_into_pieces(prestress, 1.0):
+        if not piece.above:
+            continue
+        if rights and piece.left <= rights[-1]:
+            rights[-1] = piece.right
+        else:
+            lefts.append(piece.left)
+            rights.append(piece.right)
+    return list(zip(lefts, rights, strict=True))
 
 
 def _sign_changes(
     prestress: Prestress, background: Interval, samples: np.ndarray, value: float
 ) -> tuple[bool, list[float]]:
-    """Return if tau >= value at the left end, and the positions where this changes.
+    """Return if tau >= value at the left end of the background, and where this changes.
 
     A position appears twice where tau only touches the value.
     """
-    left, right, *_ = background
-    inner = samples[np.searchsorted(samples, left, "right") : np.searchsorted(samples, right)]
+    left, right = background.left, background.right
+    inner = samples[(samples > left) & (samples < right)]
     # The outermost intervals are infinite, but uniform beyond every Gaussian.
     first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
@@ -117,12 +120,14 @@ def _sign_changes(
     # The far tail of a Gaussian leaves differences as small as rounding errors.
     rounding = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING_ERROR
     differences[np.abs(differences) <= rounding] = 0.0
-    above = differences >= 0.0
+    is_above = differences >= 0.0
     changes = []
-    for k in np.flatnonzero(above[1:] != above[:-1]):
-        zeros = x[k : k + 2][differences[k : k + 2] == 0.0]
-        if zeros.size:
-            changes.append(float(zeros[0]))
+    for k in np.flatnonzero(is_above[1:] != is_above[:-1]):
+        # The change is at a sample if tau equals the value there, otherwise between two samples.
+        if differences[k] == 0.0:
+            changes.append(float(x[k]))
+        elif differences[k + 1] == 0.0:
+            changes.append(float(x[k + 1]))
         else:
             changes.append(root_between(excess, x[k], x[k + 1], xtol=1e-14))
-    return bool(above[0]), changes
+    return bool(is_above[0]), changes

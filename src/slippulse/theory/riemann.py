@@ -32,7 +32,6 @@ because it is so large that polynomials would lose their digits.
 import math
 from collections.abc import Callable
 from functools import lru_cache, partial
-from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -91,12 +90,15 @@ class StaticSolution:
             p = _integral(slope * (curve.x @ NODES_TO_DERIVATIVES.T))
         else:
             k = float(np.sqrt(gamma))
-            right = _decaying(k, x=curve.x, source=curve.source, edges=curve.edges)
-            left = _decaying(
+            # The convolution over tau on the left of each position, and over tau on its right,
+            # which is the first one of the mirrored curve.
+            over_left = _decaying(k, x=curve.x, source=curve.source, edges=curve.edges)
+            mirrored = _decaying(
                 k, x=-curve.x[::-1, ::-1], source=curve.source[::-1, ::-1], edges=-curve.edges[::-1]
             )
-            left = left[::-1, ::-1]
-            p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
+            over_right = mirrored[::-1, ::-1]
+            p = (over_left + over_right) / (2.0 * k)
+            slope = 0.5 * (over_right - over_left)
         derivatives = (
             values @ NODES_TO_DERIVATIVES.T
             for values in (curve.time, curve.t_minus_x, curve.t_plus_x)
@@ -115,35 +117,59 @@ class StaticSolution:
 
 
 def _integral(values: np.ndarray) -> np.ndarray:
-    """Return the integral of values ds from the left end of the curve, [panel, node]."""
-    gain = values @ WEIGHTS
-    return (np.cumsum(gain) - gain)[:, None] + values @ NODES_TO_INTEGRALS.T
+    """Return the integral of values ds from the left end of the curve to the nodes, [panel, node].
+
+    values are those of the integrand at the nodes.
+    """
+    by_panel = values @ WEIGHTS
+    before_panel = np.cumsum(by_panel) - by_panel
+    return before_panel[:, None] + values @ NODES_TO_INTEGRALS.T
 
 
 def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return Int_{-inf}^x exp(-k (x - x')) tau dx' at the nodes, [panel, node]."""
-    within = np.exp(k * (x - edges[:-1, None]))
-    loss = np.exp(-k * np.diff(edges))
-    gains = loss * ((source * within) @ WEIGHTS)
-    first = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0])) / k
-    steps = zip(loss, gains, strict=True)
-    starts = list(accumulate(steps, lambda p, step: p * step[0] + step[1], initial=first))
-    return (np.array(starts[:-1])[:, None] + (source * within) @ NODES_TO_INTEGRALS.T) / within
+    """Return Int_{-inf}^x exp(-k (x - x')) tau dx' at the nodes, [panel, node].
+
+    The integral is carried on from panel to panel: across a panel it decays, and gains the part of
+    the panel itself.
+    """
+    # exp(k (x - left end)) at the nodes of each panel.
+    growth = np.exp(k * (x - edges[:-1, None]))
+    decays = np.exp(-k * np.diff(edges))
+    gains = decays * ((source * growth) @ WEIGHTS)
+    # Before the curve, tau has the value at its first node: the integral there is tau/k.
+    first_tau = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0]))
+    at_left_ends = [first_tau / k]
+    for decay_of_panel, gain in zip(decays[:-1], gains[:-1], strict=True):
+        at_left_ends.append(at_left_ends[-1] * decay_of_panel + gain)
+    return (np.array(at_left_ends)[:, None] + (source * growth) @ NODES_TO_INTEGRALS.T) / growth
+
+
+class PanelNodes(NamedTuple):
+    """The nodes of some panels, seen from some points: the arguments of an integrand.
+
+    d_xi and d_eta are xi - g and eta - h, with a row for each point and a column for each node.
+    kernel(order) returns K or a derivative of it, of the same shape. panels are the panels of the
+    curve to which the nodes belong.
+    """
+
+    d_xi: np.ndarray
+    d_eta: np.ndarray
+    kernel: Callable[[int], np.ndarray | float]
+    panels: slice
 
 
 class DependenceDomains:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
-    Every field is an integral over these domains (`_integrate`). Its integrand is a function of
-    four arguments: xi - g and eta - h, with a row for each point and a column for each node; a
-    function that returns K or a derivative of it, by order; and the slice of the panels to which
-    the columns belong.
+    Every field is an integral over these domains (`_integrate`), whose integrand is a function of
+    `PanelNodes`.
     """
 
     def __init__(
         self, curve: Curve, gamma: float, alpha: float, y: np.ndarray, time: np.ndarray
     ) -> None:
-        self.curve, self.alpha, self.y = curve, alpha, y
+        self.curve, self.y = curve, y
+        self.alpha = alpha
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
         self.left, self.right = curve.crossings(y, self.xi, self.eta)
@@ -151,74 +177,90 @@ class DependenceDomains:
     def slip_velocity(self) -> np.ndarray:
         """Return du/dt at the points."""
         source = self.curve.source
-        return 0.5 * self._integrate(
-            lambda _, __, kernel, panels: kernel(0) * source[panels].ravel()
-        )
+        return 0.5 * self._integrate(lambda nodes: nodes.kernel(0) * source[nodes.panels].ravel())
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        Each consists of what enters at the end of the integral and of the change of the kernel.
+        They follow from 2 du/dt = Int tau E K dx. By xi, the left end of the integral moves with
+        dx/dg, K changes by k (eta - h) K', and E by -alpha/4; by eta likewise with the right end.
         """
         decay_left, decay_right = self._decay_at_ends()
         left = self._source_at_end("t_minus_x", self.left, decay_left)
         right = self._source_at_end("t_plus_x", self.right, decay_right)
         # The decay E depends on xi and on eta in the same way.
-        lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
+        by_decay = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
-            return -0.5 * left - lag, 0.5 * right - lag
+            return -0.5 * left - by_decay, 0.5 * right - by_decay
         source, k = self.curve.source, self.stiffness
 
-        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            growth = kernel(1) * source[panels].ravel()
-            return np.stack([growth * d_eta, growth * d_xi])
+        def integrand(nodes: PanelNodes) -> np.ndarray:
+            """Return tau K' (eta - h) dx/ds and tau K' (xi - g) dx/ds."""
+            kernel_slope = nodes.kernel(1) * source[nodes.panels].ravel()
+            return np.stack([kernel_slope * nodes.d_eta, kernel_slope * nodes.d_xi])
 
         by_xi, by_eta = self._integrate(integrand, (2,))
-        return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
+        return 0.5 * (k * by_xi - left) - by_decay, 0.5 * (k * by_eta + right) - by_decay
 
     def _source_at_end(self, phase: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
-        """Return E tau dx/dg or E tau dx/dh at an end of each integral."""
+        """Return E tau dx/dg or E tau dx/dh at an end of each integral.
+
+        phase is the name of g ("t_minus_x") or h ("t_plus_x"), and decayed is E at the end.
+        """
+        # The source is tau dx/ds, so that its quotient with dg/ds is tau dx/dg.
         slope = self.curve.evaluate(phase, end.panel, end.s, order=1)
         # Where this slope is 0, tau is 0 too, and the end contributes nothing.
         slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
         return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
 
     def slip(self, static_solution: StaticSolution) -> np.ndarray:
-        """Return u at the points."""
+        """Return u at the points, by the formula for 2 u in the module docstring."""
         k, alpha = self.stiffness, self.alpha
 
-        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            at = static_solution.on(panels)
-            # These are the factors of K and of K' in the formula for 2 u.
-            with_kernel = -at.slope * at.d_time
-            with_kernel -= 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
-            with_slope = d_eta * (k * at.p * at.d_t_minus_x)
-            with_slope -= d_xi * (k * at.p * at.d_t_plus_x)
-            return kernel(0) * with_kernel + kernel(1) * with_slope
+        def integrand(nodes: PanelNodes) -> np.ndarray:
+            """Return the expression in braces per unit of s."""
+            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
+            factor_of_kernel = -slope * d_time
+            # alpha/2 p dx, where 2 dx = dh - dg.
+            factor_of_kernel -= 0.25 * alpha * p * (d_h - d_g)
+            factor_of_slope = nodes.d_eta * (k * p * d_g)
+            factor_of_slope -= nodes.d_xi * (k * p * d_h)
+            return nodes.kernel(0) * factor_of_kernel + nodes.kernel(1) * factor_of_slope
 
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
-        """Return du/dx at the points, by the derivative of the formula for u."""
-        k, alpha, curve = self.stiffness, self.alpha, self.curve
+        """Return du/dx at the points, the derivative of the formula for u by y.
+
+        By y, xi decreases and eta increases at the same rate. So z changes by
+        k [(xi - g) - (eta - h)], the last bracket by dg + dh, and E does not change.
+        """
+        k, alpha = self.stiffness, self.alpha
+        curve = self.curve
         out = self._minus_mean_of_ends(static_solution, 1)
         if k == alpha == 0.0:
             return out
 
-        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
-            at = static_solution.on(panels)
-            first = kernel(1)
-            growth = d_eta * (at.p * at.d_t_minus_x) - d_xi * (at.p * at.d_t_plus_x)
-            growth = k**2 * kernel(2) * growth
-            sides = first * (k * at.p * (at.d_t_minus_x + at.d_t_plus_x))
-            push = at.slope * at.d_time + 0.25 * alpha * at.p * (at.d_t_plus_x - at.d_t_minus_x)
-            return (d_eta - d_xi) * (first * (k * push) - growth) + sides
+        def integrand(nodes: PanelNodes) -> np.ndarray:
+            """Return the derivative of the expression in braces, per unit of s."""
+            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
+            kernel_slope = nodes.kernel(1)
+            # The derivative of K' in the second term.
+            bracket = nodes.d_eta * (p * d_g) - nodes.d_xi * (p * d_h)
+            by_kernel_slope = k**2 * nodes.kernel(2) * bracket
+            # The derivative of K in the first term, and of the bracket in the second one.
+            factor_of_kernel = slope * d_time + 0.25 * alpha * p * (d_h - d_g)
+            by_kernel = kernel_slope * (k * factor_of_kernel)
+            by_bracket = kernel_slope * (k * p * (d_g + d_h))
+            return (nodes.d_eta - nodes.d_xi) * (by_kernel - by_kernel_slope) + by_bracket
 
+        # The ends of the integral move. At the left end xi = g, at the right end eta = h, so that
+        # K = 1 and K' = -1/4 at both of them.
         at_left, at_right = self._at_ends(static_solution, 0)
         d_xi = self.xi - curve.evaluate("t_minus_x", self.right.panel, self.right.s)
         d_eta = self.eta - curve.evaluate("t_plus_x", self.left.panel, self.left.s)
-        sides = 0.125 * k * (d_xi * at_right - d_eta * at_left)
-        out += sides - 0.25 * alpha * (at_right - at_left)
+        by_motion_of_ends = 0.125 * k * (d_xi * at_right - d_eta * at_left)
+        out += by_motion_of_ends - 0.25 * alpha * (at_right - at_left)
         return out + 0.5 * self._integrate(integrand)
 
     def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
@@ -226,12 +268,14 @@ class DependenceDomains:
         at_points = static_solution.evaluate(*self.curve.locate(self.y), order)
         return at_points - 0.5 * sum(self._at_ends(static_solution, order))
 
-    def _at_ends(self, static_solution: StaticSolution, order: int) -> list[np.ndarray]:
-        """Return E p or E p' at the left and at the right end of each integral."""
-        ends = zip((self.left, self.right), self._decay_at_ends(), strict=True)
-        return [
-            static_solution.evaluate(end.panel, end.s, order) * decayed for end, decayed in ends
-        ]
+    def _at_ends(
+        self, static_solution: StaticSolution, order: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return E p (order 0) or E p' (order 1) at the left and right end of each integral."""
+        decay_left, decay_right = self._decay_at_ends()
+        at_left = static_solution.evaluate(self.left.panel, self.left.s, order)
+        at_right = static_solution.evaluate(self.right.panel, self.right.s, order)
+        return at_left * decay_left, at_right * decay_right
 
     def _decay_at_ends(self) -> tuple[np.ndarray | float, np.ndarray | float]:
         """Return E at the left and at the right end of each integral."""
@@ -242,11 +286,12 @@ class DependenceDomains:
         return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
     def _integrate(
-        self, integrand: Callable[..., np.ndarray], components: tuple[int, ...] = ()
+        self, integrand: Callable[[PanelNodes], np.ndarray], components: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Return the integral of an integrand over each domain, [component, point].
+        """Return the integral of an integrand times E over each domain, [component, point].
 
-        The integrand is given per unit of the parameter of the panels.
+        The integrand is given per unit of the parameter of the panels. components is the number of
+        its components in a tuple, or empty if there is only one.
         """
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
@@ -259,48 +304,51 @@ class DependenceDomains:
             low = np.minimum(self.left.panel[points], high)
             first, last = int(low.min()), int(high.max()) + 1
             panels = slice(first, last)
+            # From here on, panels are counted from the first one of this chunk.
             low, high = low - first, high - first
-            ends = np.arange(low.size), np.array([high, low])
+            row = np.arange(low.size)
             d_xi = self.xi[points, None] - curve.t_minus_x[panels].ravel()
             d_eta = self.eta[points, None] - curve.t_plus_x[panels].ravel()
             z = self.stiffness * d_xi
             z *= d_eta
             # Only the panels at the two ends, which are cut, may have nodes outside of the domain.
-            kernel = kernel_function(self.stiffness, z, z.reshape(low.size, -1, NODE_COUNT)[ends])
-            values = integrand(d_xi, d_eta, kernel, panels)
+            z_at_ends = z.reshape(low.size, -1, NODE_COUNT)[row, np.array([high, low])]
+            kernel = kernel_function(self.stiffness, z, z_at_ends)
+            values = integrand(PanelNodes(d_xi, d_eta, kernel, panels))
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)
             by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
-            # Sum over the whole panels between both ends, and over the parts of the panels at the
-            # ends.
+            # The integral over the panels from the left end of the panel `low` to the left end of
+            # the panel `high`, plus the part of `high` in the domain, minus the part of `low` that
+            # lies outside.
             panel = np.arange(last - first)
-            inside = (panel >= low[:, None]) & (panel < high[:, None])
-            total = np.add.reduce((by_panel @ WEIGHTS) * inside, axis=-1)
+            is_between = (panel >= low[:, None]) & (panel < high[:, None])
+            total = np.add.reduce((by_panel @ WEIGHTS) * is_between, axis=-1)
             weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-            cut = np.add.reduce(
-                by_panel[..., *ends, :] * weights.reshape(2, -1, NODE_COUNT), axis=-1
-            )
-            out[..., points] = total + cut[..., 0, :] - cut[..., 1, :]
+            weights_high, weights_low = weights.reshape(2, -1, NODE_COUNT)
+            in_high = np.add.reduce(by_panel[..., row, high, :] * weights_high, axis=-1)
+            in_low = np.add.reduce(by_panel[..., row, low, :] * weights_low, axis=-1)
+            out[..., points] = total + in_high - in_low
         # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
-    def _integrate_without_kernel(self, integrand: Callable[..., np.ndarray]) -> np.ndarray:
+    def _integrate_without_kernel(
+        self, integrand: Callable[[PanelNodes], np.ndarray]
+    ) -> np.ndarray:
         """Return the integrals if the kernel is 1, where all points have the same integrand.
 
-        Then they are differences of cumulative sums.
+        Then each is the difference of two integrals from the left end of the curve.
         """
         zero, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
-        values = np.broadcast_to(
-            integrand(zero, zero, lambda _: 1.0, all_panels), (1, self.curve.x.size)
-        )
+        nodes = PanelNodes(d_xi=zero, d_eta=zero, kernel=lambda _: 1.0, panels=all_panels)
+        values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))
         by_panel = values.reshape(-1, NODE_COUNT)
         sums = np.concatenate([[0.0], np.cumsum(by_panel @ WEIGHTS)])
         low, high = np.minimum(self.left.panel, self.right.panel), self.right.panel
-        at_low = sums[low] + np.add.reduce(partial_weights(self.left.s) * by_panel[low], axis=-1)
-        at_high = sums[high] + np.add.reduce(
-            partial_weights(self.right.s) * by_panel[high], axis=-1
-        )
-        return np.where(self.left.panel > self.right.panel, 0.0, at_high - at_low)
+        in_low = np.add.reduce(partial_weights(self.left.s) * by_panel[low], axis=-1)
+        in_high = np.add.reduce(partial_weights(self.right.s) * by_panel[high], axis=-1)
+        total = (sums[high] + in_high) - (sums[low] + in_low)
+        return np.where(self.left.panel > self.right.panel, 0.0, total)
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
@@ -343,6 +391,7 @@ def riemann_kernel(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)
     scaled.clip(-1.0, 1.0, out=scaled)
+    # Horner's rule, in place.
     coefficients = _polynomial(lower, upper, order)
     out = coefficients[0] * scaled
     for coefficient in coefficients[1:-1]:
@@ -353,7 +402,10 @@ def riemann_kernel(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -
 
 def _power_of_two(bound: float) -> float:
     """Return a bound rounded away from 0 to a power of two, at least 1 in size; 0 remains 0."""
-    return bound and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(bound)))), bound)
+    if bound == 0.0:
+        return 0.0
+    exponent = max(0, math.ceil(math.log2(abs(bound))))
+    return math.copysign(2.0**exponent, bound)
 
 
 @lru_cache(maxsize=256)

@@ -114,42 +114,46 @@ class Rupture(ExplainsRemovedNames):
         self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
         until = self.duration * (1.0 + EXTRA_DURATION)
         self.stretches, self._unknown_points = spread(self.law, until)
-        self._parts = []
-        for stretch in self.stretches:
-            curve, law = stretch.curve(), self.law
-            restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
-            ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-            marks = np.unique(
-                [0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features]
-            )
-            marks = marks[curve.covers(marks)]
-            part = SolvedPart(
-                curve=curve,
-                gamma=self.gamma,
-                until=until,
-                marks=marks,
-                refinement=law.refinement,
-                one_side=prestress.symmetric,
-                alpha=law.alpha,
-            )
-            self._parts.append(part)
-        # A symmetric scene is computed at x >= 0 only.
-        one_side = prestress.symmetric
-        self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0 or not one_side]
+        self._parts = [self._make_part(stretch, until) for stretch in self.stretches]
+        self._solved = self._parts
+        if prestress.symmetric:
+            # A symmetric scene is computed at x >= 0 only.
+            self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0]
+
+    def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
+        """Return the part of the rupture behind the fronts of a stretch, until a time."""
+        curve, law = stretch.curve(), self.law
+        restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
+        ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
+        marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+        return SolvedPart(
+            curve=curve,
+            gamma=self.gamma,
+            until=until,
+            marks=marks[curve.covers(marks)],
+            refinement=law.refinement,
+            one_side=self.prestress.symmetric,
+            alpha=law.alpha,
+        )
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
         """Left and right end of each connected part; the reason is "stops" or "duration"."""
-        pairs = zip(self._parts, self.stretches, strict=True)
-        return [(self._front_end(*pair, LEFT), self._front_end(*pair, RIGHT)) for pair in pairs]
+        ends = []
+        for part, stretch in zip(self._parts, self.stretches, strict=True):
+            left, right = (self._front_end(part, stretch, side) for side in (LEFT, RIGHT))
+            ends.append((left, right))
+        return ends
 
     def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
         """Return the last point, until the duration, of the front on one side of a part."""
-        (x, time), reason = stretch.ends[side], str(stretch.end_reason[side])
-        if reason != "duration" and time <= self._latest_time:
-            return FrontEnd(float(x), float(min(time, self.duration)), reason)
-        edges = part.curve.edges[part.curve.edge_times <= self.duration]
-        x = part.curve.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
+        end, reason = stretch.ends[side], str(stretch.end_reason[side])
+        if reason != "duration" and end.time <= self._latest_time:
+            return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
+        # The curve continues a little beyond the duration.
+        reached = part.curve.edges[part.curve.edge_times <= self.duration]
+        outermost = reached[-1] if side == RIGHT else reached[0]
+        x = part.curve.front_at(self.duration, outermost, side)
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
@@ -233,19 +237,21 @@ class Rupture(ExplainsRemovedNames):
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
-        slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
-        slip = self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
-        unknown = slides | self._is_beyond_horizon(x, self.duration)
-        return np.where(unknown, np.nan, slip)
+        has_stuck = np.isfinite(stick)
+        still_slides = np.isfinite(self.release_time(x)) & ~has_stuck
+        slip = self.slip(x, np.where(has_stuck, stick, self.duration))
+        is_unknown = still_slides | self._is_beyond_horizon(x, self.duration)
+        return np.where(is_unknown, np.nan, slip)
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None if nothing sticks before ``duration``."""
-        first = min(filter(None, (part.first_stick() for part in self._solved)), default=None)
+        first_of_parts = [part.first_stick() for part in self._solved]
+        first = min(filter(None, first_of_parts), default=None)
         # After a limit something else may have stuck earlier, but up to the limit the edge is
         # known.
-        last = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
-        if not first or first.time > min(last, self._latest_time):
+        known_until = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
+        if not first or first.time > min(known_until, self._latest_time):
             return None
         return FirstStick(min(first.time, self.duration), first.x)
 
@@ -272,8 +278,18 @@ class Rupture(ExplainsRemovedNames):
         time = self._checked_time(time)
         if not self.first_stick or time <= self.first_stick.time * (1.0 + EQUALITY_TOLERANCE):
             return np.nan
-        x = self.first_stick.x
-        front = self.fronts_at(time, x)[side == "right"]
+        left, right = self.fronts_at(time, self.first_stick.x)
+        front = right if side == "right" else left
+        trailing = self._trailing_edge_behind(front, time, self.first_stick.x)
+        unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
+        return np.nan if unknown else abs(front - trailing)
+
+    def _trailing_edge_behind(self, front: float, time: float, stuck: float) -> float:
+        """Return the position of the trailing edge that follows a front, at a time.
+
+        front is the position of the front at this time, and stuck a position that has stuck before.
+        The result is the front itself if it has stopped and stuck.
+        """
 
         def delay(position: float) -> float:
             """Return how much later than the given time a position sticks."""
@@ -282,18 +298,19 @@ class Rupture(ExplainsRemovedNames):
             )
             return float(stick) - time
 
-        # If there are several trailing edges, that of the pulse is nearest to its front.
+        if delay(front) <= 0.0:
+            return front
+        # Of several trailing edges between the two positions, that of the pulse is nearest to the
+        # front. It lies between the first knot that has stuck, going back from the front, and the
+        # knot before.
         knots = np.concatenate([part.knots.x for part in self._solved])
         knots = np.append(knots, -knots) if self.prestress.symmetric else knots
-        inner = np.append(knots[(knots - x) * (knots - front) < 0.0], x)
-        inner = inner[np.argsort(np.abs(inner - front))]
-        first = int(np.argmax(self._stick_time_beyond_end(inner) <= time))
-        ahead = inner[first - 1] if first else front
-        trailing = front
-        if delay(front) > 0.0:
-            trailing = root_between(delay, float(inner[first]), float(ahead), xtol=1e-11)
-        unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
-        return np.nan if unknown else abs(front - trailing)
+        is_between = (knots - stuck) * (knots - front) < 0.0
+        candidates = np.append(knots[is_between], stuck)
+        candidates = candidates[np.argsort(np.abs(candidates - front))]
+        first_stuck = int(np.argmax(self._stick_time_beyond_end(candidates) <= time))
+        ahead = candidates[first_stuck - 1] if first_stuck else front
+        return root_between(delay, float(candidates[first_stuck]), float(ahead), xtol=1e-11)
 
     @cached_property
     def largest_velocity(self) -> float:
@@ -371,6 +388,7 @@ class Rupture(ExplainsRemovedNames):
         for part in self._solved:
             part.fill_fields(out, x=positions, index=index, time=time)
         if "strain" in out and self.prestress.symmetric:
+            # The fields are those at |x|. Only the strain is different, by its sign, at x < 0.
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
         return {name: np.where(unknown, np.nan, values) for name, values in out.items()}
@@ -389,7 +407,8 @@ class Rupture(ExplainsRemovedNames):
 
     def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return times of events; NaN where an event is not known to happen before the end."""
-        is_known = (time <= self._latest_time) & ~self._is_beyond_horizon(x, time)
+        is_before_end = time <= self._latest_time
+        is_known = is_before_end & ~self._is_beyond_horizon(x, time)
         return np.where(is_known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
@@ -399,11 +418,11 @@ class Rupture(ExplainsRemovedNames):
     @cached_property
     def _limits(self) -> list[Limit]:
         """All points in whose future the construction makes no statement."""
-        limits = [Limit(*point, reason) for point, reason in self._unknown_points]
+        limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
         for part in self._solved:
-            slow = [Limit(*point, SLOW_EDGE) for point in part.slow_points()]
-            falling = part.falling_slip(partial(_horizon, limits + slow))
-            new = slow + [Limit(*point, FALLING_SLIP) for point in falling]
+            slow = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
+            falling = part.falling_slip(horizon=partial(_horizon, limits + slow))
+            new = slow + [Limit(point.x, point.time, FALLING_SLIP) for point in falling]
             if self.prestress.symmetric:
                 new += [Limit(-limit.x, limit.time, limit.reason) for limit in new]
             limits += new

@@ -109,6 +109,16 @@ class Progress(NamedTuple):
     last_entry: float = np.nan
 
 
+class Event(NamedTuple):
+    """An event of a slow front: it reaches the mark (name "mark") or stops (name None).
+
+    s is the parameter of the event on the chunk, infinite if there is no event.
+    """
+
+    s: float
+    name: str | None
+
+
 class Entry(NamedTuple):
     """The next entry: its panel of the curve, and the parameter on it.
 
@@ -145,43 +155,51 @@ class Chunk(NamedTuple):
         return self._replace(stop=0.5 * (self.start + self.stop))
 
 
-def _first_event(x: np.ndarray, mark: float, limit: float) -> tuple[float, str | None]:
-    """Return the parameter of the first event of a solution up to a limit, and its name.
+def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
+    """Return the first event of a front with positions x at the nodes of a chunk.
 
-    The event is "mark" where the front reaches the mark, and None where it stops. The parameter is
-    inf if there is no event.
+    corrections is the number of times that the end of the chunk was moved to an event. If it was
+    moved, the event may lie a little beyond the end.
     """
-    events: list[tuple[float, str | None]] = [
-        (s, None) for s in _roots_on(NODES_TO_DERIVATIVES @ x, limit)
-    ]
+    limit = SEARCH_LIMIT if corrections else 1.0
+    events = [Event(s, None) for s in _roots_on_chunk(NODES_TO_DERIVATIVES @ x, limit)]
     if np.isfinite(mark):
-        events += [(s, "mark") for s in _roots_on(x - mark, limit)]
-    return min(events, key=lambda event: event[0], default=(np.inf, None))
+        events += [Event(s, "mark") for s in _roots_on_chunk(x - mark, limit)]
+    return min(events, key=lambda event: event.s, default=Event(np.inf, None))
 
 
-def _must_be_corrected(event: float, corrections: int) -> bool:
-    """Return True if a chunk does not end at an event yet (inf: none), after corrections."""
-    if event == np.inf:
+def _must_be_corrected(event: Event, corrections: int) -> bool:
+    """Return True if there is an event, but the chunk does not end there yet.
+
+    corrections is the number of times that the end was moved. The first solution is never kept.
+    """
+    if event.s == np.inf:
         return False
     distance = EVENT_AT_END if corrections <= MAX_EXACT_CORRECTIONS else EVENT_NEAR_END
-    return corrections == 0 or abs(event - 1.0) >= distance
+    return corrections == 0 or abs(event.s - 1.0) >= distance
 
 
 def _goes_back(x: np.ndarray) -> bool:
-    """Return True if the front would run back from the start of the chunk on."""
+    """Return True if a front with positions x at the nodes runs back at the start of the chunk."""
     slope = NODES_TO_DERIVATIVES @ x
-    first = min(_roots_on(slope, 1.0), default=1.0)
-    return bool(legendre.legval(0.5 * (first - 1.0), NODES_TO_SERIES @ slope) < 0.0)
+    # The sign of the slope is examined halfway between the start and the first stop of the front.
+    first_stop = min(_roots_on_chunk(slope, 1.0), default=1.0)
+    halfway = 0.5 * (first_stop - 1.0)
+    return bool(legendre.legval(halfway, NODES_TO_SERIES @ slope) < 0.0)
 
 
-def _roots_on(values: np.ndarray, limit: float) -> list[float]:
-    """Return the roots, up to a limit, of the polynomial with these values at the nodes."""
+def _roots_on_chunk(values: np.ndarray, limit: float) -> list[float]:
+    """Return the roots of a polynomial between the start of a chunk and a limit.
+
+    values are those of the polynomial at the nodes. A root at the very start is left out.
+    """
     series = NODES_TO_SERIES @ values
     scale = np.max(np.abs(series))
     if scale == 0.0:
         return []
     roots = legendre.legroots(legendre.legtrim(series, 1e-13 * scale))
-    real = roots.real[np.abs(roots.imag) < 1e-9 * (1.0 + np.abs(roots.real))]
+    is_real = np.abs(roots.imag) < 1e-9 * (1.0 + np.abs(roots.real))
+    real = roots.real[is_real]
     return real[(real > -1.0 + EVENT_AT_START) & (real <= limit)].tolist()
 
 
@@ -194,13 +212,20 @@ class FreeBoundary:
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
-        curve, panel, s = front.curve, chunk.panel, chunk.parameters()
+        curve, panel = front.curve, chunk.panel
+        s = chunk.parameters()
         self.front = front
+        # T - x at the entry of each row, which is also its value xi at the front.
         self.t_minus_x = curve.evaluate("t_minus_x", np.full(NODE_COUNT, panel), s)
+        # T + x at the nodes of the known curve from the panel of the entries on.
         self.t_plus_x = curve.t_plus_x[panel:].ravel()
-        cut = (WEIGHTS - partial_weights(s)) * curve.source[panel]
-        later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (NODE_COUNT, 1))
-        self.weight = np.concatenate([cut, later], axis=1)
+        # The integral over the known curve begins at the entry of the row, within the panel of the
+        # entries, and covers all later panels.
+        on_entry_panel = (WEIGHTS - partial_weights(s)) * curve.source[panel]
+        on_later_panels = (curve.source[panel + 1 :] * WEIGHTS).ravel()
+        self.weight = np.concatenate(
+            [on_entry_panel, np.tile(on_later_panels, (NODE_COUNT, 1))], axis=1
+        )
         self.d_xi = self.t_minus_x[:, None] - np.append(curve.t_minus_x[panel:], self.t_minus_x)
         # Without leaf springs and drag the kernel is 1.
         self.has_unit_kernel = front.stiffness == front.alpha == 0.0
@@ -242,6 +267,7 @@ class FreeBoundary:
     def kernel_and_slope(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the kernel E J0, [row, node], and its derivative with respect to X of the row."""
         k, alpha = self.front.stiffness, self.front.alpha
+        # t + x at the front, where t - x has its value at the entry and x is the position X.
         eta = self.t_minus_x + 2.0 * x
         d_eta = eta[:, None] - np.append(self.t_plus_x, eta)
         z = k * self.d_xi * d_eta
@@ -253,14 +279,18 @@ class FreeBoundary:
         return kernel, slope
 
     def newton_step_with_unit_kernel(self, x: np.ndarray) -> np.ndarray | None:
-        """Return the step of Newton's method if the kernel is 1."""
-        area, tau = self.crossed_by_front(x)
-        return (self.known_integral + area) / tau if np.all(tau < 0.0) else None
+        """Return the step of Newton's method if the kernel is 1; None as in `newton_step`."""
+        prestress_integral, tau = self.crossed_by_front(x)
+        if not np.all(tau < 0.0):
+            return None
+        return (self.known_integral + prestress_integral) / tau
 
     def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the integral of tau from the start of the chunk to positions, and tau there."""
+        """Return the integral of tau from the start of the chunk to positions x, and tau at x."""
         half = 0.5 * (x - self.front.x0)
-        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+        # Quadrature nodes between the start and each position, and the position itself.
+        nodes_and_end = np.append(1.0 + NODES, 2.0)
+        tau = self.front.tau(self.front.x0 + half[:, None] * nodes_and_end)
         return half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
 
 
@@ -268,8 +298,8 @@ class FreeBoundary:
 class SlowFront:
     """The right end of a curve and its continuation into negative pre-stress.
 
-    background is the linear piece of the pre-stress in which the front is; t0 and x0 are its end
-    point.
+    background is the linear piece of the pre-stress in which the front is. The front is at the
+    point (x0, t0), the right end of the curve; size is the size of the rupture.
     """
 
     curve: Curve
@@ -312,9 +342,13 @@ class SlowFront:
         return advance
 
     def advance_from(self, entry: Entry, mark: float, next_length: float) -> Advance:
-        """Continue the front by one panel, whose first entry is given."""
-        panel, s, _ = entry
-        chunk, corrections = Chunk(panel, s, max(s - next_length, -1.0)), 0
+        """Continue the front by one panel, whose first entry is given.
+
+        The longest chunk that next_length allows is tried first. It is halved as long as its
+        solution is not usable, and shortened to end at an event, if there is one.
+        """
+        last = max(entry.s - next_length, -1.0)
+        chunk, corrections = Chunk(entry.panel, entry.s, last), 0
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
                 return self.straight(mark)
@@ -327,20 +361,20 @@ class SlowFront:
             if x is None:
                 chunk, corrections = chunk.half(), 0
                 continue
-            s, stop = _first_event(x, mark, SEARCH_LIMIT if corrections else 1.0)
-            if _must_be_corrected(s, corrections):
+            event = _first_event(x, mark, corrections)
+            if _must_be_corrected(event, corrections):
                 # Beyond an event the solution may be meaningless: the chunk is solved again so that
                 # it ends at the event.
-                chunk = chunk._replace(stop=float(chunk.parameters(np.array(s))))
+                chunk = chunk._replace(stop=float(chunk.parameters(np.array(event.s))))
                 corrections += 1
             elif np.any(np.diff(x, prepend=self.x0) <= 0.0):
                 # Where the equation hardly depends on the position of the front, rounding may put
                 # the front behind its start.
                 chunk, corrections = chunk.half(), 0
             else:
-                end = mark if stop == "mark" else None
-                progress = self.progress_after(chunk, ends_at_event=s < np.inf)
-                return Advance(self.panel(chunk, x, end), stop, progress)
+                x_end = mark if event.name == "mark" else float(NODES_TO_ENDS[1] @ x)
+                progress = self.progress_after(chunk, ends_at_event=event.s < np.inf)
+                return Advance(self.panel(chunk, x, x_end), event.name, progress)
         return Advance(None, "unresolved")
 
     def progress_after(self, chunk: Chunk, ends_at_event: bool) -> Progress:
@@ -357,48 +391,63 @@ class SlowFront:
     def next_entry(self, last_entry: float, negligible: float) -> Entry | None:
         """Return the next entry after the position of the last one; None if it is not known.
 
-        It follows the last one along the curve. A search for its value of T - x would fail where
-        the pre-stress is nearly 0, since T - x is constant to rounding there. Entries that move the
-        front by a negligible distance are skipped.
+        It follows the last one along the curve, from right to left. A search for its value of T - x
+        would fail where the pre-stress is nearly 0, since T - x is constant to rounding there.
+        Entries are skipped as long as all of them together move the front by no more than the
+        fraction ``negligible`` of the size of the rupture.
         """
-        panel, s = len(self.curve.panels) - 1, 1.0
-        if np.isfinite(last_entry):
-            (panel,), (s,) = self.curve.locate(np.array([last_entry]))
-            # A remainder as small as rounding errors cannot be resolved and is left to the next
-            # panel.
-            panel, s = (panel, s) if s + 1.0 >= MIN_REMAINDER else (panel - 1, 1.0)
-        gain, has_skipped = 0.0, False
-        while panel >= 0 and not self.is_slow_to_right(panel):
-            parameters = s - (s + 1.0) * ENTRY_FRACTIONS
-            motions = gain + self.motion_by_entries(panel, parameters)
+        entry = self.entry_next_to(last_entry)
+        skipped_motion, has_skipped = 0.0, False
+        # The panels are examined one after another. The search ends at a panel of the slow front
+        # itself; an entry behind it is found in another way.
+        while entry.panel >= 0 and not self.is_slow_to_right(entry.panel):
+            # Samples from the entry to the left end of its panel.
+            s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
+            motions = skipped_motion + self.motion_by_entries(entry.panel, s)
             # Only entries with negative pre-stress can move the front back.
-            negative = bool(np.min(self.curve.source[panel]) < 0.0)
-            negligible_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if negative else negligible)
-            # The last of the entries from the first one on that are all negligible.
-            last = int(np.argmin(np.append(np.abs(motions) <= negligible_motion, False))) - 1
-            gain, has_skipped = float(motions[last]), has_skipped or last > 0
-            if last < ENTRY_FRACTIONS.size - 1:
-                goes_on = not negative or motions[last + 1] >= motions[last]
+            is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
+            largest_skipped = self.size * (NEGLIGIBLE_MOTIONS[0] if is_negative else negligible)
+            # The last sample up to which all samples are skipped.
+            is_skipped = np.append(np.abs(motions) <= largest_skipped, False)
+            last_skipped = int(np.argmin(is_skipped)) - 1
+            skipped_motion = float(motions[last_skipped])
+            has_skipped = has_skipped or last_skipped > 0
+            if last_skipped < ENTRY_FRACTIONS.size - 1:
+                goes_on = not is_negative or motions[last_skipped + 1] >= skipped_motion
                 return self.entry_after_skipped(
-                    Entry(int(panel), float(parameters[last])),
-                    gain=gain,
+                    Entry(int(entry.panel), float(s[last_skipped])),
+                    skipped_motion=skipped_motion,
                     has_skipped=has_skipped,
                     goes_on=goes_on,
                 )
-            panel, s = panel - 1, 1.0
-        if panel >= 0:
+            entry = Entry(entry.panel - 1, 1.0)
+        if entry.panel >= 0:
             return self.entry_behind_slow_front()
         return Entry(-1, 1.0) if has_skipped else None
 
+    def entry_next_to(self, last_entry: float) -> Entry:
+        """Return the point of the curve to the left of the position of the last entry.
+
+        It is the right end of the curve if there was no entry yet (NaN).
+        """
+        if not np.isfinite(last_entry):
+            return Entry(len(self.curve.panels) - 1, 1.0)
+        (panel,), (s,) = self.curve.locate(np.array([last_entry]))
+        # A remainder as small as rounding errors cannot be resolved and is left to the next panel.
+        return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, 1.0)
+
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
-        """Return how far the entries from the first parameter to each one move the front."""
+        """Return how far the front moves by the entries from the first parameter to each one.
+
+        The integral of the pre-stress over these entries equals the motion times the resistance.
+        """
         weights = partial_weights(parameters)
         return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
 
     def entry_after_skipped(
-        self, entry: Entry, gain: float, has_skipped: bool, goes_on: bool
+        self, entry: Entry, skipped_motion: float, has_skipped: bool, goes_on: bool
     ) -> Entry:
-        """Return an entry with the motion by the entries that were skipped before it.
+        """Return an entry with the motion of the front by the entries skipped before it.
 
         Its panel is negative if the front does not go on.
         """
@@ -406,7 +455,7 @@ class SlowFront:
             return entry
         if not goes_on:
             return Entry(-1, 1.0)
-        return entry._replace(skipped_motion=max(gain, self.min_motion))
+        return entry._replace(skipped_motion=max(skipped_motion, self.min_motion))
 
     @property
     def min_motion(self) -> float:
@@ -420,23 +469,31 @@ class SlowFront:
 
     def position(self, entry: Entry) -> float:
         """Return the position of an entry on the curve."""
-        return float(self.curve.evaluate("x", np.array([entry.panel]), np.array([entry.s]))[0])
+        return self.value_at("x", entry)
+
+    def value_at(self, name: str, entry: Entry, order: int = 0) -> float:
+        """Return a field of the curve (see `Curve.evaluate`), or its derivative, at an entry."""
+        panel, s = np.array([entry.panel]), np.array([entry.s])
+        return float(self.curve.evaluate(name, panel, s, order)[0])
 
     def resting_panel(self, entry: Entry) -> Panel | None:
         """Return a panel on which the front hardly moves until the entry's characteristic arrives.
 
         It is None if no entry was skipped, or if the characteristic has arrived already.
         """
-        at_entry = np.array([entry.panel]), np.array([entry.s])
-        xi = float(self.curve.evaluate("t_minus_x", *at_entry)[0])
-        x_ends = self.x0, self.x0 + entry.skipped_motion
-        time_ends = self.t0, xi + x_ends[1]
-        has_arrived = time_ends[1] - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
+        xi = self.value_at("t_minus_x", entry)
+        x_end = self.x0 + entry.skipped_motion
+        time_end = xi + x_end
+        has_arrived = time_end - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
         if entry.skipped_motion == 0.0 or has_arrived:
             return None
-        x, time = (a + 0.5 * (b - a) * (1.0 + NODES) for a, b in (x_ends, time_ends))
-        source = np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion)
-        return Panel(x=x, time=time, source=source, x_ends=x_ends, time_ends=time_ends)
+        return Panel(
+            x=self.x0 + 0.5 * (x_end - self.x0) * (1.0 + NODES),
+            time=self.t0 + 0.5 * (time_end - self.t0) * (1.0 + NODES),
+            source=np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion),
+            x_ends=(self.x0, x_end),
+            time_ends=(self.t0, time_end),
+        )
 
     def is_slow_to_right(self, panel: int) -> bool:
         """Return True if a panel belongs to a front that runs right, slower than the waves."""
@@ -444,23 +501,32 @@ class SlowFront:
         return bool(end > start and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Return where T - x next rises to its value at the front, or None if it is not known."""
+        """Return where T - x next rises to its value at the front, or None if it is not known.
+
+        The characteristic that arrives at the front now, and one that arrives slightly later, are
+        followed back to the curve. The later one enters on the panel of the next entries, which may
+        be another panel.
+        """
         xi = self.t0 - self.x0
         offset = SEARCH_OFFSET * max(self.size, abs(xi))
-        # The second characteristic, slightly later, enters on the panel that follows, or in another
-        # part of the rupture.
-        later = np.array([xi, xi + offset])
-        entries, _ = self.curve.crossings(np.full(2, self.x0), later, later + 2.0 * self.x0)
+        now_and_later = np.array([xi, xi + offset])
+        entries, _ = self.curve.crossings(
+            y=np.full(2, self.x0), xi=now_and_later, eta=now_and_later + 2.0 * self.x0
+        )
+        panel_now, panel = entries.panel.tolist()
+        s_now, s_later = entries.s.tolist()
         if not entries.meets_curve[1]:
             return None
-        panel = int(entries.panel[1])
-        # The offset would leave a gap, so that an entry near the end of a panel is moved to the
-        # end.
-        end = self.curve.end_values[1, self.curve.columns("t_minus_x", entries.panel)][1]
-        if abs(end - xi) < 10.0 * offset:
+        # The offset would leave a gap, so that an entry near the right end of a panel is moved to
+        # this end.
+        columns = self.curve.columns("t_minus_x", entries.panel)
+        _, xi_at_right_end = self.curve.end_values[1, columns].tolist()
+        if abs(xi_at_right_end - xi) < 10.0 * offset:
             return Entry(panel, 1.0)
-        s = float(entries.s[0] if entries.panel[0] == panel else entries.s[1])
-        return Entry(panel - 1, 1.0) if s + 1.0 < MIN_REMAINDER and panel > 0 else Entry(panel, s)
+        s = s_now if panel_now == panel else s_later
+        if s + 1.0 < MIN_REMAINDER and panel > 0:
+            return Entry(panel - 1, 1.0)
+        return Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Return the positions of the front at the nodes of a chunk, by Newton's method.
@@ -474,41 +540,48 @@ class SlowFront:
             if step is None:
                 return None
             x = x - step
-            previous, change = change, float(np.max(np.abs(step))) / self.size
+            previous_change = change
+            change = float(np.max(np.abs(step))) / self.size
+            # The last two coefficients of the Legendre series of x.
             tail = np.max(np.abs(NODES_TO_SERIES[-2:] @ x)) / self.size
+            diverges = not change <= 1e3
             # Further steps are smaller, so that they will not resolve the series either.
-            if not change <= 1e3 or (tail > 2.0 * SERIES_TOLERANCE and change < 0.1 * tail):
+            stays_unresolved = tail > 2.0 * SERIES_TOLERANCE and change < 0.1 * tail
+            if diverges or stays_unresolved:
                 return None
-            if change < 1e-13 or (change < 1e-11 and change >= 0.5 * previous):
+            # Steps as small as rounding errors no longer become smaller.
+            if change < 1e-13 or (change < 1e-11 and change >= 0.5 * previous_change):
                 return x if tail <= SERIES_TOLERANCE else None
         return None
 
     def guess(self, chunk: Chunk) -> np.ndarray:
-        """Return the positions of the front at the nodes as if there were no leaf springs."""
-        entries = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
-        start = np.array([chunk.panel]), np.array([chunk.start])
-        first, source = (float(self.curve.evaluate(name, *start)[0]) for name in ("x", "source"))
-        source_at_entry = source / float(self.curve.evaluate("x", *start, order=1)[0])
-        stress_at_start = float(self.tau(np.array(self.x0)))
-        slope = 1.0
-        if stress_at_start < -1e-6 and source_at_entry > 0.0:
-            slope = source_at_entry / -stress_at_start
-        return self.x0 + min(max(slope, 1e-3), 10.0) * (first - entries)
+        """Return the positions of the front at the nodes as if there were no leaf springs.
 
-    def panel(self, chunk: Chunk, x: np.ndarray, end: float | None) -> Panel:
-        """Return the new panel of the curve; its end is computed unless it is given."""
-        s = np.append(chunk.parameters(), chunk.stop)
-        *t_minus_x, last_t_minus_x = self.curve.evaluate(
-            "t_minus_x", np.full(NODE_COUNT + 1, chunk.panel), s
+        Then the integral of tau from the entry to the front is 0, so that the front moves by
+        -tau(e)/tau(X) times the motion of the entry to the left.
+        """
+        start = Entry(chunk.panel, chunk.start)
+        prestress_at_entry = self.value_at("source", start) / self.value_at("x", start, order=1)
+        prestress_at_front = float(self.tau(np.array(self.x0)))
+        ratio = 1.0
+        if prestress_at_front < -1e-6 and prestress_at_entry > 0.0:
+            ratio = prestress_at_entry / -prestress_at_front
+        entries = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
+        return self.x0 + min(max(ratio, 1e-3), 10.0) * (self.position(start) - entries)
+
+    def panel(self, chunk: Chunk, x: np.ndarray, x_end: float) -> Panel:
+        """Return the new panel of the curve, with positions x at its nodes, which ends at x_end."""
+        nodes_and_end = np.append(chunk.parameters(), chunk.stop)
+        # T - x is the same at the front as at the entry.
+        t_minus_x = self.curve.evaluate(
+            "t_minus_x", np.full(NODE_COUNT + 1, chunk.panel), nodes_and_end
         )
-        last = float(NODES_TO_ENDS[1] @ x) if end is None else end
-        x_ends, time_ends = (self.x0, last), (self.t0, float(last_t_minus_x) + last)
         return Panel(
             x=x,
-            time=np.array(t_minus_x) + x,
+            time=t_minus_x[:-1] + x,
             source=self.tau(x) * (NODES_TO_DERIVATIVES @ x),
-            x_ends=x_ends,
-            time_ends=time_ends,
+            x_ends=(self.x0, x_end),
+            time_ends=(self.t0, float(t_minus_x[-1]) + x_end),
         )
 
     def straight(self, mark: float) -> Advance:

@@ -27,6 +27,7 @@ SERIES_TO_POWERS = with_slopes(np.pad(power_basis(NODE_COUNT), ((0, 2), (0, 0)))
 # not divided if it is narrower than the second number.
 SERIES_TOLERANCE = 2e-12
 MIN_PANEL_WIDTH = 1e-7
+MAX_NEWTON_STEPS = 12
 # If 1 - tau is below this, the panels lose more digits than the neglected terms of the expansion in
 # 1/v.
 NEARLY_ONE_DISTANCE = 1e-8
@@ -57,12 +58,13 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     edges, edge_tau, powers = _make_panels(float(damping_ratio), release)
     shape, tau = tau.shape, tau.ravel()
     panel = np.clip(np.searchsorted(edge_tau, tau, side="right") - 1, 0, edges.size - 2)
+    # Newton's method for the parameter s, from -1 to 1, on the panel.
     low, high = edge_tau[panel], edge_tau[panel + 1]
     s = 2.0 * (tau - low) / (high - low) - 1.0
     # On the first panel tau grows like psi^2: Newton's method starts above the root there.
     s = np.where(panel == 0, 2.0 * np.sqrt((tau - low) / (high - low)) - 1.0, s)
     coefficients = powers.take(panel, axis=-1)
-    for _ in range(12):
+    for _ in range(MAX_NEWTON_STEPS):
         value, slope = value_and_slope(coefficients, s)
         step = (value - tau) / np.maximum(slope, 1e-12)
         s = (s - step).clip(-1.0, 1.0)
@@ -71,7 +73,8 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     # At the end of the first panel psi = 0 is a double root, to which Newton's method converges
     # slowly.
     s = np.where(tau <= 0.0, -1.0, s)
-    out = np.cos(edges[panel] + 0.5 * (edges[panel + 1] - edges[panel]) * (1.0 + s))
+    psi = edges[panel] + 0.5 * (edges[panel + 1] - edges[panel]) * (1.0 + s)
+    out = np.cos(psi)
     # The end of the last panel may be a double root too, and the expansion in 1/v is more accurate
     # there.
     near = (1.0 - tau < NEARLY_ONE_DISTANCE) & ((release == "total") | (damping_ratio < 1e3))
@@ -85,22 +88,25 @@ def _make_panels(damping_ratio: float, release: str) -> FrontLawPanels:
 
     def prestress(psi: np.ndarray) -> np.ndarray:
         """Return the pre-stress of fronts with 1/v = cos(psi)."""
+        # v - 1 = (1 - cos psi)/cos psi, written without cancellation.
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
         return np.exp(log_prestress_in_chunks(excess, np.full(excess.size, damping_ratio), release))
 
     quarter = 0.5 * np.pi
-    todo = [(0.0, 0.5 * quarter), (0.5 * quarter, quarter)]
-    done = []
-    while todo:
-        left, right = todo.pop()
+    unresolved = [(0.0, 0.5 * quarter), (0.5 * quarter, quarter)]
+    # Legendre series of the resolved panels, by the left end of each panel.
+    all_series = {}
+    while unresolved:
+        left, right = unresolved.pop()
         series = NODES_TO_SERIES @ prestress(left + 0.5 * (right - left) * (1.0 + NODES))
-        if np.max(np.abs(series[-2:])) < SERIES_TOLERANCE or right - left < MIN_PANEL_WIDTH:
-            done.append((left, right, series))
+        is_resolved = np.max(np.abs(series[-2:])) < SERIES_TOLERANCE
+        if is_resolved or right - left < MIN_PANEL_WIDTH:
+            all_series[left] = series
         else:
             middle = 0.5 * (left + right)
-            todo += [(left, middle), (middle, right)]
-    done.sort(key=lambda panel: panel[0])
-    edges = np.array([done[0][0]] + [right for _, right, _ in done])
-    inner = prestress(edges[1:-1])
-    powers = SERIES_TO_POWERS @ np.array([series for *_, series in done]).T
-    return FrontLawPanels(edges, np.concatenate([[0.0], inner, [1.0]]), powers)
+            unresolved += [(left, middle), (middle, right)]
+    left_ends = sorted(all_series)
+    edges = np.array([*left_ends, quarter])
+    edge_tau = np.concatenate([[0.0], prestress(edges[1:-1]), [1.0]])
+    powers = SERIES_TO_POWERS @ np.array([all_series[left] for left in left_ends]).T
+    return FrontLawPanels(edges, edge_tau, powers)

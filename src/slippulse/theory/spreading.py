@@ -48,7 +48,8 @@ class Stretch:
 
     # The outermost known point of each front.
     ends: dict[float, Point]
-    # Position of the next nucleation point, with the side turned to the right.
+    # Position of the next nucleation point on each side, infinite if there is none. Seen with this
+    # side turned to the right, so that on the left it is minus the position.
     next_start: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
     # Reason why a front does not go on: "stops" (for good), "duration" (the time is over), "met"
@@ -67,14 +68,17 @@ class Stretch:
 
     def curve(self, side: float = RIGHT) -> Curve:
         """Return the panels as one curve, with a side turned to the right."""
-        left = [side * x for x in self.restarts[-side]]
-        right = [side * x for x in self.restarts[side]]
         if side not in self.curves:
             self.curves[side] = Curve(turned_to_right(side, self.panels))
-        return self.curves[side].restarted((left, right))
+        left_restarts = [side * x for x in self.restarts[-side]]
+        right_restarts = [side * x for x in self.restarts[side]]
+        return self.curves[side].restarted((left_restarts, right_restarts))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
-        """Append panels and their end to a front whose side is turned to the right."""
+        """Append panels to the front on one side.
+
+        The panels, and the point where they end, are given with this side turned to the right.
+        """
         new = turned_to_right(side, panels)
         self.panels = self.panels + new if side > 0.0 else new + self.panels
         if side in self.curves and panels:
@@ -84,20 +88,22 @@ class Stretch:
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
-        """Remove the panels beyond x on one side."""
+        """Remove the panels, and the part of a panel, beyond x on one side."""
+        # The cut as seen with this side turned to the right.
+        cut = side * x
         kept = []
         for panel in turned_to_right(side, self.panels):
             left, right = panel.x_ends
-            if right <= side * x:
+            if right <= cut:
                 kept.append(panel)
-            elif left < side * x:
-                s = float(Curve([panel]).locate(np.array([side * x]))[1][0])
+            elif left < cut:
+                _, (s,) = Curve([panel]).locate(np.array([cut]))
                 if s > -1.0:
-                    kept.append(panel.until(s, side * x))
+                    kept.append(panel.until(float(s), cut))
         time = kept[-1].time_ends[1] if kept else 0.0
         self.panels, self.curves = turned_to_right(side, kept), {}
         self.ends[side] = Point(x, time)
-        self.restarts[side] = [start for start in self.restarts[side] if side * start < side * x]
+        self.restarts[side] = [start for start in self.restarts[side] if side * start < cut]
 
 
 def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
@@ -111,7 +117,7 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
         _advance_fast_front(laws[side], stretch=stretch, side=side, until=until)
     stretches = _join_met_stretches(stretches)
     # The earliest slow front advances first, since each depends on what the others did before.
-    while moving := [(s, side) for s, side in product(stretches, SIDES) if not s.end_reason[side]]:
+    while moving := _moving_fronts(stretches):
         stretch, side = min(moving, key=lambda front: front[0].ends[front[1]].time)
         _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
         stretches = _join_met_stretches(stretches)
@@ -131,23 +137,30 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
     return stretches, unknown
 
 
+def _moving_fronts(stretches: list[Stretch]) -> list[tuple[Stretch, float]]:
+    """Return the stretch and the side of each front that still moves."""
+    fronts = product(stretches, SIDES)
+    return [(stretch, side) for stretch, side in fronts if stretch.end_reason[side] is None]
+
+
 def _nucleate(law: FastFront) -> list[Stretch]:
     """Return one stretch for each interval that is released at t = 0."""
-    starts = nucleation_intervals(law.prestress)
-    if not starts:
+    nucleations = nucleation_intervals(law.prestress)
+    if not nucleations:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
-    out = []
-    previous_ends = [-np.inf, *(right for _, right in starts)]
-    next_starts = [*(left for left, _ in starts[1:]), np.inf]
-    for previous, (left, right), following in zip(previous_ends, starts, next_starts, strict=False):
+    lefts, rights = zip(*nucleations, strict=True)
+    # Ends of the neighbouring intervals, infinite where there is none.
+    ends_before, starts_after = (-np.inf, *rights[:-1]), (*lefts[1:], np.inf)
+    stretches = []
+    for before, left, right, after in zip(ends_before, lefts, rights, starts_after, strict=True):
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
-        stretch = Stretch(ends, {LEFT: -previous, RIGHT: following})
+        stretch = Stretch(ends, next_start={LEFT: -before, RIGHT: after})
         if left < right:
             panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
-        out.append(stretch)
-    return out
+        stretches.append(stretch)
+    return stretches
 
 
 def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
@@ -163,8 +176,13 @@ def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: fl
 
 
 def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Add a panel of a slow front; a fast front follows where the pre-stress is positive again."""
+    """Add a panel of a slow front; a fast front follows where the pre-stress is positive again.
+
+    law is that of the pre-stress with this side turned to the right.
+    """
     piece = law.piece_right_of(side * stretch.ends[side].x)
+    # The slow front ends at the latest where the pre-stress turns positive, or the next nucleation
+    # point lies.
     mark = min(piece.right, stretch.next_start[side])
     front = SlowFront(
         curve=stretch.curve(side),
@@ -207,20 +225,23 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     """
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None
-    first, second = left.curve(), right.curve()
+    left_curve, right_curve = left.curve(), right.curve()
 
     def delay_of_left(x: float) -> float:
         """Return how much later the left stretch reaches x than the right one."""
-        return float(first.arrival(x) - second.arrival(x))
+        return float(left_curve.arrival(x) - right_curve.arrival(x))
 
-    low = max(right.ends[LEFT].x, float(first.edges[0]))
-    high = min(left.ends[RIGHT].x, float(second.edges[-1]))
+    # Both stretches have reached the positions between these two.
+    low = max(right.ends[LEFT].x, float(left_curve.edges[0]))
+    high = min(left.ends[RIGHT].x, float(right_curve.edges[-1]))
     if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
-    before, after = np.array([x - MEETING_DISTANCE, x]), np.array([x, x + MEETING_DISTANCE])
-    times = np.array([first.arrival(before), second.arrival(after)])
-    restart = [x] if np.any(np.abs(np.diff(times)) > MEETING_DISTANCE) else []
+    # If one of the fronts is slow where they meet, the curve has a restart there.
+    left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
+    right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
+    durations = np.abs(np.diff([left_times, right_times]))
+    restart = [x] if np.any(durations > MEETING_DISTANCE) else []
     left.cut(RIGHT, x)
     right.cut(LEFT, x)
     return Stretch(

@@ -67,7 +67,8 @@ class StickSearch:
         times = self._sample_times(release, waves)
         out = np.full(x.shape, np.nan)
         # The last two samples of a batch are kept, since a minimum next to them may lie below 0.
-        # The first sample has no predecessors: a velocity of -1 takes their place.
+        # At the start they are the release itself, twice. The velocity of -1 is lower than that of
+        # the release, which therefore does not count as a minimum.
         last_time = np.stack([release, release], axis=1)
         last_velocity = np.tile([-1.0, 0.0], (x.size, 1))
         sliding = np.flatnonzero(release < self.until)
@@ -76,12 +77,14 @@ class StickSearch:
             times = times[:, BATCH_SIZE:]
             time = np.append(last_time[sliding], batch.time, axis=1)
             velocity = np.append(last_velocity[sliding], batch.velocity, axis=1)
-            samples, below = VelocitySamples(x[sliding], time, velocity), batch.velocity <= 0.0
-            stuck = below.any(axis=1)
-            first = np.where(stuck, 2 + np.argmax(below, axis=1), time.shape[1])
-            stick = self._zeros_next_to_minima(samples, first)
-            rows = np.flatnonzero(stuck & ~np.isfinite(stick))
-            stick[rows] = self._zeros_in_steps(samples, rows, first[rows])
+            samples = VelocitySamples(x[sliding], time, velocity)
+            is_stuck = batch.velocity <= 0.0
+            has_stuck = is_stuck.any(axis=1)
+            # Columns of the samples begin with the two that were kept.
+            first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
+            stick = self._zeros_next_to_minima(samples, first_stuck)
+            rows = np.flatnonzero(has_stuck & ~np.isfinite(stick))
+            stick[rows] = self._zeros_in_steps(samples, rows, first_stuck[rows])
             out[sliding] = stick
             last_time[sliding], last_velocity[sliding] = time[:, -2:], velocity[:, -2:]
             sliding = sliding[~np.isfinite(stick) & (time[:, -1] < self.until)]
@@ -94,11 +97,14 @@ class StickSearch:
         if count > MAX_SAMPLES:
             allowed = f"a time until which sticks are found from {MAX_SAMPLES:.0e} samples"
             raise ValueError(f"duration: {self.until:g} takes {count:.2g}; allowed: {allowed}")
-        steps = self.step * np.arange(1, BATCH_SIZE * (longest // (BATCH_SIZE * self.step) + 1) + 1)
+        batch_count = longest // (BATCH_SIZE * self.step) + 1
+        steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)
         ends = np.full((release.size, BATCH_SIZE), self.until)
         times = np.concatenate([release[:, None] + steps, waves, ends], axis=1)
         # Right after the release du/dt is 0 apart from rounding, so that no sample is taken there.
-        times[~(times > release[:, None] + FIRST_SAMPLE * self.step)] = self.until
+        # Written with ~, so that a wave that never arrives (NaN) is left out as well.
+        is_too_early = ~(times > release[:, None] + FIRST_SAMPLE * self.step)
+        times[is_too_early] = self.until
         np.minimum(times, self.until, out=times)
         times.sort(axis=1)
         return times
@@ -142,36 +148,40 @@ class StickSearch:
     def _zeros_in_steps(
         self, samples: VelocitySamples, rows: np.ndarray, columns: np.ndarray
     ) -> np.ndarray:
-        """Return zeros of du/dt in the steps that end at some columns.
+        """Return zeros of du/dt in steps: one for each row, in the step that ends at its column.
 
-        The start of the step is returned, nearly, if du/dt never rises above 0 in it.
+        du/dt is not positive at the end of the step. If it never rises above 0 in the step, a time
+        next to the start of the step is returned.
         """
-        x, ends = samples.x[rows], (rows, np.array([columns - 1, columns]))
-        time, velocity = samples.time[ends], samples.velocity[ends]
+        x = samples.x[rows]
+        start, end = samples.time[rows, columns - 1], samples.time[rows, columns]
+        at_start, at_end = samples.velocity[rows, columns - 1], samples.velocity[rows, columns]
+        target = np.zeros(rows.size)
         # If du/dt is 0 at the start of the step, which is the release, the zero is bracketed from a
         # time where it has risen. Next to a point where a slow front stops it does so only briefly.
-        flat = np.flatnonzero(velocity[0] <= 0.0)
-        start, end = time[:, flat, None]
-        fine = self._sample(x[flat], start + (end - start) * BRACKET_FRACTIONS)
-        # At the first column, the end of the step, du/dt has not risen.
+        quiet = np.flatnonzero(at_start <= 0.0)
+        span = (end - start)[quiet, None]
+        fine = self._sample(x[quiet], start[quiet, None] + span * BRACKET_FRACTIONS)
+        # The columns go from the end of the step, where du/dt has not risen, to its start.
         risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        ends = np.arange(flat.size), np.array([risen, risen - 1])
-        target = np.zeros(rows.size)
-        target[flat] = QUIET_VELOCITY
-        time[:, flat], velocity[:, flat] = fine.time[ends], fine.velocity[ends] - QUIET_VELOCITY
-        out, rises = time[1].copy(), np.flatnonzero(velocity[0] > 0.0)
+        row = np.arange(quiet.size)
+        target[quiet] = QUIET_VELOCITY
+        start[quiet], end[quiet] = fine.time[row, risen], fine.time[row, risen - 1]
+        at_start[quiet] = fine.velocity[row, risen] - QUIET_VELOCITY
+        at_end[quiet] = fine.velocity[row, risen - 1] - QUIET_VELOCITY
+        zeros, bracketed = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
             """Return du/dt less its target, for some of the rows with a bracket."""
-            return self.velocity(x[rises[which]], time) - target[rises[which]]
+            chosen = bracketed[which]
+            return self.velocity(x[chosen], time) - target[chosen]
 
-        (start, end), (at_start, at_end) = time[:, rises], velocity[:, rises]
-        out[rises] = roots_between(
+        zeros[bracketed] = roots_between(
             above_target,
-            lower=start,
-            upper=end,
-            at_lower=at_start,
-            at_upper=at_end,
+            lower=start[bracketed],
+            upper=end[bracketed],
+            at_lower=at_start[bracketed],
+            at_upper=at_end[bracketed],
             xtol=TIME_TOLERANCE,
         )
-        return out
+        return zeros

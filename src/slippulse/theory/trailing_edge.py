@@ -67,7 +67,11 @@ PIECES_PER_CUT = 8
 # An interval at least this long, in units of JUMP_TOLERANCE times the length of the part, has at
 # most one jump.
 SINGLE_JUMP_LENGTH = 1e3
-# Newton's method for a stick time ends when its last step is below this.
+# Newton's method for a stick time takes at most this number of steps, and fails if it moves farther
+# from its start than this fraction of the interval.
+MAX_NEWTON_STEPS = 12
+MAX_CORRECTION = 0.05
+# It ends when its last step is below this.
 NEWTON_TOLERANCE = 1e-11
 # It also ends when its next step, which is about the product of the last two, is below this
 # fraction of the interval.
@@ -99,14 +103,17 @@ class PartWithEdge(Part):
         knots = self._make_knots(x, self.find_stick_times(x))
         if x.size < 2:
             return knots
-        # Every second knot lies in the middle between its neighbours.
-        outer = Knots._make(values[::2] for values in knots)
-        middle = Knots._make(values[1::2] for values in knots)
+        # Every second knot lies in the middle between its neighbours. If these do not predict it,
+        # the two halves of the interval between them are refined.
+        outer, middle = knots.at(np.s_[::2]), knots.at(np.s_[1::2])
         is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
-        # Left ends of the halves of the intervals that are not fine enough yet.
-        left = x[:-1][~np.repeat(is_predicted, 2)]
+        left_ends_of_halves = x[:-1]
+        unresolved = left_ends_of_halves[~np.repeat(is_predicted, 2)]
         x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
-        knots = self._with_more_knots(knots, x=x, stick=self.find_stick_times(x), left=left)
+        knots = self._with_more_knots(
+            knots, x=x, stick=self.find_stick_times(x), unresolved=unresolved
+        )
+        # Positions that stick between two sliding knots become knots, until none is left.
         while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
             knots = self._with_more_knots(knots, x, self.find_stick_times(x))
         # An edge that may become slower than the waves between two knots is checked once more.
@@ -122,28 +129,38 @@ class PartWithEdge(Part):
         left, right = curve.edges[[0, -1]]
         if self.one_side:
             left = max(left, 0.0)
-        last = self.until * (1.0 - EQUALITY_TOLERANCE)
-        start = curve.edges[np.argmin(curve.edge_times)]
-        fronts = [curve.front_at(last, start, side) for side in (-1.0, 1.0)]
+        just_before_end = self.until * (1.0 - EQUALITY_TOLERANCE)
+        nucleation = curve.edges[np.argmin(curve.edge_times)]
+        fronts = [curve.front_at(just_before_end, nucleation, side) for side in (-1.0, 1.0)]
         cell = np.floor(curve.edges / (CELL_LENGTH * self.scale))
-        edges = curve.edges[np.diff(cell, prepend=-np.inf) > 0.0]
-        x = np.unique([left, *edges, *self.marks, *fronts])
+        is_first_of_cell = np.diff(cell, prepend=-np.inf) > 0.0
+        x = np.unique([left, *curve.edges[is_first_of_cell], *self.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.until)]
-        x = x[np.diff(x, append=np.inf) > EQUALITY_TOLERANCE * (right - left)]
-        return np.sort(np.append(x, 0.5 * (x[:-1] + x[1:])))
+        is_distinct = np.diff(x, append=np.inf) > EQUALITY_TOLERANCE * (right - left)
+        x = x[is_distinct]
+        middles = 0.5 * (x[:-1] + x[1:])
+        return np.sort(np.append(x, middles))
 
     def _with_more_knots(
-        self, knots: Knots, x: np.ndarray, stick: np.ndarray, left: Sequence[float] = ()
+        self,
+        knots: Knots,
+        x: np.ndarray,
+        stick: np.ndarray,
+        unresolved: Sequence[float] | np.ndarray = (),
     ) -> Knots:
         """Return knots with additional ones at x, refined until they predict the edge around these.
 
-        stick holds the stick times at x, NaN where there is none. Intervals whose left ends are
-        given are refined too.
+        stick holds the stick times at x, NaN where there is none. unresolved are the left ends of
+        other intervals that are refined too.
         """
-        todo = np.unique([*left, *x[x < knots.x[-1]], *knots.x[knots.interval_of(x)]])
+        # A new knot divides an interval. One part begins at the old knot on its left, and the other
+        # part at the new knot itself.
+        old_left_ends = knots.x[knots.interval_of(x)]
+        new_left_ends = x[x < knots.x[-1]]
+        left_ends = np.unique([*unresolved, *old_left_ends, *new_left_ends])
         knots = knots.joined(self._make_knots(x, stick))
-        while todo.size:
-            knots, todo = self._refine(knots, todo)
+        while left_ends.size:
+            knots, left_ends = self._refine(knots, left_ends)
         return knots
 
     def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:
@@ -154,9 +171,13 @@ class PartWithEdge(Part):
         velocity = np.zeros(x.size) if sticks.all() else domains.slip_velocity()
         velocity[sticks] = 0.0
         by_xi, by_eta = domains.velocity_slopes()
-        slow = (by_xi >= 0.0) | (by_eta >= 0.0)
-        kind = np.where(sticks, np.where(slow, SLOWER_THAN_WAVES, FASTER_THAN_WAVES), SLIDING)
-        kind[sticks & (time - self.curve.arrival(x) <= MIN_INTERVAL * self.scale)] = BRIEF_SLIP
+        # The edge is faster than the waves where du/dt falls along both characteristics.
+        is_slow = (by_xi >= 0.0) | (by_eta >= 0.0)
+        is_brief = time - self.curve.arrival(x) <= MIN_INTERVAL * self.scale
+        kind = np.full(x.size, SLIDING)
+        kind[sticks] = FASTER_THAN_WAVES
+        kind[sticks & is_slow] = SLOWER_THAN_WAVES
+        kind[sticks & is_brief] = BRIEF_SLIP
         return Knots(
             x=x,
             stick=time,
@@ -167,27 +188,36 @@ class PartWithEdge(Part):
         )
 
     def _positions_of_landings(self, knots: Knots) -> np.ndarray:
-        """Return positions on both sides of where waves from the marks meet the trailing edge."""
+        """Return positions on both sides of where waves from the marks meet the trailing edge.
+
+        When the front arrives at a mark, one wave starts to the right, along t - x = const, and one
+        to the left, along t + x = const.
+        """
         marks = np.array(self.marks)
         arrival = self.curve.arrival(marks)
-        out, near = [], LANDING_OFFSET * self.scale
+        is_fast = knots.outruns_waves(np.arange(knots.x.size - 1))
+        offset = LANDING_OFFSET * self.scale
+        landings = []
         for side in (-1.0, 1.0):
-            # The phase is 0 where the wave that a mark sends to this side meets the edge.
-            phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
-            fast = knots.outruns_waves(np.arange(knots.x.size - 1))[:, None]
-            k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
-            before, after = phase[k, mark], phase[k + 1, mark]
+            # Time from the passage of each wave to the stick, [knot, mark]. It changes its sign
+            # where the wave meets the edge.
+            delay = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
+            k, mark = np.nonzero((delay[1:] * delay[:-1] < 0.0) & is_fast[:, None])
+            at_left, at_right = delay[k, mark], delay[k + 1, mark]
             left, right = knots.x[k], knots.x[k + 1]
-            x = left + (right - left) * before / (before - after)
-            # Two steps of Newton's method on du/dt along the wave.
+            x = left + (right - left) * at_left / (at_left - at_right)
+            # Two steps of Newton's method find where du/dt is 0 on the wave. If x on it changes by
+            # dx, the time changes by side dx, and so eta (or xi, on a wave to the left) by 2 dx.
             for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
                 domains = self.domains(x, time)
-                x = x - 0.5 * side * domains.slip_velocity() / domains.velocity_slopes()[side > 0.0]
+                by_xi, by_eta = domains.velocity_slopes()
+                slope_on_wave = by_eta if side > 0.0 else by_xi
+                x = x - 0.5 * side * domains.slip_velocity() / slope_on_wave
                 x = x.clip(left, right)
             # The edge has a kink at x, so that a knot stands on either side of it.
-            out.append(np.clip([x - near, x + near], left, right).ravel())
-        return np.concatenate(out)
+            landings.append(np.clip([x - offset, x + offset], left, right).ravel())
+        return np.concatenate(landings)
 
     def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
         """Return du/dt at positions at the final time.
@@ -200,54 +230,55 @@ class PartWithEdge(Part):
         """Return positions on both sides of where the trailing edge reaches the final time."""
         k = np.arange(knots.x.size - 1)
         k = k[knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)]
-        velocity = np.array([self._velocity_at_end(knots.x[ends]) for ends in (k, k + 1)])
-        meets = velocity[0] * velocity[1] < 0.0
-        at_left, at_right = velocity[:, meets]
-        left, right = knots.x[k[meets]], knots.x[k[meets] + 1]
-        near = 0.4 * MIN_INTERVAL_AT_END * self.scale
+        at_left = self._velocity_at_end(knots.x[k])
+        at_right = self._velocity_at_end(knots.x[k + 1])
+        # At the final time du/dt is 0 where the edge is then.
+        has_edge = at_left * at_right < 0.0
+        left, right = knots.x[k[has_edge]], knots.x[k[has_edge] + 1]
+        offset = 0.4 * MIN_INTERVAL_AT_END * self.scale
         x = roots_between(
             self._velocity_at_end,
             lower=left,
             upper=right,
-            at_lower=at_left,
-            at_upper=at_right,
-            xtol=0.5 * near,
+            at_lower=at_left[has_edge],
+            at_upper=at_right[has_edge],
+            xtol=0.5 * offset,
         )
-        return np.clip([x - near, x + near], left, right).ravel()
+        return np.clip([x - offset, x + offset], left, right).ravel()
 
-    def _refine(self, knots: Knots, left: np.ndarray) -> tuple[Knots, np.ndarray]:
-        """Add knots in the intervals with the given left ends, and return which to look at next.
+    def _refine(self, knots: Knots, left_ends: np.ndarray) -> tuple[Knots, np.ndarray]:
+        """Add knots in some intervals, and return the left ends of the intervals to refine next.
 
-        Intervals with a jump, or in which the edge reaches the final time, are cut into
-        PIECES_PER_CUT pieces; others are halved. Halves are looked at again if the interpolation
-        did not predict the middle, pieces if they contain the jump or the end.
+        left_ends are the left ends of the intervals. Intervals with a jump, or in which the edge
+        reaches the final time, are cut into PIECES_PER_CUT pieces; others are halved. Pieces are
+        refined again if they contain the jump or the end, and halves if the interpolation did not
+        predict the middle.
         """
-        k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left))
-        jumps = knots.has_jump(k)
+        k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left_ends))
+        has_jump = knots.has_jump(k)
         reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
         min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
-        min_length[jumps] = JUMP_TOLERANCE * self._length
+        min_length[has_jump] = JUMP_TOLERANCE * self._length
         is_long = knots.x[k + 1] - knots.x[k] > min_length
-        cut = k[is_long & (jumps | reaches_end)]
-        halved = k[is_long & ~jumps & ~reaches_end]
-        # Left ends of the pieces, [piece, interval], and the middles of the other intervals.
+        cut = k[is_long & (has_jump | reaches_end)]
+        halved = k[is_long & ~has_jump & ~reaches_end]
+        # The left ends of the pieces are indexed [piece, interval].
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
-        middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
-        x = np.append(pieces[1:].ravel(), middle)
+        between_pieces = pieces[1:].ravel()
+        middles = 0.5 * (knots.x[halved] + knots.x[halved + 1])
+        x = np.append(between_pieces, middles)
         if not x.size:
             return knots, x
         new = self._make_knots(x, self._stick_time(x, knots))
-        in_middle = Knots._make(values[x.size - middle.size :] for values in new)
-        is_predicted = knots.predicts_middle(halved, in_middle)
+        is_predicted = knots.predicts_middle(halved, new.at(np.s_[between_pieces.size :]))
         refined = knots.joined(new)
         self._mark_steep_pieces(refined, pieces)
-        halves = np.append(knots.x[halved], middle)
-        left = np.append(halves, pieces)
-        k = np.searchsorted(refined.x, left)
-        look_again = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        look_again[: halves.size] = np.tile(~is_predicted, 2)
-        return refined, left[look_again]
+        halves = np.append(knots.x[halved], middles)
+        unresolved_halves = halves[~np.tile(is_predicted, 2)]
+        k = np.searchsorted(refined.x, pieces.ravel())
+        is_eventful = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        return refined, np.append(unresolved_halves, pieces.ravel()[is_eventful])
 
     @property
     def _length(self) -> float:
@@ -255,15 +286,18 @@ class PartWithEdge(Part):
         return self.curve.edges[-1] - self.curve.edges[0]
 
     def _not_behind_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
-        """Return those of the intervals k that are not completely in the future of a jump.
+        """Return the intervals of k that are not completely in the future of a jump.
 
         Nothing is known in the future of a jump. Its position in its own interval is not known
         exactly, so that twice the interval length is added to its time.
         """
-        ends, lengths = knots.ends_before_jumps(k)
-        sides = np.array([k, k + 1])[..., None]
-        delay = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
-        is_earlier = delay.min(axis=0) < knots.stick[ends] + 2.0 * lengths
+        before_jumps, lengths = knots.ends_before_jumps(k)
+        # A knot is in the future of a jump if its stick time, minus the time of a wave from there,
+        # is later than the jump. The axes are [left or right end, interval, jump].
+        ends = np.array([k, k + 1])[..., None]
+        wave_time = np.abs(knots.x[ends] - knots.x[before_jumps])
+        earliest_start = (knots.stick[ends] - wave_time).min(axis=0)
+        is_earlier = earliest_start < knots.stick[before_jumps] + 2.0 * lengths
         return k[is_earlier.all(axis=1)]
 
     def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
@@ -274,8 +308,11 @@ class PartWithEdge(Part):
         """
         k = np.searchsorted(knots.x, pieces)
         is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
-        slow = k[:, knots.has_jump(k).all(axis=0) & is_long]
-        knots.kind[slow] = knots.kind[slow[-1] + 1] = SLOWER_THAN_WAVES
+        is_steep = knots.has_jump(k).all(axis=0)
+        steep_pieces = k[:, is_steep & is_long]
+        knots.kind[steep_pieces] = SLOWER_THAN_WAVES
+        # The right end of the last piece of each interval.
+        knots.kind[steep_pieces[-1] + 1] = SLOWER_THAN_WAVES
 
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times, accurate to a fraction of the knot spacing.
@@ -311,32 +348,32 @@ class PartWithEdge(Part):
     ) -> np.ndarray:
         """Return stick times in the intervals k by Newton's method, from the interpolated ones on.
 
-        It is NaN where it is not requested and where the steps leave the neighbourhood of the
-        start.
+        The result is NaN where it is not requested, and where the steps lead too far away from the
+        interpolated time.
         """
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
         guess = knots.interpolate(k, x)
-        acceleration = knots.velocity_by_xi + knots.velocity_by_eta
-        acceleration = acceleration[k] * (1.0 - s) + acceleration[k + 1] * s
+        at_knots = knots.velocity_by_xi + knots.velocity_by_eta
+        acceleration = at_knots[k] * (1.0 - s) + at_knots[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
         velocity, step = np.zeros(x.shape), np.zeros(x.shape)
         todo = np.flatnonzero(is_requested)
-        for _ in range(12):
+        for _ in range(MAX_NEWTON_STEPS):
             if not todo.size:
                 break
-            earlier, velocity[todo] = velocity[todo], self.velocity(x[todo], time[todo])
-            last = step[todo]
+            velocity_before, step_before = velocity[todo], step[todo]
+            velocity[todo] = self.velocity(x[todo], time[todo])
             # After the first step the acceleration is that of the secant.
-            secant = (earlier - velocity[todo]) / np.where(last == 0.0, np.nan, last)
-            acceleration[todo] = np.where(
-                np.abs(last) > NEWTON_TOLERANCE, secant, acceleration[todo]
-            )
+            secant = velocity_before - velocity[todo]
+            secant /= np.where(step_before == 0.0, np.nan, step_before)
+            has_secant = np.abs(step_before) > NEWTON_TOLERANCE
+            acceleration[todo] = np.where(has_secant, secant, acceleration[todo])
             step[todo] = velocity[todo] / acceleration[todo]
             time[todo] -= step[todo]
-            is_near = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
-            size, before = np.abs(step[todo]), np.where(last == 0.0, 1.0, np.abs(last))
-            next_size = size * before
+            is_near = np.abs(time[todo] - guess[todo]) <= MAX_CORRECTION * span[todo]
+            size = np.abs(step[todo])
+            next_size = size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
             done = (size < NEWTON_TOLERANCE) | (next_size < NEXT_STEP_TOLERANCE * span[todo])
             done &= is_near
             out[todo[done]] = time[todo[done]]
@@ -346,25 +383,31 @@ class PartWithEdge(Part):
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves."""
         knots = self.knots
-        ends, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
-        slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOWER_THAN_WAVES))
+        before_jumps, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
+        slow = np.union1d(before_jumps, np.flatnonzero(knots.kind == SLOWER_THAN_WAVES))
         slow = np.union1d(slow, self._stops_without_edge()).astype(int)
-        points = np.stack([knots.x, knots.stick], axis=1)[slow].tolist()
-        return [Point(*point) for point in points]
+        return [Point(float(knots.x[k]), float(knots.stick[k])) for k in slow]
 
     def _stops_without_edge(self) -> list[int]:
-        """Return the outer knots where a front has stopped but no fast trailing edge begins."""
+        """Return the numbers of the outer knots where a front stops and no fast edge begins.
+
+        This is so if the edge takes longer than a wave from the stopped front to the nearest knot
+        that is no brief slip.
+        """
         knots = self.knots
         resolved = np.flatnonzero(knots.kind != BRIEF_SLIP)
+        if not resolved.size:
+            return []
         stops = []
-        for end, nearest in ((0, resolved[:1]), (-1, resolved[-1:])):
+        for outermost in (0, -1):
+            end, nearest = range(knots.x.size)[outermost], resolved[outermost]
+            distance = abs(knots.x[nearest] - knots.x[end])
+            delay = abs(knots.stick[nearest] - knots.stick[end])
             # A front that still moves at the final time has not stopped.
-            stopped = knots.kind[end] == BRIEF_SLIP and self.curve.edge_times[end] < self.until
-            if stopped and nearest.size:
-                distance = abs((knots.x[nearest] - knots.x[end]).item())
-                delay = abs((knots.stick[nearest] - knots.stick[end]).item())
-                if delay > distance * (1.0 + EQUALITY_TOLERANCE):
-                    stops.append(end % knots.x.size)
+            moves = self.curve.edge_times[outermost] >= self.until
+            has_stopped = knots.kind[end] == BRIEF_SLIP and not moves
+            if has_stopped and delay > distance * (1.0 + EQUALITY_TOLERANCE):
+                stops.append(end)
         return stops
 
     def first_stick(self) -> FirstStick | None:
@@ -388,8 +431,8 @@ class PartWithEdge(Part):
         error = self._stick_time_errors()
         # If several positions stick first, the one nearest to x = 0 is returned.
         latest = np.where(stuck, knots.stick + error, np.inf)
-        first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
-        nearest = int(first[np.argmin(np.abs(knots.x[first]))])
+        may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
+        nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         # An interval cannot contain a stick before this time.
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
@@ -401,41 +444,51 @@ class PartWithEdge(Part):
         return out
 
     def _stick_time_errors(self) -> np.ndarray:
-        """Return the errors of the stick times of knots, 0 where they are negligible."""
+        """Return the errors of the stick times of knots, 0 where they are negligible.
+
+        They are the error of du/dt divided by the rate at which du/dt falls through 0.
+        """
         knots = self.knots
-        fall = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
+        deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
         # Where a front has stopped, the stick time is that of the front itself, which is exact.
-        fall = np.where(knots.kind == BRIEF_SLIP, np.inf, fall)
-        error = VELOCITY_ERROR / np.maximum(fall, ROUNDING_ERROR)
+        deceleration = np.where(knots.kind == BRIEF_SLIP, np.inf, deceleration)
+        error = VELOCITY_ERROR / np.maximum(deceleration, ROUNDING_ERROR)
         error[error < TIME_ERROR] = 0.0
         return error
 
     def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the trailing edge may have a minimum.
 
-        Its slope, or du/dt at the final time, falls into such an interval from both ends.
+        Stick times fall from both ends towards the inside of such an interval. Intervals with an
+        uncertain stick time are left out.
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
         falls_inwards = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
         is_fast = knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        return falls_inwards & is_fast & (error[:-1] + error[1:] == 0.0)
+        is_certain = error[:-1] + error[1:] == 0.0
+        return falls_inwards & is_fast & is_certain
 
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
         """Return positions between knots that have stuck before the first stick at a knot."""
         knots, curve = self.knots, self.curve
-        # A stick between two knots comes later than its waves need to reach both of them.
+        # A stick between two knots makes both of them stick, at the latest when its waves arrive
+        # there. So it is not earlier than this time.
         earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
-        slips = curve.arrival(knots.x) < first.time
+        is_released = curve.arrival(knots.x) < first.time
+        is_partly_released = is_released[:-1] | is_released[1:]
         intervals: list[tuple[float, float]] = []
-        for k in np.flatnonzero((earliest < first.time) & (slips[:-1] | slips[1:])):
+        for k in np.flatnonzero((earliest < first.time) & is_partly_released):
+            # Only the released part of the interval, up to a front inside it, is examined.
             left, right = knots.x[k : k + 2].tolist()
-            left = left if slips[k] else curve.front_at(first.time, right, -1.0)
-            right = right if slips[k + 1] else curve.front_at(first.time, left, 1.0)
+            if not is_released[k]:
+                left = curve.front_at(first.time, right, -1.0)
+            if not is_released[k + 1]:
+                right = curve.front_at(first.time, left, 1.0)
             inner = [first.x] if left < first.x < right else []
             intervals += pairwise([left, *inner, right])
-        x = np.array(intervals).reshape(-1, 2).T
-        return stuck_between(self, x=x, time=first.time, first=first.x)
+        pairs = np.array(intervals).reshape(-1, 2).T
+        return stuck_between(self, x=pairs, time=first.time, first=first.x)
 
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
         """Return the first sticking between two positions.

@@ -32,8 +32,8 @@ def fast_fronts(
     """
     law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
-    starts = nucleation_intervals(prestress)
-    if len(starts) > 1 or starts[0][0] != starts[0][1]:
+    (first_released, last_released), *others = nucleation_intervals(prestress)
+    if others or first_released != last_released:
         raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
     start = Point(0.0, 0.0)
     right, _ = law.panels_to_right(start, reach, np.inf)

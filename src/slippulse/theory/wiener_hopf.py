@@ -67,12 +67,19 @@ ARTANH_SERIES_LIMIT = 0.1
 
 
 class Nodes(NamedTuple):
-    """Nodes z of the right half of the contour, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+    """Quadrature on the right half of the contour: z, dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
 
     z: np.ndarray
     weight: np.ndarray
     exp_minus_1: np.ndarray
     exp_minus_2_terms: np.ndarray
+
+
+class Roots(NamedTuple):
+    """The functions q and r of the module docstring at some nodes."""
+
+    q: np.ndarray
+    r: np.ndarray
 
 
 def log_prestress(
@@ -94,24 +101,28 @@ def log_prestress(
     log_values = log_factor(
         contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
     )
+    # ln M_+(0): the two halves of the contour contribute complex conjugate integrals.
     out = (log_values @ (contour.weight / contour.z)).imag / np.pi
     if springs > 0.0:
-        edge = 0.5 * np.sqrt(springs)
-        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
+        # The factor 1 - rho at z = 0, where q = sqrt(g)/2 and r = sqrt(1 + g/4).
+        q_at_0 = 0.5 * np.sqrt(springs)
+        log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
         # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
         # residue.
-        out = (0.5 - angle / np.pi) * origin + out
+        out = (0.5 - angle / np.pi) * log_at_0 + out
     else:
         # The closed form at b = 1, whose ratio to the factor has been integrated.
         out += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
         # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
         y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
-        from_pole = contour.z - 1j * y[:, None]
-        at_pole = np.sum(log_values * (contour.weight / from_pole), axis=1).imag / np.pi
+        distance = contour.z - 1j * y[:, None]
+        log_at_iy = np.sum(log_values * (contour.weight / distance), axis=1).imag / np.pi
         if springs == 0.0:
-            at_pole += np.log((excess * y + _exp_minus_two_terms(-y).real) / ((1.0 + excess) * y))
-        out -= np.where(ratio > 0.0, at_pole, 0.0)
+            # The closed form at b = 1 is 1 - (1 - e^{-y})/(v y) there.
+            numerator = excess * y + _exp_minus_two_terms(-y).real
+            log_at_iy += np.log(numerator / ((1.0 + excess) * y))
+        out -= np.where(ratio > 0.0, log_at_iy, 0.0)
     return out
 
 
@@ -125,9 +136,12 @@ def _choose_contour(
     if drag:
         nearest = min(nearest, springs / abs(drag))
     if drag < 0.0:
+        # The growing waves of the slowest front lie at this sine below the axis. The contour leaves
+        # 0 halfway between them and the imaginary axis, if that is steeper.
         slowest = float(np.min(excess))
-        size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
-        angle = max(CONTOUR_ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
+        sine = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+        halfway = 0.5 * (np.arcsin(min(sine, 1.0)) + 0.5 * np.pi)
+        angle = max(CONTOUR_ANGLE, halfway)
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
     panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / scale) / LOG_PANEL_LENGTH))
     return nodes(panels, angle), angle
@@ -143,32 +157,67 @@ def log_factor(
     z = contour.z
     iw = 1j * z * (1.0 + excess)
     q, r = roots(iw, ratio=ratio, springs=springs, drag=drag)
-    both = r + q
-    rho = (1.0 + ratio * iw) / both**2
-    factor = 2.0 * q / both - rho * contour.exp_minus_1
-    # Near 0 both parts of the factor cancel as v -> 1. There it is -expm1(i z + ln rho), with ln
-    # rho = -2 artanh(q/r).
-    slope = q / r
-    close = (np.abs(slope) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess < 1.0)
-    if np.any(close):
-        last = int(np.flatnonzero(close.any(axis=0))[-1]) + 1
-        part = np.s_[:, :last]
-        size = -2j * q[part]
-        h = np.where(close[part], slope[part], 0.0)
-        shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
-        lag = -excess * z[:last] + size * shift / r[part]
-        if springs > 0.0:
-            lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
-        # artanh h - h, computed without cancellation.
-        square, large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
-        artanh_minus_h = h * square * _ARTANH(square)
-        artanh_minus_h[large] = np.arctanh(h[large]) - h[large]
-        exponent = np.where(close[part], 1j * lag - 2.0 * artanh_minus_h, 0.0)
-        factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
+    # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where rho = (r^2 - q^2)/(r + q)^2 and
+    # r^2 - q^2 = 1 + i b w.
+    r_plus_q = r + q
+    rho = (1.0 + ratio * iw) / r_plus_q**2
+    factor = 2.0 * q / r_plus_q - rho * contour.exp_minus_1
+    # Near 0 the two terms cancel as v -> 1.
+    quotient = q / r
+    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess < 1.0)
+    if np.any(is_close):
+        # Only the first nodes, up to the last one that is close for some front, are computed again.
+        last = int(np.flatnonzero(is_close.any(axis=0))[-1]) + 1
+        first_nodes = np.s_[:, :last]
+        exponent = _exponent_near_zero(
+            z[:last],
+            iw=iw[first_nodes],
+            q_and_r=Roots(q[first_nodes], r[first_nodes]),
+            is_close=is_close[first_nodes],
+            excess=excess,
+            ratio=ratio,
+            springs=springs,
+            drag=drag,
+        )
+        factor[first_nodes] = np.where(
+            is_close[first_nodes], -np.expm1(exponent), factor[first_nodes]
+        )
     if springs > 0.0:
         return log(factor)
+    # The factor at b = 1, i z (v - 1) - (e^{iz} - 1 - i z), divided by 1 + i w.
     reference = (1j * excess * z - contour.exp_minus_2_terms) / (1.0 + iw)
     return log(factor / reference)
+
+
+def _exponent_near_zero(
+    z: np.ndarray,
+    iw: np.ndarray,
+    q_and_r: Roots,
+    is_close: np.ndarray,
+    excess: np.ndarray,
+    ratio: np.ndarray,
+    springs: float,
+    drag: float,
+) -> np.ndarray:
+    """Return i z + ln rho near z = 0, computed without cancellation; 0 where it is not close.
+
+    With h = q/r, ln rho is -2 artanh h, so that the exponent is i z - 2 h - 2 (artanh h - h). The
+    first two terms are i times a small lag: with z = w/v and -2 i q = W = sqrt(w^2 - g - i a w),
+
+        lag = -(v - 1) z + (w - W) + W (r - 1)/r.
+    """
+    q, r = q_and_r
+    wave = -2j * q
+    r_minus_1 = (ratio * iw - 0.25 * wave**2) / (r + 1.0)
+    lag = -excess * z + wave * r_minus_1 / r
+    if springs > 0.0:
+        w_minus_wave = (springs + drag * iw) / (-1j * iw + wave)
+        lag = lag + w_minus_wave
+    h = np.where(is_close, q / r, 0.0)
+    square, is_large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
+    artanh_minus_h = h * square * _ARTANH(square)
+    artanh_minus_h[is_large] = np.arctanh(h[is_large]) - h[is_large]
+    return np.where(is_close, 1j * lag - 2.0 * artanh_minus_h, 0.0)
 
 
 def log(z: np.ndarray) -> np.ndarray:
@@ -176,38 +225,52 @@ def log(z: np.ndarray) -> np.ndarray:
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
-def roots(
-    iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float
-) -> tuple[np.ndarray, np.ndarray]:
+def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> Roots:
     """Return q and r (see the module docstring).
 
-    Their branch cuts run straight up from the branch points.
+    Both are square roots of quadratic polynomials in i w, and are computed as products of the
+    square roots of their linear factors, so that their branch cuts run straight up from the branch
+    points. With c = b + a/4, 4 r^2 = (i w)^2 + 4 c i w + 4 + g = (i w + c_1)(i w + c_2), where
+    c_1 and c_2 are 2 c +- sqrt(4 c^2 - 4 - g).
     """
-    four = 4.0 + springs
-    ratio = ratio + 0.25 * drag
-    under = 4.0 * ratio**2 - four
-    strong = under >= 0.0
-    root = np.sqrt(np.abs(under))
-    large = 2.0 * ratio + np.where(strong, root, 1j * root)
-    small = np.where(strong, four / np.where(strong, large.real, 1.0), np.conj(large))
-    r = 0.5 * np.sqrt(large + iw) * np.sqrt(small + iw)
+    product = 4.0 + springs
+    half_sum = 2.0 * (ratio + 0.25 * drag)
+    discriminant = 4.0 * (ratio + 0.25 * drag) ** 2 - product
+    are_real = discriminant >= 0.0
+    root = np.sqrt(np.abs(discriminant))
+    c_1 = half_sum + np.where(are_real, root, 1j * root)
+    # The smaller real one follows from the product, without cancellation.
+    c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
+    r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
     if springs == 0.0:
-        return 0.5 * iw, r
-    side = np.sqrt(complex(0.25 * drag**2 - springs))
-    return 0.5 * np.sqrt(iw + 0.5 * drag - side) * np.sqrt(iw + 0.5 * drag + side), r
+        return Roots(0.5 * iw, r)
+    # Likewise 4 q^2 = (i w)^2 + a i w + g.
+    root_of_q = np.sqrt(complex(0.25 * drag**2 - springs))
+    q = 0.5 * np.sqrt(iw + 0.5 * drag - root_of_q) * np.sqrt(iw + 0.5 * drag + root_of_q)
+    return Roots(q, r)
 
 
 @lru_cache(maxsize=32)
 def nodes(panels: int, angle: float) -> Nodes:
-    """Return the nodes on the contour, whose ray has a given number of panels."""
-    edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panels, -1.0, -1.0)
-    ray, ray_weight = _panels(edges)
-    inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
+    """Return the nodes on the contour: one panel next to 0, the panels of the ray, and the leg.
+
+    panels is the number of panels of the ray, which are of equal length in ln |z|, and angle is the
+    angle of the ray below the real axis.
+    """
+    log_edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panels, -1.0, -1.0)
+    log_size, log_weight = _panels(log_edges)
+    inner, inner_weight = _panels(np.array([0.0, np.exp(log_edges[0])]))
     leg, leg_weight = _panels(LEG_EDGES)
-    turn, size = np.exp(-1j * angle), np.exp(ray)
-    z = np.concatenate([inner * turn, size * turn, CONTOUR_REACH * turn + leg * LEG_DIRECTION])
-    weights = inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION
-    weight = np.concatenate(weights)
+    ray_direction, size = np.exp(-1j * angle), np.exp(log_size)
+    corner = CONTOUR_REACH * ray_direction
+    z = np.concatenate([inner * ray_direction, size * ray_direction, corner + leg * LEG_DIRECTION])
+    weight = np.concatenate(
+        [
+            inner_weight * ray_direction,
+            size * ray_direction * log_weight,
+            leg_weight * LEG_DIRECTION,
+        ]
+    )
     return Nodes(
         z=z,
         weight=weight,

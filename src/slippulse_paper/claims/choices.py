@@ -39,17 +39,27 @@ class Combination:
 
     @cached_property
     def result(self) -> dict[str, Any]:
-        """Deviation, verdict, and True if the claim holds; None instead of True if it is open."""
-        verdict, deviation = self.claim.verdict(), self.claim.fields().get("deviation")
+        """The deviation, the verdict, and whether the claim holds (None if that is open)."""
+        verdict = self.claim.verdict()
         return {
-            "deviation": deviation,
+            "deviation": self.claim.fields().get("deviation"),
             "verdict": verdict,
             "holds": rules.HOLDS_BY_VERDICT.get(verdict),
         }
 
+    @property
+    def fraction(self) -> float | str | None:
+        """The fraction of the path that counts as arrest; None if the claim has no such choice."""
+        return self.choice.get("fraction")
+
 
 class Change(NamedTuple):
-    """Two combinations that differ in one choice only, and the difference of their deviations."""
+    """A change of one choice, which leads from one combination to another.
+
+    name : the choice that changes
+    exact : True if both combinations are exact solutions
+    size : absolute difference of the deviations
+    """
 
     name: str
     before: Combination
@@ -63,17 +73,21 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 
     Combinations without a deviation are left out.
     """
-    # The last release is a property of the lattice and not a choice that the paper leaves open.
-    choices = [one for one in combinations if one.choice.get("fraction") != LAST_RELEASE_FRACTION]
-    out = []
-    for before, after in permutations(choices, 2):
+    compared = []
+    for combination in combinations:
+        # The last release is a property of the lattice and not a choice that the paper leaves open.
+        is_open_choice = combination.fraction != LAST_RELEASE_FRACTION
+        if is_open_choice and combination.result["deviation"] is not None:
+            compared.append(combination)
+    single_changes = []
+    for before, after in permutations(compared, 2):
         names = before.choice | after.choice
         changed = [name for name in names if before.choice.get(name) != after.choice.get(name)]
-        first, second = before.result["deviation"], after.result["deviation"]
-        if len(changed) == 1 and changed[0] in CHOICE_WORDS and None not in (first, second):
+        if len(changed) == 1 and changed[0] in CHOICE_WORDS:
             exact = before.choice.get("solution") == "exact"
-            out.append(Change(changed[0], before, after, exact, abs(first - second)))
-    return out
+            size = abs(before.result["deviation"] - after.result["deviation"])
+            single_changes.append(Change(changed[0], before, after, exact, size))
+    return single_changes
 
 
 def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
@@ -81,16 +95,21 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
 
     If no choice decides, return the change that moves the deviation most.
     """
-    deciding: dict[str, Change] = {}
-    changed = changes(combinations)
-    for change in sorted(changed, key=attrgetter("size")):
-        if change.before.result["holds"] and change.after.result["holds"] is False:
-            deciding.setdefault(change.name, change)
-    # Changes of the exact solution rank above changes of lattices.
-    weight = attrgetter("exact", "size")
-    largest = {change.name: change for change in sorted(changed, key=weight)}
-    ranked = sorted(largest.values(), key=weight)[::-1]
-    return [deciding[one.name] for one in ranked if one.name in deciding] or ranked[:1]
+    all_changes = changes(combinations)
+    smallest_deciding: dict[str, Change] = {}
+    for change in sorted(all_changes, key=attrgetter("size")):
+        holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
+        if holds_before is True and holds_after is False:
+            smallest_deciding.setdefault(change.name, change)
+    # Changes of the exact solution rank above changes of lattices. The dictionary keeps the last
+    # change of each choice, which is the one with the highest rank.
+    rank = attrgetter("exact", "size")
+    highest = {change.name: change for change in sorted(all_changes, key=rank)}
+    ranked = sorted(highest.values(), key=rank)[::-1]
+    deciding = [
+        smallest_deciding[change.name] for change in ranked if change.name in smallest_deciding
+    ]
+    return deciding or ranked[:1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +120,7 @@ class OverChoices(Claim):
     shown: Claim
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return one verdict from those at all combinations."""
         verdicts = [one.claim.verdict(tolerance) for one in self.combinations]
         return rules.verdict_over_choices(verdicts)
 
@@ -112,36 +132,48 @@ class OverChoices(Claim):
     def fields(self) -> dict[str, Any]:
         """Return the numbers shown, one row for each combination, and the most important choice."""
         rows = [one.choice | one.result for one in self.combinations]
-        out: dict[str, Any] = {"verdict": self.verdict(), "choices": rows}
-        out |= {"combinations": len(rows), "holds_at": sum(bool(row["holds"]) for row in rows)}
-        return (
-            self.shown.json_fields()
-            | out
-            | {"choice": self.decided[0].name if self.decided else ""}
-        )
+        return self.shown.json_fields() | {
+            "verdict": self.verdict(),
+            "choices": rows,
+            "combinations": len(rows),
+            "holds_at": sum(bool(row["holds"]) for row in rows),
+            "choice": self.decided[0].name if self.decided else "",
+        }
 
     def sentence_values(self) -> dict[str, Any]:
-        """Return the values for sentences, of all combinations and of one in doubt."""
-        results = [one.result for one in self.combinations]
-        last = [
-            one.result
-            for one in self.combinations
-            if one.choice.get("fraction") == LAST_RELEASE_FRACTION
-        ]
+        """Return the values that sentences may use, in addition to the fields.
+
+        holding, failing : deviations at the combinations at which the claim holds or fails
+        last : deviations of lattices at their last release
+        changes, choice_names : the decisive changes, and the names of the choices in sentences
+        settings, unsure : the choices and values of the first combination in doubt, which is one
+            with a caveat if there is one
+        """
+        holding: list[float | None] = []
+        failing: list[float | None] = []
+        last: list[float] = []
+        for combination in self.combinations:
+            deviation, holds = combination.result["deviation"], combination.result["holds"]
+            if holds is True:
+                holding.append(deviation)
+            if holds is False:
+                failing.append(deviation)
+            if combination.fraction == LAST_RELEASE_FRACTION and deviation is not None:
+                last.append(deviation)
         in_doubt = [one for one in self.combinations if one.result["verdict"] == rules.CAVEAT]
-        unsure = (in_doubt or self.combinations)[0]
-        choice = {
-            CHOICE_WORDS[name]: value
+        unsure = in_doubt[0] if in_doubt else self.combinations[0]
+        settings = [
+            f"{CHOICE_WORDS[name]} {named(value)}"
             for name, value in unsure.choice.items()
             if name in CHOICE_WORDS
-        }
+        ]
         return self.shown.template_values | {
-            "holding": [result["deviation"] for result in results if result["holds"]],
-            "failing": [result["deviation"] for result in results if result["holds"] is False],
-            "last": [result["deviation"] for result in last if result["deviation"] is not None],
+            "holding": holding,
+            "failing": failing,
+            "last": last,
             "changes": self.decided,
             "choice_names": CHOICE_WORDS,
-            "settings": [f"{name} {named(value)}" for name, value in choice.items()],
+            "settings": settings,
             "unsure": unsure.claim.template_values,
         }
 

@@ -36,28 +36,33 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
     """
     texts = read_text(path)
     claims = texts["claims"]
-    for id, other in tolerances.items():
+    for id, changed_tolerances in tolerances.items():
         if id not in claims:
             raise ValueError(
                 f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}"
             )
-        claims[id] |= other
+        claims[id] |= changed_tolerances
     return texts
 
 
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
-    """Return the ids of the claims and checks that test a sentence."""
+    """Return the ids of the claims and checks that test a sentence of the paper.
+
+    Each entry lists the ids of the sentences that it tests.
+    """
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
 def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
     """Return, for each claim, the sections and figures of the sentences that it tests, in order."""
-    where = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
-    out = {}
-    for name, entry in entries.items():
-        places = [place for id, place in where.items() if id in entry["sentences"]]
-        out[name] = "; ".join(dict.fromkeys(places))
-    return out
+    # A place such as "abstract, paragraph 1, sentence 2" is shortened to "abstract".
+    place_of_sentence = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
+    places_of_claim = {}
+    for claim, entry in entries.items():
+        places = [place for id, place in place_of_sentence.items() if id in entry["sentences"]]
+        without_repetitions = dict.fromkeys(places)
+        places_of_claim[claim] = "; ".join(without_repetitions)
+    return places_of_claim
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:

@@ -5,6 +5,7 @@ make claims of the measured kinds. The functions before it evaluate expressions 
 estimate grid uncertainties.
 """
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
@@ -25,8 +26,8 @@ Lattices = Sequence[pd.DataFrame]
 def value_of(table: pd.DataFrame, expression: str):
     """Evaluate an expression over columns (`pandas.DataFrame.eval`)."""
     # Evaluation slows down with every column of the table, even if the expression does not use it.
-    named = table[[name for name in table if name in expression]]
-    return named.eval(expression, engine="python")
+    mentioned = [name for name in table if name in expression]
+    return table[mentioned].eval(expression, engine="python")
 
 
 def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
@@ -43,26 +44,33 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
 
     The ratio is NaN where a value is missing.
     """
-    return pd.Series(evaluated(table, measured) / evaluated(table, predicted), table.index, float)
+    ratio = evaluated(table, measured) / evaluated(table, predicted)
+    return pd.Series(ratio, table.index, float)
 
 
 def agreed_answers(first: Iterable, second: Iterable) -> list[bool | None]:
-    """Return the common answer of two lattices for each run; None if they differ or have none."""
+    """Return the common answer of two lattices for each run.
+
+    The answer is None if the lattices differ, or if they have no answer.
+    """
     answers: list[bool | None] = []
-    for one, other in zip(first, second, strict=True):
-        answers.append(bool(one) if one is not None and one == other else None)
+    for on_first, on_second in zip(first, second, strict=True):
+        agree = on_first is not None and on_first == on_second
+        answers.append(bool(on_first) if agree else None)
     return answers
 
 
 def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertain:
-    """Return a value and its grid uncertainty from the values that lattices of each spacing give.
+    """Return a value and its grid uncertainty, from one value for each lattice.
 
-    The uncertainty of an exact solution, which is a single table, is 0.
+    ``values`` begins with that of the finest lattice. The uncertainty of an exact solution, which
+    is a single table, is 0.
     """
     if len(tables) == 1:
         return values[0], 0.0
     if tables[0].empty:
         return values[0], NAN
+    # Spacings of the coarser lattices, divided by that of the finest.
     factors = [float(table["factor"].dropna().iloc[0]) for table in tables[1:]]
     study = grid_study(values, factors)
     return study.value, study.uncertainty
@@ -103,9 +111,13 @@ class Evidence:
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
-        self.tables, self.entries = tables, entries
-        # Largest velocity change of a steady pulse, and the values read off the published figure.
-        self.steady, self.readings = steady, readings
+        self.tables = tables
+        # Texts of the claims in manuscript/claims.yaml, by claim id.
+        self.entries = entries
+        # Largest velocity change of a steady pulse.
+        self.steady = steady
+        # Values that were read off the published figure.
+        self.readings = readings
         coarser = [path for path in tables if path.startswith("coarser/")]
         self.swept = [path.removeprefix("coarser/") for path in coarser]
         self._lattices = {name: self._three_lattices(name) for name in self.swept}
@@ -113,28 +125,60 @@ class Evidence:
     def _three_lattices(self, simulation: str) -> list[pd.DataFrame]:
         """Return the measured runs on three lattices, the finest first, without flagged runs."""
         finest, coarser = self.tables[simulation], self.tables[f"coarser/{simulation}"]
-        study = self.tables[f"uncertainties/{simulation}"].set_index(["point", "quantity"])
-        study = study[["extrapolated", "uncertainty"]].unstack()
-        study.columns = ["_".join(column) for column in study.columns]
-        predicted = finest[finest.columns.difference(coarser.columns)]
-        parts = [part.reset_index(drop=True) for _, part in coarser.groupby("factor")]
-        tables = [finest.join(study), *[part.join(predicted) for part in parts]]
+        # The grid study has one row for each run (point) and quantity. It becomes one row for each
+        # run, with the columns extrapolated_QUANTITY and uncertainty_QUANTITY.
+        grid_study_rows = self.tables[f"uncertainties/{simulation}"]
+        by_run = grid_study_rows.set_index(["point", "quantity"])
+        by_run = by_run[["extrapolated", "uncertainty"]].unstack()
+        by_run.columns = ["_".join(column) for column in by_run.columns]
+        tables = [finest.join(by_run)]
+        # Predictions are the same on all lattices, and only the table of the finest has them.
+        predictions = finest[finest.columns.difference(coarser.columns)]
+        for _, lattice in coarser.groupby("factor"):
+            tables.append(lattice.reset_index(drop=True).join(predictions))
         # If a run is flagged on the finest lattice, its numbers do not describe the model.
-        kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
-        return tables if kept.all() else [table[kept] for table in tables]
+        has_no_flag = finest["run_flags"].isna() | (finest["run_flags"] == "")
+        if has_no_flag.all():
+            return tables
+        return [table[has_no_flag] for table in tables]
 
     def assign(self, simulation: str, columns: Callable[[pd.DataFrame], dict]) -> None:
-        """Add columns that are computed from the others on each lattice."""
+        """Add columns to the runs of a simulation, on each lattice.
+
+        columns : function that computes the new columns, by name, from the table of a lattice
+        """
         tables = self._lattices[simulation]
         self._lattices[simulation] = [table.assign(**columns(table)) for table in tables]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Return runs on three lattices; the condition is evaluated on the finest."""
-        chosen = []
+        """Return the runs of some simulations as three tables, the finest lattice first.
+
+        where : condition over columns that selects runs, evaluated on the finest lattice
+        """
+        selected = []
         for name in simulations:
-            rows = evaluated(self._lattices[name][0], where)
-            chosen.append([table[rows] for table in self._lattices[name]])
-        return [pd.concat(parts) for parts in zip(*chosen, strict=True)]
+            tables = self._lattices[name]
+            is_selected = evaluated(tables[0], where)
+            selected.append([table[is_selected] for table in tables])
+        # Lattices of the same rank belong together: all finest ones, then all coarser ones.
+        return [pd.concat(tables_of_rank) for tables_of_rank in zip(*selected, strict=True)]
+
+    def flags_behind(self, source: str) -> str:
+        """Return a sentence on the flagged runs of the simulations in a source; empty if none is.
+
+        Claims do not use a flagged run, so that such a run may leave a claim without a number.
+        """
+        parts = []
+        for name in dict.fromkeys(re.findall(r"\w+", source)):
+            if name not in self.swept:
+                continue
+            flags = self.tables[name]["run_flags"].dropna().astype(str)
+            flags = flags[flags != ""]
+            kinds = ", ".join(sorted({*",".join(flags).split(",")}))
+            if len(flags):
+                count = f"{len(flags)} of {len(self.tables[name])} runs of {name}"
+                parts.append(f"{count} are flagged ({kinds}) and therefore not used")
+        return f"{'; '.join(parts)}." if parts else ""
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
         """Return runs on the finest lattice.
@@ -161,13 +205,16 @@ class Evidence:
 
         ``tables`` has one table for each lattice, or a single table of exact solutions.
         """
-        quotients = [ratios(table, measured, predicted) for table in tables]
-        deviations = [(series - 1.0).abs() for series in quotients]
+        # One series of all runs for each lattice.
+        ratio_series = [ratios(table, measured, predicted) for table in tables]
+        deviation_series = [(series - 1.0).abs() for series in ratio_series]
+        median_ratios = [series.median() for series in ratio_series]
+        median_deviations = [series.median() for series in deviation_series]
         return Approximate(
             tolerance=self.tolerance(id),
-            deviations=deviations[0].to_numpy(),
-            median=with_grid_uncertainty(tables, [series.median() for series in deviations]),
-            ratio=with_grid_uncertainty(tables, [series.median() for series in quotients]),
+            deviations=deviation_series[0].to_numpy(),
+            median=with_grid_uncertainty(tables, median_deviations),
+            ratio=with_grid_uncertainty(tables, median_ratios),
         )
 
     def agreed(
@@ -180,16 +227,26 @@ class Evidence:
         """
         finest, middle, _ = self.lattices(simulation, where=where)
         answers = agreed_answers(evaluated(finest, holds), evaluated(middle, holds))
-        regimes = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)
+        is_decidable = evaluated(finest, decidable)
+        exact_regimes = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)
         decided: list[bool | None] = []
-        decidable_runs = evaluated(finest, decidable)
-        for answer, is_decidable, regime in zip(answers, decidable_runs, regimes, strict=True):
-            by_theory = None if regime == UNDECIDED else regime in ends
-            decided.append(answer if is_decidable and answer is not None else by_theory)
+        for answer, lattices_decide, regime in zip(
+            answers, is_decidable, exact_regimes, strict=True
+        ):
+            if lattices_decide and answer is not None:
+                decided.append(answer)
+            elif regime != UNDECIDED:
+                decided.append(regime in ends)
+            else:
+                decided.append(None)
         return decided
 
     def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain:
-        """Return median and largest deviation from exact theory of values at spacing 0."""
+        """Return the median and the largest deviation of a quantity from exact theory.
+
+        The deviation of a run is |value/exact - 1|, with the value extrapolated to spacing 0.
+        """
         table = self.finest(simulation)
-        deviation = (ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}") - 1.0).abs()
+        ratio = ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}")
+        deviation = (ratio - 1.0).abs()
         return float(deviation.median()), float(deviation.max())

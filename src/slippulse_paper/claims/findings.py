@@ -4,8 +4,7 @@ Most numbers are expressions in manuscript/claims.yaml over the columns of one t
 here compute the others; `COMPUTED_FINDINGS` lists them.
 """
 
-from collections.abc import Callable, Mapping
-from itertools import chain
+from collections.abc import Callable, Mapping, Sequence
 from types import SimpleNamespace
 
 import numpy as np
@@ -25,31 +24,59 @@ def findings(
 ) -> list[dict]:
     """Return each finding with its id, its numbers by name, its text and its source tables.
 
-    A finding has no numbers if the configuration leaves no runs for some of them.
+    damping_ratio : that of the figures, which expressions may use
+    entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
-    out = []
+    all_findings = []
     for id, entry in entries.items():
-        rows = entry.get("numbers", [])
-        parts = [numbers(evidence, damping_ratio, **row) for row in rows]
-        if id in COMPUTED_FINDINGS and all(parts):
-            parts.append(COMPUTED_FINDINGS[id](evidence))
-        # An altered configuration may leave no runs for some of the numbers.
-        values = dict(chain.from_iterable(part.items() for part in parts)) if all(parts) else {}
+        # An entry has expressions over several tables.
+        expressions = entry.get("numbers", [])
+        values = all_numbers(evidence, damping_ratio, id, expressions)
+        # In the text the numbers are n.NAME.
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
-        source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
-        out.append({"id": id, "numbers": values, "text": text, "source": source})
-    return out
+        tables = [row["table"] for row in expressions]
+        source = ", ".join([*tables, *entry.get("source", [])])
+        all_findings.append({"id": id, "numbers": values, "text": text, "source": source})
+    return all_findings
+
+
+def all_numbers(
+    evidence: Evidence, damping_ratio: float, id: str, expressions: Sequence[Mapping]
+) -> dict[str, float]:
+    """Return the numbers of one finding: those of its expressions, and those computed here.
+
+    There are none at all if an altered configuration leaves no runs for some of them.
+    """
+    values: dict[str, float] = {}
+    for row in expressions:
+        part = numbers(evidence, damping_ratio, **row)
+        if not part:
+            return {}
+        values |= part
+    if id in COMPUTED_FINDINGS:
+        part = COMPUTED_FINDINGS[id](evidence)
+        if not part:
+            return {}
+        values |= part
+    return values
 
 
 def numbers(
-    evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = ""
+    evidence: Evidence, damping_ratio: float, table: str, take: Mapping, where: str = ""
 ) -> dict[str, float]:
-    """Evaluate expressions over columns of selected rows of one table; empty without rows."""
+    """Evaluate expressions over the columns of one table; empty if no row is selected.
+
+    table : name of the table
+    take : expressions by the name of the number
+    where : condition that selects rows; all rows if it is empty
+    """
     rows = evidence.finest(table) if table in evidence.swept else evidence.tables[table]
-    rows = rows.assign(figures=ratio)
+    # In expressions "figures" is the damping ratio of the figures.
+    rows = rows.assign(figures=damping_ratio)
     rows = rows[evaluated(rows, where)]
-    expressions = take.items() if len(rows) else ()
-    return {name: float(value_of(rows, expression)) for name, expression in expressions}
+    if rows.empty:
+        return {}
+    return {name: float(value_of(rows, expression)) for name, expression in take.items()}
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
@@ -61,6 +88,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
     for boundary in ("displacement", "stress"):
         table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
         table = table.set_index(["left", "width", "gamma", "damping_ratio"])
+        # One row for each scene, and one column for each damping ratio, in ascending order.
         lengths = table["transition_length"].unstack()
         if lengths.empty:
             return {}
@@ -76,19 +104,29 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     fits = infer_parameters(evidence.tables["published_figure"])
     best = fits["best"]
     low, high = best["regions"][0.95]
-    out = {"release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"])}
-    out |= {"ratio": best["damping_ratio"], "low": low, "high": high}
-    return out | {"difference": fits["difference"]}
+    return {
+        "release": best["release"],
+        "chi_square": best["chi2"],
+        "degrees": float(best["dof"]),
+        "ratio": best["damping_ratio"],
+        "low": low,
+        "high": high,
+        "difference": fits["difference"],
+    }
 
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:
-    """Return the median of exact divided by predicted time for each fraction of the distance."""
-    combinations, *_ = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
-    medians = transition.medians(combinations).items()
-    # The last release is a text instead of a fraction, and belongs to lattices.
-    return {
-        f"median_{100.0 * part:.0f}": median for part, median in medians if isinstance(part, float)
-    }
+    """Return the median of the exact time divided by the paper's estimate.
+
+    There is one median for each fraction of the path that counts as arrest.
+    """
+    judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
+    medians = {}
+    for fraction, median in transition.medians(judged.combinations).items():
+        # The last release is a text instead of a fraction, and belongs to lattices.
+        if isinstance(fraction, float):
+            medians[f"median_{100.0 * fraction:.0f}"] = median
+    return medians
 
 
 def backward_threshold(evidence: Evidence) -> dict[str, float]:
@@ -98,9 +136,12 @@ def backward_threshold(evidence: Evidence) -> dict[str, float]:
     """
     columns = ["min_stuck_stress", "friction_ratio_needed"]
     runs = pd.concat([evidence.tables[name][columns] for name in evidence.swept])
-    reverse = (runs["min_stuck_stress"] <= -1.0).sum()
-    needed = float(runs["friction_ratio_needed"].max())
-    return {"back": float(reverse), "runs": float(len(runs)), "needed": needed}
+    slides_back = runs["min_stuck_stress"] <= -1.0
+    return {
+        "back": float(slides_back.sum()),
+        "runs": float(len(runs)),
+        "needed": float(runs["friction_ratio_needed"].max()),
+    }
 
 
 # Findings whose numbers are not expressions over the columns of one table.

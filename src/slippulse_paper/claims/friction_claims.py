@@ -21,33 +21,49 @@ SLIP_WEAKENING_LEVEL = 0.5
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Find runs with two pulses (with leaf springs) and runs with one pulse (without)."""
     # These tables also contain runs that are flagged because the rupture died out.
-    chain, spike = (evidence.tables[f"burridge_knopoff_{name}"] for name in ("chain", "stress"))
-    two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
-    one_way = spike[spike["regime"].str.startswith("pulse, one-way")]["sliding_at_once"]
-    fewest, most = two_way.min(), two_way.max()
-    # In a pulse that is one block wide, one block slides at a time.
-    wide = bool(fewest > 1.0)
-    template_values = {"wide": wide, "two_way": len(two_way), "with_springs": len(chain)}
-    template_values |= {"one_way": len(one_way), "without_springs": len(spike)}
-    further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
-    decided = [len(runs) > 0 or None for runs in (two_way, one_way)]
+    with_springs = evidence.tables["burridge_knopoff_chain"]
+    without_springs = evidence.tables["burridge_knopoff_stress"]
+    two_way = with_springs[with_springs["regime"] == TWO_WAY]
+    one_way = without_springs[without_springs["regime"].str.startswith("pulse, one-way")]
+    # The paper has pulses that are one block wide. In such a pulse one block slides at a time.
+    fewest_blocks = two_way["sliding_at_once"].min()
+    is_wide = bool(fewest_blocks > 1.0)
+    # Each boundary condition counts as one case, and is undecided if none of its runs is a pulse.
+    decided = [None if two_way.empty else True, None if one_way.empty else True]
     return Qualitative(
-        decided=decided, condition=wide, further=further, template_values=template_values
+        decided=decided,
+        condition=is_wide,
+        further={
+            "fewest blocks at once": fewest_blocks,
+            "most": two_way["sliding_at_once"].max(),
+            "without leaf springs": one_way["sliding_at_once"].max(),
+        },
+        template_values={
+            "wide": is_wide,
+            "two_way": len(two_way),
+            "with_springs": len(with_springs),
+            "one_way": len(one_way),
+            "without_springs": len(without_springs),
+        },
     )
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether ruptures under each other law are pulses; skip runs that would slide back."""
-    linear = evidence.tables["rate_dependence"].query("role == 'lattice' and over_critical != 0")
-    bounded = evidence.tables["friction_laws"].query("role == 'plane'")
-    ruptures = bounded[bounded["regime"] != "no rupture"]
-    runs = pd.concat([linear, ruptures], ignore_index=True)
-    outside = runs["run_flags"].astype(str).str.contains("reverse_sliding")
-    kinds = runs["regime"][~outside]
-    further = {f"ruptures: {kind}": float(count) for kind, count in kinds.value_counts().items()}
-    further["left out, since blocks would slide back"] = float(outside.sum())
-    further["left out, since fracture energy stops them"] = float(len(bounded) - len(ruptures))
-    return Qualitative(decided=kinds != "crack", condition=True, further=further)
+    linear_in_rate = evidence.tables["rate_dependence"].query(
+        "role == 'lattice' and over_critical != 0"
+    )
+    other_laws = evidence.tables["friction_laws"].query("role == 'plane'")
+    ruptures = other_laws[other_laws["regime"] != "no rupture"]
+    runs = pd.concat([linear_in_rate, ruptures], ignore_index=True)
+    slides_back = runs["run_flags"].astype(str).str.contains("reverse_sliding")
+    regimes = runs["regime"][~slides_back]
+    counts = regimes.value_counts()
+    further = {f"ruptures: {regime}": float(count) for regime, count in counts.items()}
+    further["left out, since blocks would slide back"] = float(slides_back.sum())
+    stopped = len(other_laws) - len(ruptures)
+    further["left out, since fracture energy stops them"] = float(stopped)
+    return Qualitative(decided=regimes != "crack", condition=True, further=further)
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -55,37 +71,54 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
     # From this time on the pulse without rate strengthening is steady.
     late = table[table["time"] >= 0.1 * table["time"].max()]
-    falls = late.groupby(["rate_strengthening", "dx"])["largest_velocity"].agg(["first", "last"])
-    decays = (falls["last"] < (1.0 - evidence.tolerance(id)) * falls["first"]).unstack()
-    laws = decays[decays.index > 0.0]
+    velocities = late.groupby(["rate_strengthening", "dx"])["largest_velocity"]
+    limit = (1.0 - evidence.tolerance(id)) * velocities.first()
+    # One row for each rate strengthening, and one column for each spacing, the finest first.
+    decays = (velocities.last() < limit).unstack()
+    with_strengthening = decays[decays.index > 0.0]
+    finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
+    steady_by_spacing = (~with_strengthening).sum()
     words = "laws, by their strengthening, that leave a steady pulse"
-    answers = agreed_answers(laws.iloc[:, 0], laws.iloc[:, -1])
-    further = {words: float((~laws).sum().max())}
-    return Qualitative(decided=answers, condition=True, further=further)
+    return Qualitative(
+        decided=agreed_answers(finest, coarsest),
+        condition=True,
+        further={words: float(steady_by_spacing.max())},
+    )
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
-    """Compare width and slip at the strongest rate dependences with those at constant friction."""
+    """Judge whether other laws change width and slip of pulses by more than the tolerance.
+
+    Pulses with the strongest rate dependences are compared with those at constant friction and at
+    the same level of pre-stress. Front speeds under slip weakening are quoted, too.
+    """
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
-    runs = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in PULSE_SIZES]]
-    independent = runs.xs(0.0, level=1)
-    changes = [(runs.xs(factor, level=1) / independent - 1.0).abs() for factor in STRONGEST_RATES]
+    # The column over_critical has the rate dependence, divided by the critical one.
+    sizes = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in PULSE_SIZES]]
+    at_constant_friction = sizes.xs(0.0, level="over_critical")
+    changes = []
+    for rate in STRONGEST_RATES:
+        ratio = sizes.xs(rate, level="over_critical") / at_constant_friction
+        changes.append((ratio - 1.0).abs())
     change = pd.concat(changes)
-    held = (change > evidence.tolerance(id)).to_numpy().ravel()
-    least = change.min()
+    is_changed = change > evidence.tolerance(id)
+    smallest = change.min()
     further = {
-        f"smallest change of the {size}": float(least[f"pulse_{size}"]) for size in PULSE_SIZES
+        f"smallest change of the {size}": float(smallest[f"pulse_{size}"]) for size in PULSE_SIZES
     }
-    laws = evidence.tables["friction_laws"].query(
+    slip_weakening = evidence.tables["friction_laws"].query(
         f"law == 'slip_weakening' and level == {SLIP_WEAKENING_LEVEL}"
     )
-    speeds = laws["exact_speed"].dropna()
+    speeds = slip_weakening["exact_speed"].dropna()
     template_values = {
         "slowest": speeds.min(),
         "fastest": speeds.max(),
         "level": SLIP_WEAKENING_LEVEL,
+        "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
     }
-    template_values["undamped"] = 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2)
     return Qualitative(
-        decided=held, condition=True, further=further, template_values=template_values
+        decided=is_changed.to_numpy().ravel(),
+        condition=True,
+        further=further,
+        template_values=template_values,
     )

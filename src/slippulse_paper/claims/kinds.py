@@ -72,18 +72,28 @@ class Claim(ABC):
             return []
         factors = np.geomspace(0.1, 10.0, SCANNED_TOLERANCES)
         verdicts = [self.verdict(self.tolerance * factor) for factor in factors]
-        out = []
-        for i in np.flatnonzero(np.array(verdicts[1:]) != verdicts[:-1]):
-            low, high = factors[i : i + 2]
-            for _ in range(BISECTIONS):
-                middle = np.sqrt(low * high)
-                if self.verdict(self.tolerance * middle) == verdicts[i]:
-                    low = middle
-                else:
-                    high = middle
-            sides = {"below": verdicts[i], "above": verdicts[i + 1]}
-            out.append({"tolerance": float(self.tolerance * high)} | sides)
-        return out
+        flips = []
+        for index in range(len(factors) - 1):
+            below, above = verdicts[index], verdicts[index + 1]
+            if below != above:
+                factor = self._factor_of_flip(factors[index], factors[index + 1], below)
+                tolerance = float(self.tolerance * factor)
+                flips.append({"tolerance": tolerance, "below": below, "above": above})
+        return flips
+
+    def _factor_of_flip(self, low: float, high: float, below: str) -> float:
+        """Return where the verdict changes, in units of the tolerance, by bisection.
+
+        low, high : factors between which it changes
+        below : the verdict at ``low``
+        """
+        for _ in range(BISECTIONS):
+            middle = np.sqrt(low * high)
+            if self.verdict(self.tolerance * middle) == below:
+                low = middle
+            else:
+                high = middle
+        return high
 
     def json_fields(self) -> dict[str, Any]:
         """Return all fields of claims.json that the result sets."""
@@ -96,7 +106,7 @@ class Claim(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
-    """A statement about always, never or every, judged in each run."""
+    """A statement such as "always" or "never", which must hold in each run."""
 
     # True if it holds in a run, False if not, None if the run does not decide.
     decided: Collection[bool | None]
@@ -111,6 +121,7 @@ class Qualitative(Claim):
         return {"held": held, "failed": failed, "undecided": undecided}
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return the verdict from the numbers of runs; the tolerance has no influence."""
         counts, runs = self.counts(), len(self.decided)
         if not runs:
             return rules.NOT_TESTABLE
@@ -121,10 +132,17 @@ class Qualitative(Claim):
         return rules.CAVEAT if counts["undecided"] or self.condition else rules.REPRODUCED
 
     def fields(self) -> dict[str, Any]:
+        """Return the numbers of runs; the deviation is the fraction of runs that fail."""
         runs, counts = len(self.decided), self.counts()
-        out = {"verdict": self.verdict(), "runs": runs, "predicted": runs, **counts}
-        out |= {"measured": counts["held"], "uncertainty": counts["undecided"]}
-        return out | {"deviation": counts["failed"] / runs if runs else None}
+        return {
+            "verdict": self.verdict(),
+            "runs": runs,
+            "predicted": runs,
+            **counts,
+            "measured": counts["held"],
+            "uncertainty": counts["undecided"],
+            "deviation": counts["failed"] / runs if runs else None,
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,9 +166,11 @@ class Equation(Claim):
 
     def verdicts(self, tolerance: float) -> list[str]:
         """Return the verdict on each run."""
-        return [rules.within(*pair, tolerance) for pair in zip(*self.relative(), strict=True)]
+        runs = zip(*self.relative(), strict=True)
+        return [rules.within(deviation, uncertainty, tolerance) for deviation, uncertainty in runs]
 
     def own_verdict(self, tolerance: float) -> str:
+        """Return the worst verdict of all runs that have numbers."""
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
@@ -160,15 +180,23 @@ class Equation(Claim):
         """
         deviation, uncertainty = self.relative()
         usable = int(np.isfinite(deviation + uncertainty).sum())
-        out: dict[str, Any] = {"verdict": self.verdict(), "runs": usable}
-        out["left_out"] = len(deviation) - usable
+        fields: dict[str, Any] = {
+            "verdict": self.verdict(),
+            "runs": usable,
+            "left_out": len(deviation) - usable,
+        }
         if usable:
-            worst, verdicts = self.own_verdict(self.tolerance), self.verdicts(self.tolerance)
-            deciding = [run for run, verdict in enumerate(verdicts) if verdict == worst]
-            run = max(deciding, key=deviation.__getitem__)
-            out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
-            out |= {"uncertainty": float(self.uncertainty[run]), "deviation": float(deviation[run])}
-        return out | dict(self.counts)
+            worst = self.own_verdict(self.tolerance)
+            verdicts = self.verdicts(self.tolerance)
+            deciding_runs = [run for run, verdict in enumerate(verdicts) if verdict == worst]
+            run = max(deciding_runs, key=lambda run: deviation[run])
+            fields |= {
+                "predicted": float(self.predicted[run]),
+                "measured": float(self.measured[run]),
+                "uncertainty": float(self.uncertainty[run]),
+                "deviation": float(deviation[run]),
+            }
+        return fields | dict(self.counts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,20 +212,33 @@ class Approximate(Claim):
     from_exact: Uncertain = (NAN, NAN)
 
     def own_verdict(self, tolerance: float) -> str:
-        return rules.within(*self.median, tolerance)
+        """Return the verdict on the median deviation."""
+        median_deviation, uncertainty = self.median
+        return rules.within(median_deviation, uncertainty, tolerance)
 
     def fields(self) -> dict[str, Any]:
         """Return the medians and the spread of the runs; without usable runs only counts."""
         usable = self.deviations[np.isfinite(self.deviations)]
-        out: dict[str, Any] = {"runs": usable.size, "left_out": self.deviations.size - usable.size}
-        out["verdict"] = self.verdict()
-        out["exact_median"], out["exact_largest"] = self.from_exact
+        exact_median, exact_largest = self.from_exact
+        fields: dict[str, Any] = {
+            "runs": usable.size,
+            "left_out": self.deviations.size - usable.size,
+            "verdict": self.verdict(),
+            "exact_median": exact_median,
+            "exact_largest": exact_largest,
+        }
         if usable.size:
-            out["measured"], out["uncertainty"] = self.ratio
-            out |= {"predicted": 1.0, "deviation": self.median[0]}
-            out["ninety"] = float(np.percentile(usable, 90.0))
-            out["largest"] = float(usable.max())
-        return out
+            median_ratio, uncertainty = self.ratio
+            median_deviation, _ = self.median
+            fields |= {
+                "measured": median_ratio,
+                "uncertainty": uncertainty,
+                "predicted": 1.0,
+                "deviation": median_deviation,
+                "ninety": float(np.percentile(usable, 90.0)),
+                "largest": float(usable.max()),
+            }
+        return fields
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,13 +255,20 @@ class Reading(Claim):
         return float(chdtrc(degrees, self.chi_square)) if degrees else NAN
 
     def own_verdict(self, tolerance: float) -> str:
-        p = self.p_value()
-        if math.isnan(p):
+        """Return the verdict on the fit; the tolerance is the smallest p-value that is accepted."""
+        p_value = self.p_value()
+        if math.isnan(p_value):
             return rules.NOT_TESTABLE
+        # One degree of freedom is too few to judge a fit.
         if self.degrees_of_freedom < 2:
             return rules.INCONCLUSIVE
-        return rules.REPRODUCED if p >= tolerance else rules.FAILED
+        return rules.REPRODUCED if p_value >= tolerance else rules.FAILED
 
     def fields(self) -> dict[str, Any]:
-        out = {"verdict": self.verdict(), "predicted": float(self.degrees_of_freedom)}
-        return out | {"measured": self.chi_square, "deviation": self.p_value()}
+        """Return the chi-square as measured, and its expectation as predicted."""
+        return {
+            "verdict": self.verdict(),
+            "predicted": float(self.degrees_of_freedom),
+            "measured": self.chi_square,
+            "deviation": self.p_value(),
+        }

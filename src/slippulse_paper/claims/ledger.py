@@ -18,9 +18,13 @@ TOLERANCE_BAND = 1.5
 
 
 class Entry(SimpleNamespace):
-    """A claim of claims.json with its fields as attributes; this class formats a number."""
+    """A claim of claims.json with its fields as attributes; this class formats a number.
 
-    # Fields that only some kinds have.
+    A subclass formats claims of other kinds. A method with a name in _text returns the content of
+    one column in the table of claims.
+    """
+
+    # Fields that only some kinds have, with the values for all others.
     runs = left_out = 0
     remark = False
     largest: Any = None
@@ -52,28 +56,43 @@ class Entry(SimpleNamespace):
         parts += [f"{name}: {rounded(value)}" for name, value in self.further.items()]
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
-            parts.append(f"runs deviate from exact theory by {median} (median) to {largest}")
+            parts.append(
+                f"runs deviate from exact theory by {median} (median), or {largest} at most"
+            )
+        parts += [*self._other_tolerances(), *self._not_counted()]
+        return "; ".join(part for part in parts if part)
+
+    def _other_tolerances(self) -> list[str]:
+        """Return the verdicts at other tolerances that are near, and at the earlier tolerance."""
+        parts = []
         for flip in self.flips_at:
-            side = "above" if flip["tolerance"] > self.tolerance else "below"
-            if 1.0 / TOLERANCE_BAND <= flip["tolerance"] / self.tolerance <= TOLERANCE_BAND:
-                parts.append(
-                    f"with a tolerance {side} {number(flip['tolerance'], 3)}: {flip[side]}"
-                )
+            # The verdict changes at this tolerance. The other verdict lies beyond it.
+            ratio = flip["tolerance"] / self.tolerance
+            side = "above" if ratio > 1.0 else "below"
+            if 1.0 / TOLERANCE_BAND <= ratio <= TOLERANCE_BAND:
+                limit = number(flip["tolerance"], 3)
+                parts.append(f"with a tolerance {side} {limit}: {flip[side]}")
         if self.at_earlier:
             earlier = setting(self.earlier_tolerance)
             parts.append(
-                f"at the tolerance {earlier}, set before results were seen: {self.at_earlier}"
+                f"at {earlier}, the tolerance set before results were seen: {self.at_earlier}"
             )
+        return parts
+
+    def _not_counted(self) -> list[str]:
+        """Return the reasons for which the claim is not counted."""
+        reasons = []
         if self.follows_from:
             names = ", ".join(f"`{id}`" for id in self.follows_from)
-            parts.append(f"follows from {names} and is not counted again")
+            reasons.append(f"the claim follows from {names} and is not counted again")
         if self.beyond:
-            parts.append("beyond the paper, and not counted")
+            reasons.append("the claim is beyond the paper and is not counted")
         if self.remark:
-            parts.append("a remark on a drawing, and not counted")
-        return "; ".join(filter(None, parts))
+            reasons.append("the claim is a remark on a drawing and is not counted")
+        return reasons
 
     def _compared(self) -> str:
+        """Return the deviation and the tolerance, for a claim that has a deviation."""
         # A scaling deviates in its exponent; an estimate deviates in its median run.
         if self.kind == "scaling" or self.predicted == 0.0:
             return f"{number(self.deviation, 2)}, tolerance {setting(self.tolerance)}"
@@ -92,10 +111,13 @@ class Entry(SimpleNamespace):
 
     def _spread(self) -> list[str]:
         """Return how many runs a number has, their spread, and how many are left out."""
-        parts = [f"{self.runs} runs"] if self.runs and self.kind != "qualitative" else []
+        parts = []
+        # The measured value of a qualitative claim is a number of runs already.
+        if self.runs and self.kind != "qualitative":
+            parts.append(f"{self.runs} runs")
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
-            parts.append(f"90 % of them deviate by at most {ninety}, the worst by {largest}")
+            parts.append(f"90 % of them deviate by at most {ninety}, and the worst by {largest}")
         if self.left_out:
             parts.append(f"runs left out because they have no number: {self.left_out}")
         return parts
@@ -105,12 +127,18 @@ class Counts(Entry):
     """A qualitative claim, shown as numbers of runs."""
 
     def predicted_text(self) -> str:
+        """Return the number of runs, in all of which the statement should hold."""
         return f"all of {self.predicted:.0f}"
 
     def measured_text(self) -> str:
-        counts = {"against": self.failed, "undecided": self.undecided}
-        rest = [f"{count} {name}" for name, count in counts.items() if count]
-        return ", ".join([f"{self.held} of {self.held + self.failed + self.undecided}", *rest])
+        """Return the numbers of runs in which it holds, fails or is undecided."""
+        total = self.held + self.failed + self.undecided
+        parts = [f"{self.held} of {total}"]
+        if self.failed:
+            parts.append(f"{self.failed} against")
+        if self.undecided:
+            parts.append(f"{self.undecided} undecided")
+        return ", ".join(parts)
 
     def _compared(self) -> str:
         text = self.asked or "no run may contradict"
@@ -118,6 +146,8 @@ class Counts(Entry):
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
     def _off(self) -> str:
+        """Return in how many runs the claim holds and what the others do."""
+        # The text is "HELD of ALL", followed by what did not hold.
         held, _, rest = self.measured_text().partition(", ")
         if rest:
             return f"It holds in {held} cases ({rest})."
@@ -128,6 +158,7 @@ class ReadOff(Entry):
     """Readings from a figure, shown as a chi-square."""
 
     def predicted_text(self) -> str:
+        """Return the degrees of freedom, which are the expectation of chi-square."""
         degrees = "degree" if self.predicted == 1 else "degrees"
         return f"{self.predicted:.0f} {degrees} of freedom"
 
@@ -138,6 +169,7 @@ class ReadOff(Entry):
         return f"p = {number(self.deviation, 2)}, required at least {setting(self.tolerance)}"
 
     def _off(self) -> str:
+        """Return the p-value of the best fit."""
         return f"The best fit has {self.compared_text()}."
 
 
@@ -151,7 +183,10 @@ def with_texts(claim: Mapping[str, Any]) -> Entry:
 
 
 class Ledger:
-    """All claims of claims.json by id, and all findings of findings.json."""
+    """All claims of claims.json by id, and all findings of findings.json.
+
+    Iteration goes over the claims.
+    """
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
         self.claims = {claim["id"]: with_texts(claim) for claim in claims}
@@ -171,8 +206,10 @@ class Ledger:
 
     def deviation_at(self, id: str, **chosen: float | str) -> float | None:
         """Return the deviation at a combination of choices; None if it does not exist."""
-        rows = (row["deviation"] for row in self(id).choices if chosen.items() <= row.items())
-        return next(rows, None)
+        for row in self(id).choices:
+            if chosen.items() <= row.items():
+                return row["deviation"]
+        return None
 
     def listed(self, id: str, words: str) -> str:
         """List the further numbers of a claim with keys "WORDS: NAME", with NAME in italics."""
@@ -185,7 +222,8 @@ class Ledger:
 
     def count(self, *verdicts: str) -> int:
         """Return the number of counted claims, or of those with one of the given verdicts."""
-        return sum(claim.counted and (not verdicts or claim.verdict in verdicts) for claim in self)
+        counted = [claim.verdict for claim in self if claim.counted]
+        return sum(not verdicts or verdict in verdicts for verdict in counted)
 
     def relaxed(self, *verdicts: str) -> int:
         """Return the number of claims with a stricter earlier tolerance.
@@ -211,6 +249,7 @@ class Ledger:
 
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
+    """Return the entry with an id; an unknown id raises a ValueError that lists the known ones."""
     if id not in entries:
         raise ValueError(f"{what}: {id!r}; allowed: {', '.join(entries)}")
     return entries[id]

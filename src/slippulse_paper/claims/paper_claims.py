@@ -29,9 +29,10 @@ from . import (
     transition_claims as transition,
 )
 from .claim_texts import places_of
-from .evidence import Evidence, Texts
+from .evidence import Evidence
 from .kinds import Claim
 from .ledger import with_texts
+from .rules import NOT_TESTABLE
 
 # Simulations behind the claims, each with the topics of the predictions that it is compared with.
 SIMULATIONS = {
@@ -109,40 +110,50 @@ DEFAULT_FIELDS: dict[str, Any] = {
     "note": "",
     "source": "",
     "further": {},
-}
-DEFAULT_FIELDS |= {
     "why": "",
     "caveat": "",
     "choices": [],
     "choice": "",
     "combinations": 0,
     "holds_at": 0,
-}
-DEFAULT_FIELDS |= {
     "beyond": False,
     "remark": False,
     "flips_at": [],
     "at_earlier": "",
     "asked": "",
-} | dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
+    "predicted": None,
+    "measured": None,
+    "uncertainty": None,
+    "deviation": None,
+}
 
 
-def all_claims(evidence: Evidence, common: Texts, sentences: Sequence[Mapping]) -> list[dict]:
+def all_claims(
+    evidence: Evidence, explanations: Mapping[str, str], sentences: Sequence[Mapping]
+) -> list[dict]:
     """Return the ledger as in claims.json.
 
-    A ValueError names claims that exist only in the texts or only in the code. ``common`` has the
-    sentence, by verdict, that explains a verdict on a claim judged at all open choices.
+    A ValueError names claims that exist only in the texts or only in the code.
+
+    explanations : for each verdict, the sentence that explains it on a claim judged at all open
+        choices
+    sentences : sentences of the paper with their places, from manuscript/statements.yaml
     """
     without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
-    odd = ", ".join(sorted(without_rule ^ {*JUDGES_BY_CLAIM}))
-    if odd:
-        raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
+    in_only_one = without_rule.symmetric_difference(JUDGES_BY_CLAIM)
+    if in_only_one:
+        names = ", ".join(sorted(in_only_one))
+        raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.change_signs)
-    where = places_of(evidence.entries, sentences)
-    return [
-        written(id, claim_of(evidence, id), entry, where[id], common)
-        for id, entry in evidence.entries.items()
-    ]
+    places = places_of(evidence.entries, sentences)
+    ledger = []
+    for id, entry in evidence.entries.items():
+        claim = claim_of(evidence, id)
+        result = written(id, claim, entry, places[id], explanations)
+        if result["verdict"] == NOT_TESTABLE:
+            result["why"] = f"{result['why']} {evidence.flags_behind(result['source'])}".rstrip()
+        ledger.append(result)
+    return ledger
 
 
 def claim_of(evidence: Evidence, id: str) -> Claim:
@@ -160,31 +171,40 @@ def claim_of(evidence: Evidence, id: str) -> Claim:
         raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 
-def written(id: str, claim: Claim, entry: Mapping, where: str, common: Mapping = {}) -> dict:
-    """Return one claim with its texts, as in claims.json."""
-    out = DEFAULT_FIELDS | {
-        name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN
-    }
+def written(
+    id: str, claim: Claim, entry: Mapping, place: str, explanations: Mapping[str, str] = {}
+) -> dict:
+    """Return one claim with its texts, as in claims.json.
+
+    entry : texts of the claim in manuscript/claims.yaml
+    place : sections and figures of the paper with the claim; empty if there is none
+    explanations : see `all_claims`
+    """
+    copied = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
+    fields = DEFAULT_FIELDS | copied
     if entry["kind"] == "approximate":
         # Only estimates have a spread of runs and a comparison with exact theory.
-        out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
-    out |= {"id": id} | claim.json_fields()
-    counted = not (out["follows_from"] or out["beyond"] or out["remark"])
-    out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
+        fields |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
+    fields |= {"id": id} | claim.json_fields()
+    fields["figure_or_section"] = place or "beyond the paper"
+    fields["counted"] = not (fields["follows_from"] or fields["beyond"] or fields["remark"])
     if "earlier_tolerance" in entry:
-        out["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
-    out = finite(out)
-    names = out | claim.sentence_values()
-    out |= {key: sentence(out[key], names) for key in ("note", "why")}
-    if out["choices"] and out["verdict"] in common:
-        names |= {"why": out["why"], "doubt": sentence(entry.get("doubt", ""), names)}
-        out["why"] = sentence(common[out["verdict"]], names)
-    return out | {"why": with_texts(out).why_text()}
+        fields["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
+    fields = finite(fields)
+    # The expressions in the texts may use all fields, and some values that are not written.
+    values = fields | claim.sentence_values()
+    for name in ("note", "why"):
+        fields[name] = sentence(fields[name], values)
+    if fields["choices"] and fields["verdict"] in explanations:
+        # The common explanation may quote the reason and the doubt of this claim.
+        values |= {"why": fields["why"], "doubt": sentence(entry.get("doubt", ""), values)}
+        fields["why"] = sentence(explanations[fields["verdict"]], values)
+    return fields | {"why": with_texts(fields).why_text()}
 
 
-def sentence(text: str, names: Mapping) -> str:
-    """Return a text in one line with its expressions evaluated."""
-    return " ".join(fill(text, names).split())
+def sentence(text: str, values: Mapping) -> str:
+    """Return a text in one line, with its expressions evaluated over values by name."""
+    return " ".join(fill(text, values).split())
 
 
 def finite(value):

@@ -5,36 +5,61 @@ import pandas as pd
 from .evidence import Evidence
 from .kinds import Qualitative
 
-# Names of the exponent and of the ends of its interval, and numbers of ensembles under held stress.
-ENDS = (("exponent", ""), ("low", "_low"), ("high", "_high"))
-STRESS_KEYS = ("level", "deviation", "pulses", "deaths", "cracks", "survival", "low", "high")
-DISTANCES, VELOCITIES = ("death_scale", "stop"), ("velocity_deviation", "velocity_predicted")
+# Columns of an ensemble under a stress boundary that the texts quote.
+QUOTED_COLUMNS = (
+    "level",
+    "deviation",
+    "pulses",
+    "deaths",
+    "cracks",
+    "survival",
+    "low",
+    "high",
+    "death_scale",
+    "stop",
+    "velocity_deviation",
+    "velocity_predicted",
+    "predicted",
+    "velocity_mean",
+)
+# A death rate is at most 3 divided by the distance without a death, at 95 % confidence.
+RULE_OF_THREE = 3.0
 
 
 def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
-    """Ensembles of one boundary."""
+    """Return one row for each ensemble of runs under a boundary condition."""
     table = evidence.tables["rough_prestress"]
     return table[(table["part"] == "ensemble") & (table["boundary"] == boundary)]
 
 
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
-    """No pulse dies where the deviation is a small part of the level, a limit of ours."""
+    """Judge that no pulse dies where the pre-stress is only a little rough.
+
+    The limit of the roughness is ours: the deviation of the pre-stress divided by its level is at
+    most the tolerance. Each pulse counts as one run. Pulses must die in rougher ensembles, because
+    otherwise the claim would not need the limit.
+    """
     rows = ensembles(evidence, "displacement")
-    relative = rows["deviation"] / rows["level"]
-    small = relative <= evidence.tolerance(id)
-    alive, dead = (rows["pulses"] - rows["deaths"])[small].sum(), rows["deaths"][small].sum()
-    stronger = rows[~small]
-    dying = stronger["deaths"].sum()
-    template_values = {"largest_rate": 3.0 / rows["distance"][small].sum(), "dying": dying}
-    template_values |= {
-        "stronger": stronger["pulses"].sum(),
-        "least_deviation": relative[~small].min(),
+    roughness = rows["deviation"] / rows["level"]
+    is_smooth = roughness <= evidence.tolerance(id)
+    smooth, rough = rows[is_smooth], rows[~is_smooth]
+    alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
+    dying = rough["deaths"].sum()
+    template_values = {
+        "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
+        "dying": dying,
+        "stronger": rough["pulses"].sum(),
+        "least_deviation": roughness[~is_smooth].min(),
     }
-    further = {"pulses that die at larger deviations": float(dying)}
-    further["of"] = float(template_values["stronger"])
-    decided = [True] * int(alive) + [False] * int(dead)
+    further = {
+        "pulses that die at larger deviations": float(dying),
+        "of": float(template_values["stronger"]),
+    }
     return Qualitative(
-        decided=decided, condition=dying > 0, further=further, template_values=template_values
+        decided=[True] * int(alive) + [False] * int(dead),
+        condition=dying > 0,
+        further=further,
+        template_values=template_values,
     )
 
 
@@ -59,35 +84,78 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
 
 
 def rough_numbers(evidence: Evidence) -> dict[str, float]:
-    """Numbers of the findings on rough pre-stress."""
-    held, stress = (ensembles(evidence, name) for name in ("displacement", "stress"))
-    if held.empty or stress.empty:
+    """Return the numbers of the findings on rough pre-stress; empty without ensembles."""
+    displacement = ensembles(evidence, "displacement")
+    stress = ensembles(evidence, "stress")
+    if displacement.empty or stress.empty:
         return {}
-    study, checks = evidence.tables["rough_prestress"], evidence.tables["rough_checks"]
-    dying = held[held["deaths"] > 0]
+    checks = evidence.tables["rough_checks"]
+    numbers = death_rate_numbers(displacement) | settling_numbers(displacement, checks)
+    study = evidence.tables["rough_prestress"]
+    long_distance = study[study["part"] == "long"].iloc[0]
+    numbers |= {
+        "tail_exponent": long_distance["exponent"],
+        "tail_low": long_distance["exponent_low"],
+        "tail_high": long_distance["exponent_high"],
+    }
+    quoted = {
+        "rough": stress.loc[stress["deviation"].idxmax()],
+        "quiet": stress.loc[stress["deviation"].idxmin()],
+        "above": stress.loc[stress["level"].idxmax()],
+    }
+    for name, ensemble in quoted.items():
+        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS}
+    numbers |= balance_numbers(checks)
+    return {name: float(value) for name, value in numbers.items()}
+
+
+def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
+    """Compare death rates with the predicted rates of fatal barriers, where pulses died.
+
+    The ratios are also returned for the ensembles with the longest correlation length alone.
+    """
+    dying = ensembles[ensembles["deaths"] > 0]
     ratio = dying["rate"] / dying["barrier_rate"]
-    long = dying["correlation_length"] == dying["correlation_length"].max()
-    settled = held.dropna(subset=["memory"]).sort_values("correlation_length")
-    forgotten = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
-    exponent = study[study["part"] == "long"].iloc[0]
-    rough = stress.loc[stress["deviation"].idxmax()]
-    quiet = stress.loc[stress["deviation"].idxmin()]
-    above = stress.loc[stress["level"].idxmax()]
-    balance = checks[checks["part"] == "balance"].sort_values("dx")
-    first, last = settled.iloc[0], settled.iloc[-1]
-    out = {"least_ratio": ratio.min(), "largest_ratio": ratio.max()}
-    out |= {"long_least": ratio[long].min(), "long_largest": ratio[long].max()}
-    out |= {"long_length": dying["correlation_length"].max()}
-    for name, row in (("short", first), ("smooth", last)):
-        out |= {f"{name}_{key}": row[key] for key in ("correlation_length", "deviation")}
-        out |= {f"{name}_local": row["off_local"], f"{name}_mean": row["off_mean"]}
-        out |= {f"{name}_slowness": row["slowness_off"]}
-    out |= {"memory": first["memory"], "forgotten": forgotten["high"].max()}
-    out |= {f"tail_{name}": exponent[f"exponent{end}"] for name, end in ENDS}
-    keys = (*STRESS_KEYS, *DISTANCES, *VELOCITIES, "predicted", "velocity_mean")
-    out |= {f"rough_{key}": rough[key] for key in keys}
-    out |= {f"quiet_{key}": quiet[key] for key in keys}
-    out |= {f"above_{key}": above[key] for key in keys}
-    out |= {"balance_coarse": balance["change"].iloc[-1], "balance_fine": balance["change"].iloc[0]}
-    out |= {"balance_dx": balance["dx"].iloc[0], "balance_coarse_dx": balance["dx"].iloc[-1]}
-    return {name: float(value) for name, value in out.items()}
+    longest = dying["correlation_length"].max()
+    ratio_at_longest = ratio[dying["correlation_length"] == longest]
+    return {
+        "least_ratio": ratio.min(),
+        "largest_ratio": ratio.max(),
+        "long_least": ratio_at_longest.min(),
+        "long_largest": ratio_at_longest.max(),
+        "long_length": longest,
+    }
+
+
+def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
+    """Return how near final slip and speed are to steady pulses at the local and mean pre-stress.
+
+    Two ensembles are quoted, those with the shortest and the longest correlation length among the
+    ensembles with recorded slip. Also return how much a bump changes the slip at distances beyond
+    the memory of the pulse.
+    """
+    with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
+    shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
+    numbers: dict[str, float] = {}
+    for name, ensemble in (("short", shortest), ("smooth", longest)):
+        numbers |= {
+            f"{name}_correlation_length": ensemble["correlation_length"],
+            f"{name}_deviation": ensemble["deviation"],
+            f"{name}_local": ensemble["off_local"],
+            f"{name}_mean": ensemble["off_mean"],
+            f"{name}_slowness": ensemble["slowness_off"],
+        }
+    beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
+    return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
+
+
+def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
+    """Return how far before the balance pulses die, on the coarsest and on the finest lattice."""
+    by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
+    finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
+    return {
+        "balance_coarse": coarsest["change"],
+        "balance_fine": finest["change"],
+        "balance_dx": finest["dx"],
+        "balance_coarse_dx": coarsest["dx"],
+    }

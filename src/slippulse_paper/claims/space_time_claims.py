@@ -19,18 +19,19 @@ ARROW_READINGS = ("arrow_time", "arrow_length")
 def left(evidence: Evidence, id: str) -> Reading:
     """Judge the left panel by the best fit to all its readings except the arrows."""
     best = infer_parameters(evidence.tables["published_figure"])["best"]
-    further = read_off(evidence, "space_time_displacement")
-    fit = {"chi_square": best["chi2"], "degrees_of_freedom": best["dof"]}
-    template_values = best | shares_of_errors(evidence, best["pulls"])
     return Reading(
-        tolerance=evidence.tolerance(id), **fit, further=further, template_values=template_values
+        tolerance=evidence.tolerance(id),
+        chi_square=best["chi2"],
+        degrees_of_freedom=best["dof"],
+        further=read_off(evidence, "space_time_displacement"),
+        template_values=best | shares_of_errors(evidence, best["pulls"]),
     )
 
 
 def shares_of_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
     """Return the error of an edge reading that is its own, and chi-square if no error were shared.
 
-    ``pulls`` has the deviation of each reading over its error.
+    ``pulls`` has the deviation of each reading divided by its error.
     """
     own, independent = math.nan, 0.0
     for name, reading in evidence.readings.items():
@@ -45,31 +46,37 @@ def shares_of_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str
 def arrows(evidence: Evidence, id: str) -> Reading:
     """Judge the two arrows of the left panel by how much they raise the chi-square."""
     study = evidence.tables["published_figure"]
-    fits = {
-        "with": infer_parameters(study, part="arrows")["best"],
-        "without": infer_parameters(study)["best"],
-    }
-    further = {}
-    for words, fit in fits.items():
-        longer = []
-        for name in ARROW_READINGS:
-            entry = evidence.readings[name]
-            longer.append(-fit["pulls"][name] * entry["reading_error"])
-            further[f"{entry['statement']}, longer than at the fit {words} arrows by"] = longer[-1]
-    template_values = readings_by_name(evidence)
-    # The loop ends with the fit without arrows.
-    template_values["longer"] = longer
-    template_values["apart"] = 2.0 * (
-        template_values["intercept"]
-        + template_values["front_speed"] * template_values["arrow_time"]
-    )
+    with_arrows = infer_parameters(study, part="arrows")["best"]
+    without_arrows = infer_parameters(study)["best"]
+    further: dict[str, float] = {}
+    for words, fit in (("with", with_arrows), ("without", without_arrows)):
+        for name, excess in excess_lengths(evidence, fit).items():
+            statement = evidence.readings[name]["statement"]
+            further[f"{statement}, longer than at the fit {words} arrows by"] = excess
+    values = readings_by_name(evidence)
+    # The right front at the time where the arrow for T_trans ends, by the line through the front.
+    # Both fronts are twice as far apart.
+    front_position = values["intercept"] + values["front_speed"] * values["arrow_time"]
     return Reading(
         tolerance=evidence.tolerance(id),
-        chi_square=fits["with"]["chi2"] - fits["without"]["chi2"],
-        degrees_of_freedom=fits["with"]["dof"] - fits["without"]["dof"],
+        chi_square=with_arrows["chi2"] - without_arrows["chi2"],
+        degrees_of_freedom=with_arrows["dof"] - without_arrows["dof"],
         further=further,
-        template_values=template_values,
+        template_values=values
+        | {
+            "longer": [*excess_lengths(evidence, without_arrows).values()],
+            "apart": 2.0 * front_position,
+        },
     )
+
+
+def excess_lengths(evidence: Evidence, fit: Mapping[str, Any]) -> dict[str, float]:
+    """Return how much longer the drawn arrows are than those of a fit, by reading."""
+    lengths = {}
+    for name in ARROW_READINGS:
+        # A pull is (fitted - drawn)/reading_error.
+        lengths[name] = -fit["pulls"][name] * evidence.readings[name]["reading_error"]
+    return lengths
 
 
 def readings_by_name(evidence: Evidence) -> dict[str, Any]:
@@ -80,13 +87,19 @@ def readings_by_name(evidence: Evidence) -> dict[str, Any]:
 def right(evidence: Evidence, id: str) -> Reading:
     """Judge the largest velocity of the right panel by the run that fits it worst."""
     pulls = evidence.tables["published_figure"].query("part == 'stress'")["pull"]
-    further = read_off(evidence, "space_time_stress")
-    fit: dict[str, Any] = {"chi_square": float((pulls**2).max()), "degrees_of_freedom": 1}
-    return Reading(tolerance=evidence.tolerance(id), **fit, further=further)
+    return Reading(
+        tolerance=evidence.tolerance(id),
+        chi_square=float((pulls**2).max()),
+        degrees_of_freedom=1,
+        further=read_off(evidence, "space_time_stress"),
+    )
 
 
 def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
     """Return the values that our own figure has for the readings of one panel."""
-    entries = [one for one in evidence.readings.values() if one["simulation"] == simulation]
     runs = evidence.finest(simulation)
-    return {one["statement"]: float(runs[one["quantity"]].mean()) for one in entries}
+    values = {}
+    for reading in evidence.readings.values():
+        if reading["simulation"] == simulation:
+            values[reading["statement"]] = float(runs[reading["quantity"]].mean())
+    return values

@@ -2,8 +2,9 @@
 
 Each claim is judged at every combination of choices that the paper leaves open. `Runs` holds the
 tables of one combination: three lattices, or one table of exact solutions. `transitions` collects
-them for a held displacement, `arrests` for a held stress; their columns have common names (time,
-length, covered, estimated_time, estimated_length).
+them for a displacement boundary, `arrests` for a stress boundary. Their columns have common names:
+time and length of the transition (or arrest), the paper's estimates estimated_time and
+estimated_length, and for arrests the distance that the left front has covered.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -70,31 +71,41 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return the runs of figure 5, and the undamped runs of figures 10 and 11."""
-    sweeps = {
+    conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
     }
-    lattices = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
-    return [lattice_runs(tables) for tables in lattices if len(tables[0])]
+    simulated = []
+    for sweep, condition in conditions.items():
+        lattices = evidence.lattices(sweep, where=condition)
+        finest = lattices[0]
+        if not finest.empty:
+            simulated.append(lattice_runs(lattices))
+    return simulated
 
 
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return exact solutions at each combination of choices; those of figure 5 come first."""
-    names, ours = (
-        ["release", "damping_ratio"],
-        shared_choices(evidence.tables[f"scaling_{boundary}"]),
-    )
+    """Return exact solutions at each combination of choices.
+
+    The combination with which we drew figure 5 comes first, because its numbers are shown.
+    """
+    open_choices = ["release", "damping_ratio"]
+    choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
-        names += ["nucleation", "fraction"]
-        ours["fraction"] = SHOWN_FRACTION
-    table = evidence.tables["open_choices"].query(
-        f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
-    )
-    combinations = []
-    for values, rows in table.groupby(names):
-        choice: Chosen = dict(zip(names, values, strict=True))
-        combinations.append(Runs(choice | {"solution": "exact"}, [rows]))
-    return sorted(combinations, key=lambda runs: not ours.items() <= runs.choice.items())
+        open_choices += ["nucleation", "fraction"]
+        choices_of_figure["fraction"] = SHOWN_FRACTION
+    condition = f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
+    table = evidence.tables["open_choices"].query(condition)
+    of_figure: list[Runs] = []
+    others: list[Runs] = []
+    for values, rows in table.groupby(open_choices):
+        choice: Chosen = dict(zip(open_choices, values, strict=True))
+        runs = Runs(choice | {"solution": "exact"}, [rows])
+        if choices_of_figure.items() <= choice.items():
+            of_figure.append(runs)
+        else:
+            others.append(runs)
+    return of_figure + others
 
 
 @cache
@@ -104,31 +115,39 @@ def transitions(evidence: Evidence) -> list[Runs]:
     Exact solutions are measured at the first stick only, lattices also at the printed slip.
     """
     lattices = simulated_runs(evidence, "displacement")
-    runs = {FIRST_STICK: lattices + exact_runs(evidence, "displacement"), PRINTED_SLIP: lattices}
-    out = []
-    for criterion, of_criterion in runs.items():
-        for choice, tables in of_criterion:
-            renamed = [table.rename(columns=COLUMNS_BY_CRITERION[criterion]) for table in tables]
-            out.append(Runs(choice | {"criterion": criterion}, renamed))
-    return out
+    exact = exact_runs(evidence, "displacement")
+    runs_by_criterion = {FIRST_STICK: lattices + exact, PRINTED_SLIP: lattices}
+    judged = []
+    for criterion, all_runs in runs_by_criterion.items():
+        columns = COLUMNS_BY_CRITERION[criterion]
+        for choice, tables in all_runs:
+            renamed = [table.rename(columns=columns) for table in tables]
+            judged.append(Runs(choice | {"criterion": criterion}, renamed))
+    return judged
 
 
 @cache
 def arrests(evidence: Evidence) -> list[Runs]:
-    """Return runs under held stress, measured when the left front has covered part of |x_minus|."""
-    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
-    exact = exact_runs(evidence, "stress")
-    columns = COLUMNS_BY_CRITERION[FIRST_STICK]
-    out = [Runs(choice, [widest_at_each_level(rows, columns)]) for choice, (rows,) in exact]
+    """Return runs under a stress boundary, measured when the left front counts as arrested.
+
+    Exact solutions count as arrested when the left front has covered a fraction of |x_minus|, and
+    lattices at their last release.
+    """
+    judged = []
+    for choice, (rows,) in exact_runs(evidence, "stress"):
+        judged.append(Runs(choice, [widest_at_each_level(rows, COLUMNS_BY_CRITERION[FIRST_STICK])]))
+    at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
-        out.append(
-            Runs(choice | last, [widest_at_each_level(table, ARREST_COLUMNS) for table in tables])
-        )
-    return out
+        widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
+        judged.append(Runs(choice | at_last_release, widest))
+    return judged
 
 
 def widest_at_each_level(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
-    """Return one run for each level, with the estimates for the distance that it has covered."""
+    """Return one run for each level, with the estimates for the distance that it has covered.
+
+    names : common names of the columns, by their names in the table
+    """
     # The width is the only length, so runs of one level differ in scale only.
     table = table.sort_values("width").drop_duplicates("left", keep="last").rename(columns=names)
     if "covered" not in table:
@@ -143,24 +162,27 @@ def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
     All other choices are fixed to those of the first combination.
     """
     first = combinations[0].choice
-    choice = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
-    return {
-        one.choice["fraction"]: one.claim.fields().get("measured", NAN)
-        for one in combinations
-        if choice.items() <= one.choice.items()
-    }
+    fixed = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
+    by_fraction: dict[float | str, float] = {}
+    for combination in combinations:
+        if fixed.items() <= combination.choice.items():
+            fraction = combination.choice["fraction"]
+            by_fraction[fraction] = combination.claim.fields().get("measured", NAN)
+    return by_fraction
 
 
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
     """Return the median ratio for each covered fraction, as further numbers of a claim."""
-    numbers = medians(combinations).items()
-    return dict(sorted((f"median ratio: at {named(part)}", median) for part, median in numbers))
+    by_words = {}
+    for fraction, median in medians(combinations).items():
+        by_words[f"median ratio: at {named(fraction)}"] = median
+    return dict(sorted(by_words.items()))
 
 
 def judge_each(
     runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]
 ) -> list[Combination]:
-    """Judge a claim at each combination."""
+    """Judge a claim at each combination; ``judge`` makes the claim from the tables."""
     return [Combination(choice, judge(tables)) for choice, tables in runs]
 
 
@@ -175,59 +197,80 @@ class JudgedEstimate(NamedTuple):
 
 
 def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
-    """Judge an estimate at each combination of choices."""
+    """Judge the paper's estimate of a quantity ("time" or "length") at each combination."""
+
+    def judge(tables: list[pd.DataFrame]) -> Approximate:
+        return evidence.approximate(id, tables, quantity, f"estimated_{quantity}")
+
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
-    columns = quantity, f"estimated_{quantity}"
-    combinations = judge_each(runs, lambda tables: evidence.approximate(id, tables, *columns))
-    exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
-    arrow = {}
-    suffix = "_stress" if boundary == "stress" else ""
-    read = evidence.readings.get(f"arrow_{quantity}{suffix}")
-    if read:
-        scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
-        predicted = float(scene[f"paper_transition_{quantity}"])
-        arrow["arrow of figure 4 divided by the estimate"] = read["value"] / predicted
-        arrow["its reading error"] = read["reading_error"] / predicted
-    return JudgedEstimate(combinations, exact, arrow)
+    from_exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
+    return JudgedEstimate(
+        judge_each(runs, judge), from_exact, arrow_of_figure_4(evidence, boundary, quantity)
+    )
+
+
+def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[str, float]:
+    """Return the length of an arrow in figure 4 divided by the estimate; empty without an arrow."""
+    name = f"arrow_{quantity}_stress" if boundary == "stress" else f"arrow_{quantity}"
+    reading = evidence.readings.get(name)
+    if reading is None:
+        return {}
+    scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
+    estimate = float(scene[f"paper_transition_{quantity}"])
+    return {
+        "arrow of figure 4 divided by the estimate": reading["value"] / estimate,
+        "its reading error": reading["reading_error"] / estimate,
+    }
 
 
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """Judge an estimate under a displacement boundary, at the first stick and at the slip."""
-    combinations, exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
-    slips = evidence.finest("scaling_displacement").rename(
-        columns=COLUMNS_BY_CRITERION[PRINTED_SLIP]
-    )
-    ratio = ratios(slips, quantity, f"estimated_{quantity}")
-    near = (ratio - 1.0).abs() <= evidence.tolerance(id)
+    """Judge an estimate under a displacement boundary, by both readings of the transition.
+
+    These are the first stick, and the time at which the slip reaches the printed value. Not all
+    runs reach it.
+    """
+    combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
+    runs = evidence.finest("scaling_displacement")
+    by_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
+    # NaN if the run does not reach the printed slip.
+    ratio = ratios(by_printed_slip, quantity, f"estimated_{quantity}")
+    within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {
         f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
         "in all": float(len(ratio)),
+        "of these within the tolerance": float(within_tolerance.sum()),
     }
-    further |= {"of these within the tolerance": float(near.sum())} | arrow
     template_values = readings_by_name(evidence) | undamped_and_damped(combinations)
-    template_values |= {"of_runs": len(ratio), "reach": ratio.count()}
-    template_values["reach_literally"] = slips["slip_time_nucleation"].count()
+    template_values |= {
+        "of_runs": len(ratio),
+        "reach": ratio.count(),
+        "reach_literally": runs["slip_time_nucleation"].count(),
+    }
     return over_choices(
-        combinations, from_exact=exact, further=further, template_values=template_values
+        combinations,
+        from_exact=from_exact,
+        further=further | arrow,
+        template_values=template_values,
     )
 
 
 def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[float]]:
     """Return deviations at the first stick: without damping, and by release rule with damping."""
-    sizes: dict[str, list[float]] = {"undamped": [], "elastic": [], "total": []}
-    for one in combinations:
-        choice, deviation = one.choice, one.result["deviation"]
+    deviations: dict[str, list[float]] = {"undamped": [], "elastic": [], "total": []}
+    for combination in combinations:
+        choice, deviation = combination.choice, combination.result["deviation"]
         if choice["criterion"] == FIRST_STICK and deviation is not None:
-            part = "undamped" if choice["damping_ratio"] == 0.0 else str(choice["release"])
-            sizes[part].append(deviation)
-    return sizes
+            is_undamped = choice["damping_ratio"] == 0.0
+            group = "undamped" if is_undamped else str(choice["release"])
+            deviations[group].append(deviation)
+    return deviations
 
 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge an estimate under a stress boundary, at each fraction and at the last release."""
-    combinations, exact, arrow = judge_estimate(evidence, id, "stress", quantity)
+    combinations, from_exact, arrow = judge_estimate(evidence, id, "stress", quantity)
     further = arrow | fraction_medians(combinations)
-    return over_choices(combinations, from_exact=exact, further=further)
+    return over_choices(combinations, from_exact=from_exact, further=further)
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
@@ -236,27 +279,27 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     T and L of the runs are fitted as powers of their estimates, and the exponent should be 1. The
     claim is judged by T or L, whichever has its exponent farther from 1.
     """
-    displacement = boundary == "displacement"
-    columns = ("left", "gamma") if displacement else ("left",)
+    has_springs = boundary == "displacement"
+    varied_columns = ("left", "gamma") if has_springs else ("left",)
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
-        exponents = {
-            symbol: exponent(tables, quantity, f"estimated_{quantity}", columns)
-            for quantity, symbol in SYMBOLS.items()
-        }
-        distances = {symbol: abs(value - 1.0) for symbol, (value, _) in exponents.items()}
-        symbol = max(distances, key=lambda name: distances[name])
-        measured, uncertainty = map(np.atleast_1d, exponents[symbol])
+        exponents = {}
+        for quantity, symbol in SYMBOLS.items():
+            estimate = f"estimated_{quantity}"
+            exponents[symbol] = exponent(tables, quantity, estimate, varied_columns)
+        # Each exponent is a value with its uncertainty.
+        farthest = max(exponents, key=lambda symbol: abs(exponents[symbol][0] - 1.0))
+        measured, uncertainty = exponents[farthest]
         return Equation(
             tolerance=evidence.tolerance(id),
             predicted=np.ones(1),
-            measured=measured,
-            uncertainty=uncertainty,
+            measured=np.array([measured]),
+            uncertainty=np.array([uncertainty]),
             counts={"runs": len(tables[0])},
-            template_values={"symbol": symbol},
+            template_values={"symbol": farthest},
         )
 
-    runs = transitions(evidence) if displacement else arrests(evidence)
+    runs = transitions(evidence) if has_springs else arrests(evidence)
     return over_choices(judge_each(runs, judge))
 
 
@@ -266,113 +309,152 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         left = evidence.approximate(id, tables, "covered / time", "1")
         right = evidence.approximate(id, tables, "(length - covered) / time", "1")
-        side, front = ("right", right) if right.median[0] > left.median[0] else ("left", left)
-        return replace(front, template_values={"side": side})
+        left_deviation, _ = left.median
+        right_deviation, _ = right.median
+        if right_deviation > left_deviation:
+            return replace(right, template_values={"side": "right"})
+        return replace(left, template_values={"side": "left"})
 
     combinations = judge_each(arrests(evidence), judge)
     return over_choices(combinations, further=fraction_medians(combinations))
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the left front takes longer than at speed 1 in each run."""
+    """Judge whether the left front takes longer to its arrest than at speed 1, in each run.
+
+    The paper estimates the time by this speed, and says that it underestimates the time.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
+        # At speed 1 the time equals the distance. Only the two finest lattices are compared.
         excesses = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
 
-        def longer(limit: float) -> Qualitative:
+        def takes_longer(limit: float) -> Qualitative:
+            """Judge whether each run takes longer, but at most by this fraction."""
             holds = [(excess > 0.0) & (excess <= limit) for excess in excesses]
             # An exact solution is one table, which agrees with itself.
             return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
-        # The tolerance 0 sets no limit. The earlier tolerance limited how much longer it takes.
-        return replace(
-            longer(np.inf), extra_verdict=lambda limit: longer(limit or np.inf).verdict()
-        )
+        def extra_verdict(tolerance: float) -> str:
+            """Return the verdict with a limit; the tolerance 0 sets none.
+
+            The earlier tolerance of the claim limited how much longer the front may take.
+            """
+            limit = tolerance if tolerance > 0.0 else np.inf
+            return takes_longer(limit).verdict()
+
+        return replace(takes_longer(np.inf), extra_verdict=extra_verdict)
 
     runs = arrests(evidence)
-    exact = [tables[0] for choice, tables in runs if choice["solution"] == "exact"]
-    least = min(float((table["time"] / table["covered"]).min()) for table in exact)
-    further = {"smallest ratio of the exact solution": least}
+    smallest_ratios = []
+    for choice, tables in runs:
+        if choice["solution"] == "exact":
+            ratio = tables[0]["time"] / tables[0]["covered"]
+            smallest_ratios.append(float(ratio.min()))
+    further = {"smallest ratio of the exact solution": min(smallest_ratios)}
     return over_choices(judge_each(runs, judge), further=further)
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     """Judge the position of the last release on the left, compared with x_minus.
 
-    In addition, the exponent must be near 1 and the median gap to x_minus small.
+    In addition, the exponent must be near 1 and the median gap to x_minus small. The claim is
+    judged for each damping ratio, and shows the numbers of all runs together.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     covered, predicted = "last_release_distance", "balance_distance"
-    allowed = float(evidence.entries[id]["tolerance_exponent"])
+    exponent_tolerance = float(evidence.entries[id]["tolerance_exponent"])
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        claim = evidence.approximate(id, tables, covered, predicted)
-        gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
-        gap, power = (
-            with_grid_uncertainty(tables, gaps),
-            exponent(tables, covered, predicted, ("left", "width")),
-        )
-        further = {"median gap in H, over all sweeps": gap[0], "exponent": power[0]}
-        small = rules.within(*gap, MAX_ARREST_GAP)
-        template_values = {"near": small, "gap": gap[0], "gap_uncertainty": gap[1]}
-        extra = rules.worst([small, rules.within(abs(power[0] - 1.0), power[1], allowed)])
+        median_gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
+        gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
+        gap_verdict = rules.within(gap, gap_uncertainty, MAX_ARREST_GAP)
+        power, power_uncertainty = exponent(tables, covered, predicted, ("left", "width"))
+        power_verdict = rules.within(abs(power - 1.0), power_uncertainty, exponent_tolerance)
+        extra_verdict = rules.worst([gap_verdict, power_verdict])
         return replace(
-            claim, extra_verdict=lambda _: extra, further=further, template_values=template_values
+            evidence.approximate(id, tables, covered, predicted),
+            extra_verdict=lambda _: extra_verdict,
+            further={"median gap in H, over all sweeps": gap, "exponent": power},
+            template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
         )
 
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
-    shown, ratio = judge(tables), ratios(tables[0], covered, predicted)
-    extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    dampings = {*evidence.tables["open_choices"]["damping_ratio"]} & {*tables[0]["damping_ratio"]}
+    finest = tables[0]
     runs = []
-    for damping in sorted(dampings):
-        chosen = tables[0]["damping_ratio"] == damping
-        runs.append(lattice_runs([table[chosen.to_numpy()] for table in tables]))
+    for damping_ratio in sorted({*evidence.tables["open_choices"]["damping_ratio"]}):
+        has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
+        if has_ratio.any():
+            runs.append(lattice_runs([table[has_ratio] for table in tables]))
+    shown = judge(tables)
+    ratio = ratios(finest, covered, predicted)
+    extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
     return over_choices(judge_each(runs, judge), shown, further={**shown.further, **extremes})
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether T_trans and L_trans grow at every step down in gamma."""
-    answers, exponents = [], []
-    for table in evidence.lattices("scaling_displacement")[:2]:
-        sequences = table.sort_values("gamma").groupby("left")
-        of_levels = [divergence(rows) for _, rows in sequences]
-        answers.append([diverges for diverges, _ in of_levels])
-        exponents.append([pair for _, pair in of_levels])
-    words = r"mean exponent of $\gamma$ in ${}_\mathrm{{trans}}$".format
-    means = np.mean(exponents[0], axis=0)
-    further = {words(symbol): float(mean) for symbol, mean in zip("TL", means, strict=True)}
-    return Qualitative(decided=agreed_answers(*answers), further=further)
+    finest, middle, _ = evidence.lattices("scaling_displacement")
+    on_finest, on_middle = divergences(finest), divergences(middle)
+    answers = agreed_answers(
+        [level.diverges for level in on_finest], [level.diverges for level in on_middle]
+    )
+    exponents = [(level.time_exponent, level.length_exponent) for level in on_finest]
+    mean_of_time, mean_of_length = np.mean(exponents, axis=0)
+    further = {
+        r"mean exponent of $\gamma$ in $T_\mathrm{trans}$": float(mean_of_time),
+        r"mean exponent of $\gamma$ in $L_\mathrm{trans}$": float(mean_of_length),
+    }
+    return Qualitative(decided=answers, further=further)
 
 
-def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
-    """Return whether T and L diverge as gamma falls, and the exponents of gamma.
+class Divergence(NamedTuple):
+    """The exponents of gamma in T_trans and L_trans.
 
-    Both must fall with gamma, and be negative powers of its three smallest values.
+    ``diverges`` is True if both diverge as gamma falls. It is None if there are fewer than three
+    runs.
+    """
+
+    diverges: bool | None
+    time_exponent: float
+    length_exponent: float
+
+
+def divergences(table: pd.DataFrame) -> list[Divergence]:
+    """Return the divergence at each level of pre-stress, from the runs of all gammas."""
+    return [divergence(runs) for _, runs in table.sort_values("gamma").groupby("left")]
+
+
+def divergence(runs: pd.DataFrame) -> Divergence:
+    """Return whether T and L diverge, from runs that differ only in gamma, in ascending order.
+
+    Both must fall at each step up in gamma. At its three smallest values both must be powers of it,
+    with an exponent that is negative by more than three standard errors.
     """
     quantities = ["transition_time", "transition_length"]
-    smallest = np.log(rows[["gamma", *quantities]].head(3))
-    lines = [fit_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
-    # The exponents must be below zero by three standard errors.
-    falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
-    diverges = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
-    # Fewer than three runs do not decide.
-    return diverges if len(rows) >= 3 else None, [slope for slope, *_ in lines]
+    falls = (runs[quantities].diff()[1:] < 0.0).all(axis=None)
+    logs = np.log(runs[["gamma", *quantities]].head(3))
+    time_line, length_line = (fit_line(logs["gamma"], logs[name]) for name in quantities)
+    is_negative = [line.slope + 3.0 * line.slope_error < 0.0 for line in (time_line, length_line)]
+    diverges = bool(falls and all(is_negative)) if len(runs) >= 3 else None
+    return Divergence(diverges, time_line.slope, length_line.slope)
 
 
 def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
     """Judge whether a quantity rises at each step up in the pre-stress, at each gamma.
 
-    A step smaller than its uncertainty is undecided.
+    A step smaller than its uncertainty is undecided. Values without an uncertainty are exact.
     """
-    unsure = f"uncertainty_{quantity}"
-    table = table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left")
+    uncertainty = table.get(f"uncertainty_{quantity}", 0.0)
+    runs = table.assign(uncertainty=uncertainty).sort_values("left").dropna(subset=quantity)
     decided: list[bool | None] = []
-    for _, rows in table.dropna(subset=quantity).groupby("gamma"):
-        steps = rows[quantity].diff()[1:]
-        uncertainties = rows[unsure].rolling(2).sum()[1:]
-        for step, uncertainty in zip(steps, uncertainties, strict=True):
-            decided.append(bool(step > 0.0) if abs(step) > uncertainty else None)
+    for _, same_gamma in runs.groupby("gamma"):
+        steps = same_gamma[quantity].diff()[1:]
+        # A step has the uncertainties of both its ends.
+        uncertainties = same_gamma["uncertainty"].rolling(2).sum()[1:]
+        for step, uncertainty_of_step in zip(steps, uncertainties, strict=True):
+            is_decided = abs(step) > uncertainty_of_step
+            decided.append(bool(step > 0.0) if is_decided else None)
     return Qualitative(decided=decided)
 
 

@@ -80,6 +80,8 @@ def _missing_line(path: Path, config: Mapping) -> str:
         # An entry without a required key may be a shipped one with a misspelt name.
         siblings = _last_known_entry(path[:-2], config).value
         line += nearest(path[-2], {*siblings} - {path[-2]})
+        if path[0] == "simulations" and path[-2].startswith("fig"):
+            line += "; docs/figures.md lists the simulations of each figure"
     return line
 
 

@@ -123,33 +123,38 @@ STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
-GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
-ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
-LAWS = "law of friction of sliding blocks, below; by default the model's"
-IN_SI = "layer in SI units; profile, `duration` and `dx` are then in m, Pa and s"
+GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); leave it out under `stress`"
+ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
+LAWS = "friction law of sliding blocks, explained below; by default that of `model`"
+IN_SI = "properties of a layer in SI units; all keys of the scene are then in SI units too"
 # Quantities of the numbers of a scene that are in SI units if the scene has a layer.
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
-KEPT = "recorded data: release and stick times; slip, velocity, acceleration at the end; samples"
+KEPT = (
+    "recorded data: fronts are release and stick times, fields are slip, velocity and acceleration"
+    " at the end, samples are explained below"
+)
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
 
 class Rough(Block):
     """Parameters of a rough background, as in `sp.rough`."""
 
-    level: float = key("mean, < 1 [S]")
-    deviation: NonNegative = key("standard deviation; values above 0.95 are cut to it [S]")
+    level: float = key("mean of the pre-stress, below 1 [S]")
+    deviation: NonNegative = key(
+        "standard deviation; larger values of the pre-stress than 0.95 are set to 0.95 [S]"
+    )
     correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
     hurst: float = key(
-        "Hurst exponent: 0 is the roughest profile at short lengths, 1 the smoothest",
+        "Hurst exponent: 0 gives the roughest profile at short lengths, 1 the smoothest",
         ge=0.0,
         le=1.0,
     )
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
-    spacing: Positive = key("distance of the positions [H]")
+    spacing: Positive = key("distance between neighbouring positions [H]")
     seed: Seed | Distinct[Seed] = key(
-        "seed of the random field; a list makes one profile each", words=SEEDS
+        "seed of the random field; a list of seeds gives one profile for each seed", words=SEEDS
     )
 
     def check(self) -> None:
@@ -161,26 +166,33 @@ class Rough(Block):
 class Profile(Block):
     """One pre-stress profile."""
 
-    left: float | None = key("level of the pre-stress far to the left, without a table [S]", None)
-    right: float | None = key("level far to the right, without a table [S]", None)
+    left: float | None = key(
+        "level of the pre-stress far to the left, if there is no table [S]", None
+    )
+    right: float | None = key("level far to the right, if there is no table [S]", None)
     width: Positive | None = key(
-        "standard deviation W of the Gaussian at x = 0, >= dx; `points` and `file` without a width"
-        " have no Gaussian [H] (paper)",
+        "standard deviation W of the Gaussian at x = 0, at least dx; with `points` or `file` there"
+        " is a Gaussian only if `width` is given [H] (paper)",
         1.0,
     )
-    peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
-    steps: list[Step] = key("levels beyond positions, away from x = 0 [H, S]", [], STEPS)
-    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
+    peak: float = key("pre-stress at x = 0; somewhere the pre-stress must reach 1 [S] (paper)", 1.0)
+    steps: list[Step] = key(
+        "new levels of the pre-stress, each from a position on, away from x = 0 [H, S]", [], STEPS
+    )
+    bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: linear between these points, constant beyond; a position twice is a"
-        " jump [H, S]",
+        "instead of levels: table of points, with linear interpolation between them and constant"
+        " values outside; a position that appears twice is a jump [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: a CSV or netCDF file with such points, relative to the overlay", None
+        "instead of levels: path of a CSV or netCDF file with such points, relative to the overlay",
+        None,
     )
-    rough: Rough | None = key("instead of levels: a random background, below", None, ROUGH)
+    rough: Rough | None = key(
+        "instead of levels: parameters of a random pre-stress, explained below", None, ROUGH
+    )
 
     @model_validator(mode="after")
     def _background(self) -> Self:
@@ -226,18 +238,19 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position, not 0, beyond which (away from x = 0) the level is replaced [H]"
+        "position, not 0, from which on (away from x = 0) the level is replaced [H]"
     )
-    levels: Distinct[float] = key("levels that replace it, one in each run [S]")
+    levels: Distinct[float] = key("new levels, one for each run [S]")
 
 
 class Duration(Block):
     time: Positive | None = key("the duration [H/c]", None)
     half_periods: Positive | None = key(
-        "the duration in pi/sqrt(gamma); only under `displacement`", None
+        "the duration in units of pi/sqrt(gamma); only under `displacement`", None
     )
     balance_distances: Positive | None = key(
-        "the duration in |x_minus|; if the left level is < 0 and the right one 0", None
+        "the duration in units of |x_minus|; only if the left level is < 0 and the right one is 0",
+        None,
     )
 
 
@@ -245,16 +258,20 @@ class SpacingRule(Block):
     """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
 
     fixed: Spacing | None = key(
-        "the spacing, also in the grid study; without the other keys [H]", None
+        "one spacing for all presets and for the grid study; give no other key with it [H]", None
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
-    width_power: float = key("power of W", 0.0)
-    gamma_power: float = key("power of gamma; only under `displacement`", 0.0)
+    width_power: float = key("power of W in the rule for the spacing", 0.0)
+    gamma_power: float = key(
+        "power of gamma in the rule for the spacing; only under `displacement`", 0.0
+    )
 
 
 class Recording(Block):
     times: int = key("number of times, evenly spaced over the duration", ge=2, le=100_000)
-    positions: int = key("number of positions, evenly spaced; 1: x = 0", ge=1, le=100_000)
+    positions: int = key(
+        "number of positions, evenly spaced; 1 means x = 0 alone", ge=1, le=100_000
+    )
     extent: NonNegative = key("largest distance of positions from x = 0 [H]")
 
 
@@ -262,12 +279,13 @@ class Physics(Block):
     """Keys that simulations and scenes have in common."""
 
     boundary: Boundary = key(
-        "condition on top: held displacement (Gamma = 1) or stress (Gamma = 0)"
+        "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
-    scheme: Scheme | None = key("by default the model's", None)
-    resolved_blocks: int | None = key("by default the model's", None, ge=1)
+    scheme: Scheme | None = key("scheme; by default that of `model`", None)
+    resolved_blocks: int | None = key("as in `model`, which has the default", None, ge=1)
     max_step: Positive | None = key(
-        "largest time step; by default the preset's, or the stable one [dx]", None
+        "largest time step; by default that of the preset, or the stable one if it is smaller [dx]",
+        None,
     )
 
     def alone(self, key: str, *others: str) -> None:
@@ -320,24 +338,30 @@ class Simulation(PhysicsOfSweep):
     right: Literal["same"] | Distinct[float] | None = key(
         "pre-stress levels on the right [S]", None
     )
-    width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
+    width: Distinct[Positive] = key(
+        "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
+    )
     profiles: Distinct[Profile] | None = key(
         "complete profiles, instead of the three keys above", None
     )
-    beyond: Beyond | None = key("a second level on one side, below", None)
+    beyond: Beyond | None = key("a second level on one side, given by the next two keys", None)
     gamma: Distinct[Positive] | None = key(GAMMA, None)
-    damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
-    beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
+    damping_ratio: Distinct[NonNegative] | None = key(
+        "damping ratio beta/dx; by default that of `model`", None
+    )
+    beta: Distinct[NonNegative] | None = key("damping beta, instead of `damping_ratio` [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
     rate_strengthening: Distinct[float] | None = key(ALPHA, None)
-    duration: Duration = key("duration of each run, in one of three units, below", words=UNITS)
-    spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
+    duration: Duration = key("duration of each run, in one of three units", words=UNITS)
+    spacing: SpacingRule = key("rule for the block spacing", SpacingRule(), RULE)
     dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
-    release: Release | Distinct[Release] | None = key("by default the model's", None, RELEASED)
-    friction_ratio: NonNegative | None = key("by default the model's", None)
+    release: Release | Distinct[Release] | None = key(
+        "release rule; by default that of `model`", None, RELEASED
+    )
+    friction_ratio: NonNegative | None = key("as in `model`, which has the default", None)
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
-        "sampled times and positions for `record: [..., samples]`, below", None
+        "times and positions of the samples, if `record` contains samples", None
     )
     chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
 
@@ -368,15 +392,19 @@ class Simulation(PhysicsOfSweep):
 class LayerKeys(Block):
     """A layer in SI units; see `Layer` of the library for details."""
 
-    thickness: Positive = key("thickness H, from the interface to the held top [m]")
+    thickness: Positive = key("thickness H, from the interface to the top [m]")
     shear_modulus: Positive = key("shear modulus G [Pa]")
-    lame_parameter: float | None = key("Lame parameter lambda, > -2G/3 [Pa]", None)
-    poisson_ratio: float | None = key("instead of `lame_parameter`; between -1 and 0.5", None)
+    lame_parameter: float | None = key("first Lame parameter lambda, > -2G/3 [Pa]", None)
+    poisson_ratio: float | None = key(
+        "Poisson ratio, between -1 and 0.5, instead of `lame_parameter`", None
+    )
     density: Positive = key("density [kg/m3]")
-    static_friction: Positive = key("coefficient of static friction, above the kinetic one")
+    static_friction: Positive = key("coefficient of static friction, larger than the kinetic one")
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
-    top: Top | None = key("held (displacement) or stress; by default as `boundary`", None)
+    top: Top | None = key(
+        "what is held on top: held (the displacement) or stress; by default as `boundary`", None
+    )
 
     @model_validator(mode="after")
     def _known_layer(self) -> Self:
@@ -394,12 +422,14 @@ class NamedScene(Profile, PhysicsOfScene):
 
     title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
-    damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
-    beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
+    damping_ratio: NonNegative | None = key(
+        "damping ratio beta/dx; by default that of `model`", None
+    )
+    beta: NonNegative | None = key("damping beta, instead of `damping_ratio` [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
-    dx: Positive | None = key("block spacing, <= 1; by default the preset's [H]", None)
-    release: Release | None = key("by default the model's", None)
+    dx: Positive | None = key("block spacing, at most 1; by default that of the preset [H]", None)
+    release: Release | None = key("release rule; by default that of `model`", None)
     duration: Positive = key("duration of the run [H/c]")
     layer: LayerKeys | None = key(IN_SI, None)
 
@@ -495,9 +525,10 @@ class Preset(Block):
     max_step: Positive = key("largest time step; strong damping may need a smaller one [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
     coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
-        "factors of the spacing in the grid studies", words=FACTORS
+        "factors by which the spacing is multiplied on the two coarser lattices of a grid study",
+        words=FACTORS,
     )
-    whole: bool = key("true: studies, claims and report are made by default", True)
+    whole: bool = key("true if studies, claims and report are made by default", True)
 
     @model_validator(mode="after")
     def _far_apart(self) -> Self:
@@ -510,34 +541,43 @@ class Preset(Block):
 
 class Model(Block):
     damping_ratio: NonNegative = key(
-        "beta/dx; the paper states beta = 1e-3, and its figure 4 allows dx = 0.01"
+        "damping ratio beta/dx; the paper has beta = 1e-3, and its figure 4 agrees with dx = 0.01"
     )
     release: Release = key(
-        "force at which a block is released: `total` includes the damping, as in the authors' "
-        "code; `elastic` does not, as printed"
+        "force that is compared with the threshold of release: `total` includes the damping, as in "
+        "the authors' code; `elastic` does not include it, as printed"
     )
     scheme: Scheme = key(
-        "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
-        " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
+        "`localised` computes the time of every release and stick; `fixed_step` is the textbook"
+        " scheme; `continuum` is the exact continuum limit, without `max_step` and `order`"
     )
-    friction: Friction | None = key("law of friction; by default coulomb, the paper's", None, LAW)
-    friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): stress below -(1 + 2 of it) is flagged")
-    resolved_blocks: int = key("narrower pulses (`stress`: Gaussians) are flagged [dx]", ge=1)
+    friction: Friction | None = key(
+        "friction law; by default coulomb, that of the paper", None, LAW
+    )
+    friction_ratio: NonNegative = key(
+        "r = mu_k/(mu_s - mu_k); a run is flagged if a stress falls below -(1 + 2 r)"
+    )
+    resolved_blocks: int = key(
+        "a run is flagged if a pulse (under `stress`, the Gaussian) is narrower than this [dx]",
+        ge=1,
+    )
 
 
 class Measure(Block):
-    fraction: Fraction = key("T_trans, `stress`: fraction of |x_minus| that the left front covered")
+    fraction: Fraction = key(
+        "fraction of |x_minus| that the left front has covered at T_trans, under `stress`"
+    )
     front_window: float = key(
-        "last fraction of the path, from which the front speed is measured", ge=0.05, lt=1.0
+        "fraction of the path, at its end, over which the front speed is measured", ge=0.05, lt=1.0
     )
     steady_tolerance: Fraction = key(
-        "largest change of the peak velocity of a steady pulse in the last third"
+        "largest relative change of the peak velocity of a steady pulse in the last third of a run"
     )
     trailing_times: Distinct[Positive] = key(
         "times at which the trailing edge is tabulated [H/c] (figure)"
     )
     still: Fraction = key(
-        "fraction of the largest slip velocity below which the interface is at rest"
+        "fraction of the largest slip velocity below which the interface counts as at rest"
     )
 
 
@@ -547,7 +587,7 @@ class Sketch(Block):
 
 class Steps(Block):
     from_: Ratio = key("first value", alias="from")
-    to: Ratio = key("last value, above the first")
+    to: Ratio = key("last value, larger than the first")
     count: int = key("number of values", ge=2, le=10_000)
 
     @model_validator(mode="after")
@@ -586,15 +626,17 @@ class Claim(Block):
 
 
 class Reading(Block):
-    simulation: str = key("simulation whose run is compared with it")
+    simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number, a column of the measured table")
     statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
-    reading_error: Positive = key("error of the reading, from the pixel size")
+    reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
-        "part of this error that all readings with a shared error have in common", 0.0
+        "part of this uncertainty that all readings with a shared error have in common", 0.0
     )
-    arrow: bool = key("true for a drawn arrow: fits are made with and without it", False)
+    arrow: bool = key(
+        "true if this is a drawn arrow, for which fits are made with it and without it", False
+    )
 
 
 class Configuration(Block):
@@ -605,12 +647,14 @@ class Configuration(Block):
         "compromises between speed and accuracy, by name", min_length=1
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error, instead of a preset's spacing and step", None
+        "largest relative numerical error; replaces the spacing and the step of the preset", None
     )
     # Make and the command line may say yes, on or 1.
-    allow_large: Switch = key("true: simulations above the limits of cost are allowed", False)
+    allow_large: Switch = key("true if simulations above the limits of cost are allowed", False)
     model: Model = key("default values for all simulations")
-    simulations: dict[Name, Simulation] = key("sweeps by name, with a run for each combination")
+    simulations: dict[Name, Simulation] = key(
+        "sweeps by name, with one run for each combination of values"
+    )
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
     measure: Measure = key("settings for the measured numbers")
     figures: Figures = key("settings of figures that show no simulation")

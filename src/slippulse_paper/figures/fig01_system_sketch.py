@@ -58,26 +58,36 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_layer(axes: Axes, strip: float) -> None:
-    """Draw the layer on its substrate, a strip of the given width, friction, height and axes."""
-    middle, right = 0.5 * LAYER_LENGTH, LAYER_LENGTH + 0.13
-    box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    """Draw the layer on its substrate, a strip of the given width, and the friction at the bottom.
+
+    Positions are in layer thicknesses, with y = 0 at the bottom of the layer.
+    """
+    middle = 0.5 * LAYER_LENGTH
+    layer: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
     cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
-    white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
-    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
     axes.add_patch(Rectangle((0.0, -RIGID_DEPTH), LAYER_LENGTH, RIGID_DEPTH, **HATCHED_LOOK))
-    axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **box))
+    axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **layer))
     axes.add_patch(Rectangle((STRIP_CENTRE - 0.5 * strip, 0.0), strip, 1.0, **cut))
     label(axes, STRIP_CENTRE, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
+    white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
     label(axes, middle, -0.5 * RIGID_DEPTH, "rigid substrate", fontsize=8, bbox=white)
     arrow(axes, (0.27 * LAYER_LENGTH, 0.05), (0.13 * LAYER_LENGTH, 0.05), BLACK, gid="friction")
     label(axes, 0.7, 0.1, "$f_f$", va="bottom")
+    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
     label(axes, middle, -RIGID_DEPTH - 0.08, law, va="top")
+    _draw_height_and_axes(axes)
+
+
+def _draw_height_and_axes(axes: Axes) -> None:
+    """Draw the height of the layer on its right, and the axes of x and y on its left."""
+    right = LAYER_LENGTH + 0.13
     arrow(axes, (right, 0.0), (right, 1.0), MUTED_GREY, **TWO_HEADS)
     for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
         label(axes, LAYER_LENGTH + 0.23, y, text, MUTED_GREY, ha="left")
-    arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED_GREY)
-    arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED_GREY)
+    origin = (-0.42, 0.0)
+    arrow(axes, origin, (-0.07, 0.0), MUTED_GREY)
+    arrow(axes, origin, (-0.42, 0.35), MUTED_GREY)
     label(axes, -0.24, -0.13, "$x$", MUTED_GREY)
     label(axes, -0.55, 0.25, "$y$", MUTED_GREY)
 

@@ -58,7 +58,11 @@ DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regim
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The planes of the study, and runs: all of equal levels (role symmetric), else some (run)."""
+    """Return the rows of the study regime_plane, and runs of the sweeps.
+
+    symmetric : all runs with equal levels on both sides
+    run : some runs at the largest gamma, evenly spread over both levels
+    """
     parts = [tables["regime_plane"]]
     kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
     for name, count in DRAWN.items():
@@ -78,15 +82,11 @@ def draw(table: pd.DataFrame) -> Figure:
     b and c show planes of the pre-stress on the left and on the right, one for each boundary.
     """
     figure = Figure(figsize=(PAGE_WIDTH, 5.0), layout="constrained")
-    left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
+    left, profile_figure = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
     above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
     symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
-    # The number of a profile is also written next to its regime in the plane.
-    numbers = {}
-    for number, rows in zip(NUMBERS, profiles, strict=False):
-        boundary, regime = rows[["boundary", "regime"]].iloc[0]
-        numbers[boundary, regime] = f"{number} "
+    numbers = numbers_of_regimes(profiles)
     panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
     for equal_levels, plane, letter, (boundary, title) in panels:
         rows = table[table["boundary"] == boundary]
@@ -100,16 +100,31 @@ def draw(table: pd.DataFrame) -> Figure:
     symmetric[1].set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
     symmetric[1].set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
     panel_letter(symmetric[0], "a")
-    draw_profiles(strips, profiles)
+    draw_profiles(profile_figure, profiles)
     legend_below(figure, legend_entries(table), 3)
     return figure
 
 
+def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], str]:
+    """Return the number of each drawn profile by boundary and regime.
+
+    The number is also written next to the regime in the plane.
+    """
+    numbers = {}
+    for number, rows in zip(NUMBERS, profiles, strict=False):
+        boundary, regime = rows[["boundary", "regime"]].iloc[0]
+        numbers[boundary, regime] = f"{number} "
+    return numbers
+
+
 def legend_entries(table: pd.DataFrame) -> list[Line2D]:
     """Return one legend entry for each kind of mark that the table of runs needs."""
-    faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
-    look = MARK | {"marker": "o"}
-    handles = [entry(label, markerfacecolor=face, **look) for label, face in faces.items()]
+    handles = []
+    for label, face in (
+        ("simulation, in the colour of its regime", GREY),
+        ("not settled by its end", "white"),
+    ):
+        handles.append(entry(label, marker="o", markerfacecolor=face, **MARK))
     if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
     return handles
@@ -169,36 +184,53 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
 
 
 def draw_runs(axes: Axes, runs: pd.DataFrame, upwards: str) -> None:
-    """Mark runs: open if theory has another final regime, crossed out if flagged."""
+    """Mark runs in the colour of their regime, as a function of the pre-stress on the left.
+
+    A mark is open if theory has another final regime, and a cross if the run is flagged.
+
+    upwards : column on the vertical axis
+    """
     for run in runs.itertuples():
-        early = run.exact_regime in LOOKS and run.exact_regime != run.regime
-        look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
+        colour, _ = LOOKS[run.regime]
+        differs_from_theory = run.exact_regime in LOOKS and run.exact_regime != run.regime
+        look = MARK | {"markerfacecolor": "white" if differs_from_theory else colour}
         marker = "x" if isinstance(run.run_flags, str) else "o"
         axes.plot(run.left, getattr(run, upwards), marker, gid=run.role, zorder=3.0, **look)
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
-    """Draw slip velocities over position, each over its largest value, with their pre-stress."""
+    """Draw one strip for each profile: slip velocity and pre-stress as functions of position."""
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
     end = 1.08 * pd.concat(profiles)["x"].abs().max()
-    x = np.linspace(-end, end, 201)
     title = rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$"
     strips[0].set_title(title, loc="center")
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
-        colour = LOOKS[rows["regime"].iloc[0]][0]
-        levels = rows[["left", "right"]].iloc[0]
-        shape = rows["slip_velocity"] / rows["slip_velocity"].max()
-        axes.fill_between(rows["x"], shape, color=tint(colour), linewidth=0.0)
-        axes.plot(rows["x"], shape, color=colour)
-        gamma = int(rows["boundary"].iloc[0] == "displacement")
-        label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(map(setting, levels))}"
-        axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
-        # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
-        axes.axhline(1.5, color=GREY, linewidth=0.6, linestyle=":")
-        axes.plot(x, 1.5 + 0.4 * Prestress(*levels)(x), color=BLACK, linewidth=0.8, gid="prestress")
-        axes.set_yticks([1.5, 1.9], ["0", "1"], fontsize=SMALL_TEXT)
-        axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
-        axes.set_ylim(0.0, 2.6)
-        axes.spines[["left", "right", "top"]].set_visible(False)
-    axes.set(xlabel="position $x$", xlim=(-end, end))
+        draw_strip(axes, rows, number, end)
+    strips[-1].set(xlabel="position $x$", xlim=(-end, end))
+
+
+def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
+    """Draw the slip velocity of one profile divided by its largest value, and its pre-stress.
+
+    The pre-stress is drawn from -end to end.
+    """
+    first = rows.iloc[0]
+    colour, _ = LOOKS[first["regime"]]
+    relative_velocity = rows["slip_velocity"] / rows["slip_velocity"].max()
+    axes.fill_between(rows["x"], relative_velocity, color=tint(colour), linewidth=0.0)
+    axes.plot(rows["x"], relative_velocity, color=colour)
+    gamma = int(first["boundary"] == "displacement")
+    levels = f"{setting(first['left'])}, {setting(first['right'])}"
+    label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {levels}"
+    axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
+    # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
+    zero, one = 1.5, 1.9
+    axes.axhline(zero, color=GREY, linewidth=0.6, linestyle=":")
+    x = np.linspace(-end, end, 201)
+    tau = Prestress(first["left"], first["right"])(x)
+    axes.plot(x, zero + 0.4 * tau, color=BLACK, linewidth=0.8, gid="prestress")
+    axes.set_yticks([zero, one], ["0", "1"], fontsize=SMALL_TEXT)
+    axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
+    axes.set_ylim(0.0, 2.6)
+    axes.spines[["left", "right", "top"]].set_visible(False)

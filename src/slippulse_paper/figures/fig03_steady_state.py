@@ -35,10 +35,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the displacement boundary on the left and the stress boundary on the right."""
     figure, panels = new_panels(PAGE_WIDTH, 3.3, "ab")
-    for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
-        rows = table[table["panel"] == name]
+    # Half-length of the inset with the pre-stress, in widths of the widest Gaussian.
+    half_lengths = {"displacement": 6.0, "stress": 5.0}
+    for axes, (boundary, half_length) in zip(panels, half_lengths.items(), strict=True):
+        rows = table[table["panel"] == boundary]
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), widths)
+        draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), half_length)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
         below = (0.5, -0.17)
         axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below, ncols=3)

@@ -29,6 +29,12 @@ DRAWS = {
 
 PANELS = {"displacement": "a", "stress": "b"}
 COLUMNS = ["panel", "role", "series", "time", "position", "value"]
+MARK_LOOK: Look = {
+    "markeredgewidth": 0.8,
+    "markeredgecolor": BLACK,
+    "markersize": 4.5,
+    "zorder": 5.0,
+}
 
 
 class RuptureExtent(NamedTuple):
@@ -50,20 +56,21 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     parts = []
     for panel in PANELS:
-        name = f"space_time_{panel}"
-        run = point(data[name], 0)
+        simulation = f"space_time_{panel}"
+        run = point(data[simulation], 0)
         rows = [space_time.run_table(run)]
-        for role, (time, left, length) in ruptures(run, tables[name].iloc[0]).items():
-            ends = {"series": ["left", "right"], "position": [left, left + length]}
-            rows.append(pd.DataFrame(ends).assign(role=role, time=time, value=length))
-        exact = tables["exact_space_time"].query("simulation == @name")
+        for role, extent in ruptures(run, tables[simulation].iloc[0]).items():
+            right = extent.left + extent.length
+            fronts = pd.DataFrame({"series": ["left", "right"], "position": [extent.left, right]})
+            rows.append(fronts.assign(role=role, time=extent.time, value=extent.length))
+        exact = tables["exact_space_time"]
+        exact = exact[exact["simulation"] == simulation]
         for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time")):
-            edge = {"role": role, "position": exact["position"], "time": exact[column]}
-            rows.append(pd.DataFrame(edge).dropna())
+            edge = pd.DataFrame({"position": exact["position"], "time": exact[column]})
+            rows.append(edge.assign(role=role).dropna())
         if panel == "stress":
-            rows.append(
-                pd.DataFrame([{"role": "fraction", "value": settings["measure"]["fraction"]}])
-            )
+            fraction = settings["measure"]["fraction"]
+            rows.append(pd.DataFrame([{"role": "fraction", "value": fraction}]))
         parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 
@@ -114,32 +121,47 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
+    # The first row has the left front.
     time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
     # A run that ends before its transition has no arrows.
     if np.isfinite(time):
-        low, high = axes.get_ylim()
-        height = high - low
-        low -= 0.04 * height
-        axes.set_ylim(low - 0.06 * height, high)
-        arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
-        arrow |= {"mutation_scale": 8.0, "path_effects": TEXT_OUTLINE}
-        axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
-        for start, stop in (((0.0, low), (time, low)), ((time, left), (time, left + length))):
-            axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-        look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
-        # The label of T_trans stands above its arrow, clear of the ticks of the axis.
-        named = rf"$T_\text{{trans}} = {time:#.3g}$"
-        axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
-        named = rf"$L_\text{{trans}} = {length:#.3g}$"
-        axes.annotate(named, (time, left + 0.5 * length), (4, 0), va="center", zorder=4.0, **look)
-    look = {"markeredgewidth": 0.8, "markeredgecolor": BLACK, "markersize": 4.5, "zorder": 5.0}
+        draw_arrows(axes, RuptureExtent(time, left, length))
     paper = roles["paper"]
-    axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
+    look = MARK_LOOK | {"color": ORANGE, "label": "paper's estimate"}
+    axes.plot(paper["time"], paper["position"], "D", **look)
     if "last_release" in roles:
         # Under a stress boundary the paper's estimate of the time is |x_-|.
-        limit = -float(paper["time"].iloc[0])
-        axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
-        # The label stands beside the ticks of the axis.
-        axes.annotate("$x_-$", (0.0, limit), (6, 1), textcoords="offset points", zorder=4.0)
-        left = roles["last_release"].iloc[:1]
-        axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)
+        x_minus = -float(paper["time"].iloc[0])
+        draw_last_release(axes, roles["last_release"].iloc[:1], x_minus)
+
+
+def draw_last_release(axes: Axes, left_front: pd.DataFrame, x_minus: float) -> None:
+    """Draw the last release of the left front, and the line at x_minus, which it approaches."""
+    axes.axhline(x_minus, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
+    # The label stands beside the ticks of the axis.
+    axes.annotate("$x_-$", (0.0, x_minus), (6, 1), textcoords="offset points", zorder=4.0)
+    look = MARK_LOOK | {"color": "white", "label": "last release"}
+    axes.plot(left_front["time"], left_front["position"], "o", **look)
+
+
+def draw_arrows(axes: Axes, rupture: RuptureExtent) -> None:
+    """Draw arrows for T_trans, along the lower edge, and for L_trans, at that time."""
+    time, left = rupture.time, rupture.left
+    low, high = axes.get_ylim()
+    height = high - low
+    low -= 0.04 * height
+    axes.set_ylim(low - 0.06 * height, high)
+    arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
+    arrow |= {"mutation_scale": 8.0, "path_effects": TEXT_OUTLINE}
+    axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+    time_arrow = ((0.0, low), (time, low))
+    length_arrow = ((time, left), (time, left + rupture.length))
+    for start, stop in (time_arrow, length_arrow):
+        axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
+    look: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE, "zorder": 4.0}
+    # The label of T_trans stands above its arrow, clear of the ticks of the axis.
+    label = rf"$T_\text{{trans}} = {time:#.3g}$"
+    axes.annotate(label, (0.0, low), (6, 3), va="bottom", **look)
+    label = rf"$L_\text{{trans}} = {rupture.length:#.3g}$"
+    middle = left + 0.5 * rupture.length
+    axes.annotate(label, (time, middle), (4, 0), va="center", **look)

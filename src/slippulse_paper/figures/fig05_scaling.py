@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting.selection import spread_values
@@ -18,7 +19,7 @@ from slippulse.plotting.style import (
 
 from .shared import scaling
 from .shared.pulse_panels import draw_prestress
-from .shared.scaling import DRAWN, OTHER, QUANTITIES, transition_table
+from .shared.scaling import LINE_COUNT, QUANTITIES, SECOND_COLUMN, transition_table
 
 NEEDS = {
     "measured": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
@@ -34,34 +35,46 @@ BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the collapse, one row per quantity and one column per boundary; insets have the ratio.
+    """Draw the collapse, with one column of panels for each boundary condition.
 
-    The last row has the ratio of the length at full size, with a line and a colour for each level.
+    Rows: the length and the time, with the ratio to the formula in insets, and the ratio of the
+    length at full size.
     """
     figure, panels = new_panels(PAGE_WIDTH, 7.4, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.6))
-    for column, (boundary, title) in enumerate(BOUNDARIES.items()):
-        level, other = LEVEL_COLUMNS[boundary], OTHER[boundary]
+    for column, boundary in enumerate(BOUNDARIES):
         runs = table[table["boundary"] == boundary]
-        runs = runs.assign(**{level: runs["left"]})
-        few = runs[runs[other].isin(spread_values(runs[other], DRAWN))]
-        faces, rims = (colour(name, runs[name]) for name in (level, other))
-        for axes, quantity in zip(panels[column:4:2], QUANTITIES, strict=True):
-            scaling.draw_collapse(axes, runs, quantity, {"c": faces, "edgecolors": rims})
-            scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few, quantity, level, other)
-        ratio = panels[4 + column]
-        scaling.draw_ratio(ratio, few, "length", level, other)
-        ratio.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
-        ratio.set_xlim(runs[level].min() - 0.05, runs[level].max() + 0.35 * np.ptp(runs[level]))
-        ratio.legend(loc="center right", fontsize=SMALL_TEXT)
-        levels = runs["left"].isin(spread_values(runs["left"], DRAWN))
-        narrow = runs[levels & (runs["width"] == runs["width"].min())]
-        narrow = narrow.assign(colour=[*colour(level, narrow[level])])
-        draw_prestress(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
-        panels[column].set_title(title, loc="center")
-        for quantity in (level, other):
-            look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-            # The scale of left is stretched, and ticks at equal distances would overlap.
-            look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "left" else None
-            bar = figure.colorbar(colour_scale(quantity), ax=panels[column::2], **look)
-            bar.set_label(f"${SYMBOLS[quantity]}$")
+        draw_boundary(figure, panels[column::2], runs, boundary)
     return figure
+
+
+def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, boundary: str) -> None:
+    """Draw one column of panels: length, time, and ratio of the length.
+
+    Faces of markers have the colour of the level, and rims that of gamma or W.
+    """
+    *collapse_panels, ratio_axes = panels
+    level, second = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
+    runs = runs.assign(**{level: runs["left"]})
+    few = runs[runs[second].isin(spread_values(runs[second], LINE_COUNT))]
+    colours = {"c": colour(level, runs[level]), "edgecolors": colour(second, runs[second])}
+    for axes, quantity in zip(collapse_panels, QUANTITIES, strict=True):
+        scaling.draw_collapse(axes, runs, quantity, colours)
+        scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few, quantity, level, second)
+    scaling.draw_ratio(ratio_axes, few, "length", level, second)
+    ratio_axes.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
+    # Leave room for the legend on the right.
+    span = np.ptp(runs[level])
+    ratio_axes.set_xlim(runs[level].min() - 0.05, runs[level].max() + 0.35 * span)
+    ratio_axes.legend(loc="center right", fontsize=SMALL_TEXT)
+    # The inset has the pre-stress of a few levels with the narrowest Gaussian.
+    has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
+    narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
+    narrow = narrow.assign(colour=[*colour(level, narrow[level])])
+    draw_prestress(panels[0], (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
+    panels[0].set_title(BOUNDARIES[boundary], loc="center")
+    for quantity in (level, second):
+        look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
+        # The scale of left is stretched, and ticks at equal distances would overlap.
+        look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "left" else None
+        bar = figure.colorbar(colour_scale(quantity), ax=panels, **look)
+        bar.set_label(f"${SYMBOLS[quantity]}$")

@@ -30,13 +30,17 @@ DRAWS = {
 # Distance between the rows of blocks of each panel, in spacings.
 ROW_DISTANCES = {"displacement": 1.62, "stress": 0.86}
 # Blocks in view without the middle one, and those in view beyond the block that stops the front.
-VIEW_WIDTH, BLOCKS_BEYOND_ARREST = 18, 2
+VIEW_WIDTH = 18
+BLOCKS_BEYOND_ARREST = 2
 # Width and height of a block, and height of the plate above the ground, in spacings.
-BLOCK_WIDTH, BLOCK_HEIGHT = 0.5, 0.44
+BLOCK_WIDTH = 0.5
+BLOCK_HEIGHT = 0.44
 PLATE_HEIGHT = 1.12
+# Heights of the points of a coil spring: a zigzag with straight ends.
 COIL_SHAPE = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
 # Largest drawn displacement in spacings, and shortest drawn spring divided by its length.
-MAX_DRAWN_DISPLACEMENT, MIN_DRAWN_SPRING = 0.85, 0.35
+MAX_DRAWN_DISPLACEMENT = 0.85
+MIN_DRAWN_SPRING = 0.35
 # Width of the figure, height of a spacing and height of the strip with the pre-stress, in inches.
 # The figure is narrow, so that its text can be read in one column.
 FIGURE_WIDTH = 5.4
@@ -59,32 +63,50 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     panels = []
     for name in ROW_DISTANCES:
         run = point(data[f"burridge_knopoff_{name}"], 0)
-        parts = []
-        low, high = window(run)
-        # The springs of one more block on each side are partly in view.
-        shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
-        x = shown["sample_position"].values
-        for row, (instant, sample) in enumerate(instants(run)):
-            now = shown.isel(sample_time=sample)
-            slip, velocity = now["sample_slip"].values, now["sample_velocity"].values
-            frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity})
-            frame["prestress"] = prestress_from(run.attrs)(x)
-            state = np.where(slip > 0.0, "stuck after sliding", "at rest")
-            frame["state"] = np.where(velocity > 0.0, "sliding", state)
-            parts.append(frame.assign(row=row, instant=instant, time=float(now["sample_time"])))
-        rows = pd.concat(parts, ignore_index=True)
-        closer = float(-rows.groupby("row")["slip"].diff().min())
-        largest = (1.0 - MIN_DRAWN_SPRING) * (1.0 - BLOCK_WIDTH) / closer
-        rows["scale"] = min(MAX_DRAWN_DISPLACEMENT / rows["slip"].max(), largest)
+        rows = block_states(run)
+        rows["scale"] = displacement_scale(rows)
         rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
         parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
         panels.append(rows.assign(panel=name, **parameters))
     return pd.concat(panels, ignore_index=True)
 
 
+def block_states(run: xr.Dataset) -> pd.DataFrame:
+    """Return slip, velocity, pre-stress and state of each block in view, at each drawn instant."""
+    low, high = window(run)
+    # The springs of one more block on each side are partly in view.
+    shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
+    x = shown["sample_position"].values
+    parts = []
+    for row, (instant, sample) in enumerate(instants(run)):
+        now = shown.isel(sample_time=sample)
+        slip, velocity = now["sample_slip"].values, now["sample_velocity"].values
+        state_without_motion = np.where(slip > 0.0, "stuck after sliding", "at rest")
+        blocks = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity})
+        blocks["prestress"] = prestress_from(run.attrs)(x)
+        blocks["state"] = np.where(velocity > 0.0, "sliding", state_without_motion)
+        parts.append(blocks.assign(row=row, instant=instant, time=float(now["sample_time"])))
+    return pd.concat(parts, ignore_index=True)
+
+
+def displacement_scale(rows: pd.DataFrame) -> float:
+    """Return the factor by which slip is multiplied in the drawing, in spacings.
+
+    It limits the largest displacement, and keeps the most compressed spring long enough.
+    """
+    slip_of_neighbours = rows.groupby("row")["slip"].diff()
+    # By how much two neighbours come closer at most.
+    approach = float(-slip_of_neighbours.min())
+    free_length = 1.0 - BLOCK_WIDTH
+    largest_for_springs = (1.0 - MIN_DRAWN_SPRING) * free_length / approach
+    return min(MAX_DRAWN_DISPLACEMENT / rows["slip"].max(), largest_for_springs)
+
+
 def arresting_block(run: xr.Dataset) -> float:
     """Return the position of the first block on the left that was never released."""
-    return float(run["x"].values[np.isfinite(run["release_time"].values)].min() - run.attrs["dx"])
+    is_released = np.isfinite(run["release_time"].values)
+    leftmost_released = run["x"].values[is_released].min()
+    return float(leftmost_released - run.attrs["dx"])
 
 
 def window(run: xr.Dataset) -> tuple[float, float]:
@@ -105,95 +127,128 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     instant at which no block outside of the view has slipped, and one halfway to it.
     """
     low, high = window(run)
+    # Slip and velocity have one row for each sampled time and one column for each position.
     x, velocity = run["sample_position"].values, run["sample_velocity"].values
     slip = run["sample_slip"].values
     is_outside = (x <= low) | (x >= high)
-    slipped_outside = (slip[:, is_outside] > 0.0).any(axis=1)
-    last = int(np.flatnonzero(~slipped_outside)[-1])
-    stuck = (slip > 0.0) & (velocity <= 0.0)
+    has_slipped_outside = (slip[:, is_outside] > 0.0).any(axis=1)
+    last = int(np.flatnonzero(~has_slipped_outside)[-1])
+    is_stuck = (slip > 0.0) & (velocity <= 0.0)
     # If no block sticks, the run remains a crack until the last instant.
-    stick = int(np.argmax(stuck.any(axis=1))) if stuck[: last + 1].any() else last
-    last_name = "crack"
-    if stuck[last, x == 0.0].all():
-        is_sliding = [bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0)]
-        last_name = ("arrested", "pulse", "two pulses")[sum(is_sliding)]
-    later = (stick + last) // 2
+    first_stick = int(np.argmax(is_stuck.any(axis=1))) if is_stuck[: last + 1].any() else last
+    if is_stuck[last, x == 0.0].all():
+        # The centre has stuck. A pulse runs on each side on which blocks slide.
+        left_slides = (velocity[last, x < 0.0] > 0.0).any()
+        right_slides = (velocity[last, x > 0.0] > 0.0).any()
+        last_name = ("arrested", "pulse", "two pulses")[int(left_slides) + int(right_slides)]
+    else:
+        last_name = "crack"
+    later = (first_stick + last) // 2
     # If two instants fall on the same sample, the name of the later one is kept.
-    names = {0: "start", stick // 2: "crack", stick: "first stick", later: "later"}
-    names[last] = last_name
-    return [(name, sample) for sample, name in sorted(names.items())]
+    name_of_sample = {0: "start", first_stick // 2: "crack", first_stick: "first stick"}
+    name_of_sample |= {later: "later", last: last_name}
+    return [(name, sample) for sample, name in sorted(name_of_sample.items())]
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each boundary condition: the pre-stress, and rows of blocks with time
     increasing downwards.
     """
-    counts = table.groupby("panel")["row"].nunique()
-    ratios: list[float] = []
-    for name, pitch in ROW_DISTANCES.items():
-        ratios += [STRIP_HEIGHT, SPACING_HEIGHT * (pitch * counts[name] + 0.12)]
-    figure = Figure(figsize=(FIGURE_WIDTH, sum(ratios) + 1.75), layout="constrained")
-    panels = figure.subplots(4, 1, height_ratios=ratios)
-    for name, letter, strip, axes in zip(
-        ROW_DISTANCES, "ab", panels[::2], panels[1::2], strict=True
-    ):
+    row_counts = table.groupby("panel")["row"].nunique()
+    # Heights in inches of the strip with the pre-stress and of the rows, for each panel.
+    heights: list[float] = []
+    for name, row_distance in ROW_DISTANCES.items():
+        rows_height = SPACING_HEIGHT * (row_distance * row_counts[name] + 0.12)
+        heights += [STRIP_HEIGHT, rows_height]
+    figure = Figure(figsize=(FIGURE_WIDTH, sum(heights) + 1.75), layout="constrained")
+    all_axes = figure.subplots(4, 1, height_ratios=heights)
+    strips, row_panels = all_axes[::2], all_axes[1::2]
+    for name, letter, strip, axes in zip(ROW_DISTANCES, "ab", strips, row_panels, strict=True):
         rows = table[table["panel"] == name]
         draw_rows(axes, rows, name)
-        first = rows[rows["row"] == 0]
         strip.sharex(axes)
-        strip.axhline(0.0, color=BLACK, linewidth=0.6)
-        strip.bar(first["x"], first["prestress"], width=BLOCK_WIDTH, color=GREY)
-        strip.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-        lowest, ticks = min(0.0, first["prestress"].min()), {0.0, 1.0, first["left"].iloc[0]}
-        strip.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
-        strip.tick_params(axis="x", length=0, labelbottom=False)
-        strip.tick_params(axis="y", labelsize=7)
-        strip.spines[["right", "top", "bottom"]].set_visible(False)
+        draw_prestress_strip(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), loc="center")
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [
         entry(name, markerfacecolor=colour, **square) for name, colour in STATE_COLOURS.items()
     ]
-    square |= {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
-    handles.append(entry("never released: stops the left front", **square))
+    frame: Look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
+    handles.append(entry("never released: stops the left front", **(square | frame)))
     legend_below(figure, handles, 4)
     return figure
 
 
+def draw_prestress_strip(axes: Axes, blocks: pd.DataFrame) -> None:
+    """Draw the pre-stress of each block as a bar."""
+    prestress, left_level = blocks["prestress"], blocks["left"].iloc[0]
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    axes.bar(blocks["x"], prestress, width=BLOCK_WIDTH, color=GREY)
+    axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
+    lowest = min(0.0, prestress.min())
+    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted({0.0, 1.0, left_level}))
+    axes.tick_params(axis="x", length=0, labelbottom=False)
+    axes.tick_params(axis="y", labelsize=7)
+    axes.spines[["right", "top", "bottom"]].set_visible(False)
+
+
 def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
-    """Draw blocks, coil springs and leaf springs of one run, with one line for each instant."""
+    """Draw the blocks of one run in a row for each instant, with their springs.
+
+    Distances are in spacings. The ground of row n lies n row distances below 0.
+    """
+    # Half of the outermost springs lies outside of the view.
     low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
-    leaf, pitch = name == "displacement", ROW_DISTANCES[name]
-    for row, state in rows.groupby("row"):
-        state = state.sort_values("x")
-        base, rest = -pitch * row, state["x"].to_numpy()
-        centre = rest + (state["scale"] * state["slip"]).to_numpy()
-        x = np.linspace(
-            centre[:-1] + 0.5 * BLOCK_WIDTH, centre[1:] - 0.5 * BLOCK_WIDTH, COIL_SHAPE.size, axis=1
-        )
-        y = base + 0.5 * BLOCK_HEIGHT + COIL_SHAPE
-        axes.plot(x.T, y, color="0.35", linewidth=0.6, gid="coil springs")
-        axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
-        axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
-        if leaf:
-            axes.plot([low, high], [base + PLATE_HEIGHT] * 2, color=BLACK, linewidth=1.8)
-            # A leaf spring is clamped vertically at the block, and at the plate above the position
-            # at rest.
-            along, plate = np.linspace(0.0, 1.0, 15), base + PLATE_HEIGHT
-            x = rest[:, None] + (centre - rest)[:, None] * along**2 * (3.0 - 2.0 * along)
-            y = plate + (base + BLOCK_HEIGHT - plate) * along
-            axes.plot(x.T, y, color=BLUE, linewidth=0.9, gid="leaf springs")
-        framed, colours = state["arresting_block"], state["state"].map(STATE_COLOURS)
-        look: Look = {"edgecolor": np.where(framed, BLACK, "0.2")}
-        look |= {"linewidth": np.where(framed, 1.8, 0.5), "zorder": 3}
-        axes.bar(centre, BLOCK_HEIGHT, BLOCK_WIDTH, base, color=colours, **look)
-        text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
+    has_leaf_springs, row_distance = name == "displacement", ROW_DISTANCES[name]
+    for row, blocks in rows.groupby("row"):
+        blocks = blocks.sort_values("x")
+        ground = -row_distance * row
+        rest = blocks["x"].to_numpy()
+        centre = rest + (blocks["scale"] * blocks["slip"]).to_numpy()
+        draw_coil_springs(axes, centre, ground)
+        axes.plot([low, high], [ground, ground], color=BLACK, linewidth=0.8)
+        # A tick on the ground marks the position at rest.
+        axes.vlines(rest, ground - 0.09, ground, color="0.4", linewidth=0.6)
+        if has_leaf_springs:
+            axes.plot([low, high], [ground + PLATE_HEIGHT] * 2, color=BLACK, linewidth=1.8)
+            draw_leaf_springs(axes, rest, centre, ground)
+        is_framed = blocks["arresting_block"]
+        look: Look = {"edgecolor": np.where(is_framed, BLACK, "0.2")}
+        look |= {"linewidth": np.where(is_framed, 1.8, 0.5), "zorder": 3}
+        look["color"] = blocks["state"].map(STATE_COLOURS)
+        axes.bar(centre, BLOCK_HEIGHT, BLOCK_WIDTH, ground, **look)
+        first = blocks.iloc[0]
+        text = rf"$t = {first['time']:.1f}$" + "\n" + first["instant"]
         look = {"ha": "right", "va": "center", "linespacing": 0.95}
-        axes.text(low - 0.2, base + 0.5 * BLOCK_HEIGHT, text, **look)
-    top = (PLATE_HEIGHT if leaf else BLOCK_HEIGHT) + 0.08
-    axes.set(xlim=(low, high), ylim=(-pitch * rows["row"].max() - 0.2, top), yticks=[])
+        axes.text(low - 0.2, ground + 0.5 * BLOCK_HEIGHT, text, **look)
+    top = (PLATE_HEIGHT if has_leaf_springs else BLOCK_HEIGHT) + 0.08
+    bottom = -row_distance * rows["row"].max() - 0.2
+    axes.set(xlim=(low, high), ylim=(bottom, top), yticks=[])
     scale = rf"{rows['scale'].iloc[0]:.2g} $\times$ slip $u$"
     axes.set_xlabel(f"position $x$ at rest; displacement drawn: {scale}")
     axes.xaxis.set_major_locator(MultipleLocator(2))
     axes.spines[["left", "right", "top"]].set_visible(False)
+
+
+def draw_coil_springs(axes: Axes, centre: np.ndarray, ground: float) -> None:
+    """Draw a coil spring between each pair of neighbouring blocks, at half of their height."""
+    begin, end = centre[:-1] + 0.5 * BLOCK_WIDTH, centre[1:] - 0.5 * BLOCK_WIDTH
+    # One row for each spring.
+    x = np.linspace(begin, end, COIL_SHAPE.size, axis=1)
+    y = ground + 0.5 * BLOCK_HEIGHT + COIL_SHAPE
+    axes.plot(x.T, y, color="0.35", linewidth=0.6, gid="coil springs")
+
+
+def draw_leaf_springs(axes: Axes, rest: np.ndarray, centre: np.ndarray, ground: float) -> None:
+    """Draw the leaf spring of each block, which is clamped vertically at both ends.
+
+    It leads from the plate above the position at rest to the block.
+    """
+    along = np.linspace(0.0, 1.0, 15)
+    plate, top_of_block = ground + PLATE_HEIGHT, ground + BLOCK_HEIGHT
+    displacement = (centre - rest)[:, np.newaxis]
+    # A cubic polynomial whose slope is 0 at both ends.
+    x = rest[:, np.newaxis] + displacement * along**2 * (3.0 - 2.0 * along)
+    y = plate + (top_of_block - plate) * along
+    axes.plot(x.T, y, color=BLUE, linewidth=0.9, gid="leaf springs")

@@ -1,11 +1,13 @@
 """Animate a scene: slip velocity and slip as functions of position."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from slippulse.data.files import write_whole
 from slippulse.data.readable_units import readable_unit
@@ -23,6 +25,13 @@ FIELDS = {
 }
 
 
+class Curve(NamedTuple):
+    """A drawn line, and its values with one row for each sampled time."""
+
+    line: Line2D
+    values: np.ndarray
+
+
 def save_animation(
     run: xr.Dataset, title: str, path: str | Path, layer: Layer | None = None
 ) -> None:
@@ -30,41 +39,53 @@ def save_animation(
 
     With a layer, the axes are in SI units.
     """
-    lower, upper = drawn_range(run)
-    inside = (run["sample_position"].values >= lower) & (run["sample_position"].values <= upper)
-    x, unit_of_x = _drawn_values(run["sample_position"].values, "length", layer)
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    curves = _draw_first_frame(figure, run, layer)
     times, unit_of_time = _drawn_values(run["sample_time"].values, "time", layer)
     frames = spaced_indices(times.size, FRAME_COUNT)
-    figure, lines = Figure(figsize=(6.4, 3.6), layout="constrained"), []
-    panels = figure.subplots(2, 1, sharex=True)
-    for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
-        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
-        label += f" ({unit})" if unit else ""
-        axes.axhline(0.0, color=GREY, linewidth=0.5)
-        (line,) = axes.plot(x[inside], values[0], color=colour)
-        axes.set(ylabel=label, ylim=(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values)))
-        lines.append((line, values))
-    limits_of_x = np.array([lower, upper]) if layer is None else x[inside][[0, -1]]
-    panels[1].set(xlim=tuple(limits_of_x), xlabel=r"position $x$")
-    if unit_of_x:
-        panels[1].set_xlabel(rf"position $x$ ({unit_of_x})")
     clock = figure.suptitle("", fontsize=9.0)
-    plain = title.replace("$", r"\$")
+    # A dollar in the title is a text and begins no formula.
+    plain_title = title.replace("$", r"\$")
 
     def draw(frame: int) -> None:
-        for line, values in lines:
-            line.set_ydata(values[frame])
-        clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
+        """Draw one instant; ``frame`` is its index in the sampled times."""
+        for curve in curves:
+            curve.line.set_ydata(curve.values[frame])
+        clock.set_text(rf"{plain_title}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
 
     # The layout is computed once, for the longest title, so that frames do not jump.
     draw(int(frames[-1]))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
-    animation, writer = (
-        FuncAnimation(figure, draw, frames=frames),
-        PillowWriter(fps=FRAMES_PER_SECOND),
-    )
+    animation = FuncAnimation(figure, draw, frames=frames)
+    writer = PillowWriter(fps=FRAMES_PER_SECOND)
     write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))
+
+
+def _draw_first_frame(figure: Figure, run: xr.Dataset, layer: Layer | None) -> list[Curve]:
+    """Draw one panel for each of FIELDS, at the first sampled time, and return their curves."""
+    lower, upper = drawn_range(run)
+    positions = run["sample_position"].values
+    inside = (positions >= lower) & (positions <= upper)
+    all_x, unit_of_x = _drawn_values(positions, "length", layer)
+    x = all_x[inside]
+    panels = figure.subplots(2, 1, sharex=True)
+    curves = []
+    for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
+        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
+        largest = np.nanmax(values)
+        axes.axhline(0.0, color=GREY, linewidth=0.5)
+        (line,) = axes.plot(x, values[0], color=colour)
+        axes.set(ylabel=_with_unit(label, unit), ylim=(-0.04 * largest, 1.05 * largest))
+        curves.append(Curve(line, values))
+    limits = (lower, upper) if layer is None else (x[0], x[-1])
+    panels[-1].set(xlim=limits, xlabel=_with_unit(r"position $x$", unit_of_x))
+    return curves
+
+
+def _with_unit(label: str, unit: str) -> str:
+    """Return an axis label with its unit in parentheses, if it has a unit."""
+    return f"{label} ({unit})" if unit else label
 
 
 def _drawn_values(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
 
 from slippulse.model.layer_units import Layer
 from slippulse.plotting import space_time
@@ -40,72 +41,108 @@ def table(
     theory : measured and predicted numbers of the run
     layer : the layer in SI units, which the table then has, too
     """
-    lower, upper = space_time.drawn_range(run)
-    x = run["x"].values
-    inside = np.flatnonzero((x >= lower) & (x <= upper))
-    parts = [pd.DataFrame([{"role": "title", "series": title}]), space_time.run_table(run)]
-    # The right pulse has a measured state. On the left there is a pulse if any block has stuck.
-    ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
-    if math.isfinite(run.attrs["first_stick_time"]):
-        ends = {"exact_left": lower} | ends
-    steady = []
-    for name, largest in LARGEST_VALUES.items():
-        values = run[name].values
-        spaced = inside[spaced_indices(inside.size, PROFILE_POINTS)]
-        kept = np.union1d(spaced, inside[np.argmax(values[inside])])
-        rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
-        parts.append(pd.DataFrame(rows))
-        steady += [(name, end, theory[f"{prefix}_{largest}"]) for prefix, end in ends.items()]
-    rows = pd.DataFrame(steady, columns=["series", "position", "value"])
-    parts.append(rows.assign(role="steady").dropna())
-    parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
-    columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
+    parts = [
+        pd.DataFrame([{"role": "title", "series": title}]),
+        space_time.run_table(run),
+        *(profile_rows(run, field) for field in FIELDS),
+        steady_rows(run, theory),
+        numbers.rename(columns={"quantity": "series"}).assign(role="number"),
+    ]
     rows = pd.concat(parts, ignore_index=True)
+    columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
     if layer is None:
         return rows.reindex(columns=columns)
     return table_in_si(rows, layer).reindex(columns=[*columns, "unit"])
 
 
+def profile_rows(run: xr.Dataset, field: str) -> pd.DataFrame:
+    """Return a field at the end as a function of position, at some blocks of the drawn range.
+
+    The block with the largest value is among them.
+    """
+    lower, upper = space_time.drawn_range(run)
+    x, values = run["x"].values, run[field].values
+    inside = np.flatnonzero((x >= lower) & (x <= upper))
+    spaced = inside[spaced_indices(inside.size, PROFILE_POINTS)]
+    largest = inside[np.argmax(values[inside])]
+    kept = np.union1d(spaced, largest)
+    rows = {"role": "profile", "series": field, "position": x[kept], "value": values[kept]}
+    return pd.DataFrame(rows)
+
+
+def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
+    """Return the largest value of each field in the exact steady pulse of each side.
+
+    The position is the end of the drawn range on the side of the pulse. Sides without a pulse or
+    without theory have no rows.
+    """
+    lower, upper = space_time.drawn_range(run)
+    # The right pulse has a measured state. On the left there is a pulse if any block has stuck.
+    has_left_pulse = math.isfinite(run.attrs["first_stick_time"])
+    has_right_pulse = theory["pulse_state"] not in ("none", "stopped")
+    rows = []
+    for field, largest in LARGEST_VALUES.items():
+        if has_left_pulse:
+            rows.append((field, lower, theory[f"exact_left_{largest}"]))
+        if has_right_pulse:
+            rows.append((field, upper, theory[f"exact_{largest}"]))
+    columns = ["series", "position", "value"]
+    return pd.DataFrame(rows, columns=columns).assign(role="steady").dropna()
+
+
 def draw(table: pd.DataFrame) -> Figure:
     """Draw pre-stress and map, both fields at the end with exact steady pulses, and the numbers."""
-    roles, none = by_role(table), table.iloc[:0]
-    numbers, steady = roles.get("number", none), roles.get("steady", none)
-    rows = math.ceil(len(numbers) / 2)
-    figure = Figure(figsize=(PAGE_WIDTH, 4.9 + 0.16 * rows), layout="constrained")
-    heights = (3.1, 1.6, 0.2 + 0.16 * rows)
+    roles, empty = by_role(table), table.iloc[:0]
+    numbers, steady = roles.get("number", empty), roles.get("steady", empty)
+    # Numbers are written in two columns.
+    line_count = math.ceil(len(numbers) / 2)
+    figure = Figure(figsize=(PAGE_WIDTH, 4.9 + 0.16 * line_count), layout="constrained")
+    heights = (3.1, 1.6, 0.2 + 0.16 * line_count)
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
-    profile, axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
-    space_time.draw_profile(profile, roles)
-    space_time.draw_map(axes, roles)
-    axes.legend(loc="upper left")
-    panel_letter(profile, "a")
+    profile_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
+    space_time.draw_profile(profile_axes, roles)
+    space_time.draw_map(map_axes, roles)
+    map_axes.legend(loc="upper left")
+    panel_letter(profile_axes, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
     upper.suptitle(f"{title}\n{space_time.run_title(roles)}")
-    panels = zip(lower.subplots(1, 2), "bc", FIELDS.items(), strict=True)
-    for axes, letter, (field, name) in panels:
-        ends = roles["profile"][roles["profile"]["series"] == field]
-        axes.axhline(0.0, color=GREY, linewidth=0.5)
-        axes.plot(ends["position"], ends["value"], color=BLUE, label="simulated")
-        look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
-        for pulse in steady[steady["series"] == field].itertuples():
-            axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
-        # The velocity is 0 in the middle, where the legend fits. Its entries hold for both panels.
-        if len(axes.lines) > 2 and field == "slip_velocity":
-            axes.legend(handles=axes.lines[1:3], loc="center")
-        axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
-        # A label with a unit needs a second line, since the panel is low.
-        end = "\nat the end" if "unit" in roles else " at the end"
-        axes.set_ylabel(with_unit(name, roles, field) + end)
-        axes.set_xlim(ends["position"].min(), ends["position"].max())
+    for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
+        draw_field(axes, roles, field, steady[steady["series"] == field])
         panel_letter(axes, letter)
+    write_numbers(text, numbers, line_count)
+    return figure
+
+
+def draw_field(
+    axes: Axes, roles: dict[str, pd.DataFrame], field: str, steady: pd.DataFrame
+) -> None:
+    """Draw a field at the end, and dashed lines at its largest value in steady pulses."""
+    rows = roles["profile"][roles["profile"]["series"] == field]
+    axes.axhline(0.0, color=GREY, linewidth=0.5)
+    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
+    look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
+    for pulse in steady.itertuples():
+        axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
+    # The velocity is 0 in the middle, where the legend fits. Its entries hold for both panels.
+    if len(axes.lines) > 2 and field == "slip_velocity":
+        axes.legend(handles=axes.lines[1:3], loc="center")
+    axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
+    # A label with a unit needs a second line, since the panel is low.
+    separator = "\n" if "unit" in roles else " "
+    axes.set_ylabel(with_unit(FIELDS[field], roles, field) + separator + "at the end")
+    axes.set_xlim(rows["position"].min(), rows["position"].max())
+
+
+def write_numbers(figure: SubFigure, numbers: pd.DataFrame, line_count: int) -> None:
+    """Write the numbers beside theory, in two columns with this number of lines."""
     for index, row in enumerate(numbers.itertuples()):
         measured = f"{with_uncertainty(row.value, row.uncertainty)} {_unit(row)}".strip()
-        line = f"{with_symbols(row.label)}: {measured}"
+        text = f"{with_symbols(row.label)}: {measured}"
         if math.isfinite(row.theory):
-            line += f" (theory {number(row.theory, MAX_DIGITS)})"
-        height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
-        text.text(0.06 + 0.48 * (index % 2), height, line, va="center")
-    return figure
+            text += f" (theory {number(row.theory, MAX_DIGITS)})"
+        line, column = divmod(index, 2)
+        height = 1.0 - (line + 0.6) / (line_count + 0.4)
+        figure.text(0.06 + 0.48 * column, height, text, va="center")
 
 
 def _unit(row: Any) -> str:

@@ -1,7 +1,8 @@
-"""Error against stencil passes for every scheme and order; fronts locked on the step."""
+"""Errors by stencil passes for every scheme and order, and fronts that lock onto the step."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting.style import (
@@ -19,7 +20,7 @@ NEEDS = {"studies": ["accuracy_cost"]}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the errors with the number of stencil passes, and the speeds by the step."""
+    """Return the part locking of the study, and the errors that are drawn (part trade)."""
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
     errors = error_rows(trade, "work", lambda quantity: "work").assign(part="trade")
@@ -29,26 +30,34 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw four errors against the work, and the speed of the front against the step."""
-    figure, (*trades, speeds) = new_panels(PAGE_WIDTH, 5.0, "aabbcc;dddeee")
+    """Draw four errors as functions of work, and the front speed as a function of the step."""
+    figure, (*error_panels, speed_axes) = new_panels(PAGE_WIDTH, 5.0, "aabbcc;dddeee")
     errors = table[table["part"] == "trade"]
-    draw_errors(trades, errors, "work", "stencil passes over a block")
-    # On dx/(n dt) fronts lock.
-    rows = table[table["part"] == "locking"]
-    fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
+    draw_errors(error_panels, errors, "work", "stencil passes over a block")
+    draw_locking(speed_axes, table[table["part"] == "locking"])
+    legend_above(figure, error_panels[0])
+    return figure
+
+
+def draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the front speed as a function of the step, for both schemes.
+
+    Under the textbook scheme fronts lock onto the speeds dx/(n dt) with a whole number n, which are
+    drawn as grey lines.
+    """
+    fixed, localised = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
+    # One row for each step dt/dx, and one column for each n.
     locked = 1.0 / np.outer(steps, np.arange(1, 12))
-    shown = np.where((locked > low) & (locked < high), locked, np.nan)
-    lines = speeds.plot(steps, shown, color="0.75", linewidth=0.8)
+    is_shown = (locked > low) & (locked < high)
+    lines = axes.plot(steps, np.where(is_shown, locked, np.nan), color="0.75", linewidth=0.8)
     lines[0].set_label(r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$")
-    speeds.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
-    speeds.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
+    axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
+    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
     look = OPEN_MARKER | {"color": BLUE, "label": "localised scheme"}
-    speeds.plot(local["step"], local["front_speed"], "o", **look)
+    axes.plot(localised["step"], localised["front_speed"], "o", **look)
     # The legend stands above the marks.
-    speeds.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
-    speeds.set(ylabel="front speed", title=r"$\Gamma = 0$")
-    speeds.legend(loc="upper center", ncols=2)
-    legend_above(figure, trades[0])
-    return figure
+    axes.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
+    axes.set(ylabel="front speed", title=r"$\Gamma = 0$")
+    axes.legend(loc="upper center", ncols=2)

@@ -5,7 +5,9 @@ In the continuum the front approaches its final position for ever.
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from slippulse.data.point import point
 from slippulse.measurement.front_paths import front_path
@@ -28,23 +30,28 @@ SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the path of each left front (roles path, exact_path) and arrest times (run)."""
+    """Return the path of each left front (roles path, exact_path) and arrest times (run).
+
+    Times and distances are in units of |x_minus|, which is also the paper's estimate of the
+    transition time.
+    """
     runs = tables["arrest"]
-    # Times are in units of |x_minus|, the paper's estimate of the transition time.
     scale = runs["paper_transition_time"]
-    numbers = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
+    times = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
         last_release=runs["last_release_time"] / scale,
         fraction=settings["measure"]["fraction"],
         fraction_time=runs["transition_time"] / scale,
         exact_fraction_time=runs["exact_transition_time"] / scale,
     )
-    parts = [numbers, tables["arrest_path"].assign(role="exact_path")]
+    parts = [times, tables["arrest_path"].assign(role="exact_path")]
+    # The path of the finest lattice of each damping ratio is drawn.
     for ratio, index in runs.groupby("damping_ratio")["dx"].idxmin().items():
         time, distance = front_path(point(data["arrest"], int(index)), "left")
         kept = np.unique(np.linspace(0, time.size - 1, PATH_POINTS).astype(int))
-        lines = {"time": time[kept] / scale[index], "to_go": 1.0 - distance[kept] / scale[index]}
-        parts.append(pd.DataFrame(lines).assign(role="path", damping_ratio=ratio))
+        relative_time, relative_distance = time / scale[index], distance / scale[index]
+        path = {"time": relative_time[kept], "to_go": 1.0 - relative_distance[kept]}
+        parts.append(pd.DataFrame(path).assign(role="path", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -54,23 +61,15 @@ def draw(table: pd.DataFrame) -> Figure:
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The colour scale is logarithmic and has no colour for 0.
-        look: Look = {"color": style.colour("damping_ratio", ratio) if ratio else ORANGE}
-        simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
-        exact = exact[exact["time"] <= longest]
-        path_axes.plot(simulated["time"], simulated["to_go"], **SIMULATION_LOOK | look)
-        path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
-        last, label = simulated.iloc[-1], f"$b$ = {ratio:g}"
-        path_axes.plot(last["time"], last["to_go"], marker, label=label, **look)
-        runs = rows[rows["role"] == "run"].sort_values("dx")
-        spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
-        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN_MARKER | look)
-        spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
-    looks = {"simulation": SIMULATION_LOOK, "exact": {"linewidth": 0.9}}
-    looks["last release (does not converge)"] = {"marker": "o"}
-    fraction_label = f"{100.0 * table['fraction'].max():g} % of the way (converges)"
-    looks |= {fraction_label: {"marker": "o"} | OPEN_MARKER, "the same, exact": {"marker": "<"}}
-    handles = [entry(label, color=GREY, **look) for label, look in looks.items()]
-    style.legend_below(figure, [*style.labelled([path_axes]), *handles], 5)
+        colour = style.colour("damping_ratio", ratio) if ratio > 0.0 else ORANGE
+        look: Look = {"color": colour}
+        roles = style.by_role(rows)
+        draw_path(path_axes, roles["path"], roles["exact_path"], longest, look)
+        last = roles["path"].iloc[-1]
+        path_axes.plot(last["time"], last["to_go"], marker, label=f"$b$ = {ratio:g}", **look)
+        draw_times(spacing_axes, roles["run"].sort_values("dx"), marker, look)
+    fraction = table["fraction"].max()
+    style.legend_below(figure, [*style.labelled([path_axes]), *legend_entries(fraction)], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     levels = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
     scene = style.conditions(False, **levels)
@@ -78,3 +77,31 @@ def draw(table: pd.DataFrame) -> Figure:
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure
+
+
+def draw_path(
+    axes: Axes, simulated: pd.DataFrame, exact: pd.DataFrame, longest: float, look: Look
+) -> None:
+    """Draw the remaining distance of one left front, the exact one up to the time ``longest``."""
+    exact = exact[exact["time"] <= longest]
+    axes.plot(simulated["time"], simulated["to_go"], **SIMULATION_LOOK | look)
+    axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
+
+
+def draw_times(axes: Axes, runs: pd.DataFrame, marker: str, look: Look) -> None:
+    """Draw the times of both arrests as functions of spacing, and the exact time on the left."""
+    axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
+    axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN_MARKER | look)
+    axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
+
+
+def legend_entries(fraction: float) -> list[Line2D]:
+    """Return the entries of the legend for lines and markers of all damping ratios."""
+    looks: dict[str, Look] = {
+        "simulation": SIMULATION_LOOK,
+        "exact": {"linewidth": 0.9},
+        "last release (does not converge)": {"marker": "o"},
+        f"{100.0 * fraction:g} % of the way (converges)": {"marker": "o"} | OPEN_MARKER,
+        "the same, exact": {"marker": "<"},
+    }
+    return [entry(label, color=GREY, **look) for label, look in looks.items()]

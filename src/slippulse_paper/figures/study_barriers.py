@@ -1,9 +1,16 @@
-"""The depth to which a steady pulse enters negative pre-stress: exact, on lattices, estimated."""
+"""The depth to which a steady pulse enters negative pre-stress: exact, on lattices, estimated.
+
+The pulse comes from the level tau_0 > 0 and enters the barrier tau_b < 0. Exact depths scale with
+gamma as gamma^(-1/2), so they are shown at one gamma.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from scipy.interpolate import barycentric_interpolate
 
@@ -38,9 +45,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
         fine = _interpolated(rows, levels, 1.0, {"exact": 0.5})
-        curve = _interpolated(
-            rows, np.array(CURVE_LEVELS), CURVE_GAMMA, {"exact": 0.5, "paper": 1.0}
-        )
+        powers = {"exact": 0.5, "paper": 1.0}
+        curve = _interpolated(rows, np.array(CURVE_LEVELS), CURVE_GAMMA, powers)
         parts.append(fine.assign(part="fine", damping_ratio=ratio))
         parts.append(curve.assign(part="curve", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
@@ -51,63 +57,93 @@ def _interpolated(
 ) -> pd.DataFrame:
     """Interpolate depths at some levels and evenly spaced barriers.
 
+    rows : depths at gamma = 1
+    levels, gamma : levels before the barrier, and the gamma to which depths are scaled
     powers : for each column of depths, the power of 1/gamma with which it scales
     """
     # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
-    tau0, log_barrier = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
-    y = np.linspace(log_barrier[0], log_barrier[-1], MAP_POINTS)
-    pairs = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"])
+    known_levels = np.sort(rows["tau0"].unique())
+    known_log_barriers = np.sort(np.log(-rows["barrier"].unique()))
+    log_barriers = np.linspace(known_log_barriers[0], known_log_barriers[-1], MAP_POINTS)
+    pairs = pd.MultiIndex.from_product([levels, -np.exp(log_barriers)], names=["tau0", "barrier"])
     columns = pairs.to_frame(index=False)
     for name, power in powers.items():
-        depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
-        log_depths = barycentric_interpolate(tau0, np.log(depths), levels)
-        depth = np.exp(barycentric_interpolate(log_barrier, log_depths, y, axis=1))
-        columns[name] = depth.ravel() / gamma**power
+        # One row for each level and one column for each barrier. The columns are reversed, because
+        # |tau_b| falls where tau_b rises.
+        known_depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+        at_levels = barycentric_interpolate(known_levels, np.log(known_depths), levels)
+        log_depths = barycentric_interpolate(known_log_barriers, at_levels, log_barriers, axis=1)
+        columns[name] = np.exp(log_depths).ravel() / gamma**power
     return columns.assign(gamma=gamma)
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above, and below them curves and convergence."""
-    figure, (*maps, curve_axes, convergence) = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
+    figure, (*map_panels, curve_axes, convergence_axes) = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
-    ends = fine["exact"].min(), fine["exact"].max()
     ratios = np.sort(runs["damping_ratio"].unique())
-    # Only the light part of the colour map is used, so that dark lines are visible.
-    shades: Look = {"norm": LogNorm(ends[0], 3.0 * ends[1]), "cmap": "GnBu"}
-    filled = shades | {"levels": np.geomspace(*ends, COLOUR_BANDS), "extend": "both"}
-    for axes, ratio in zip(maps, ratios, strict=True):
-        drawn, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        grid = drawn.pivot(index="barrier", columns="tau0", values="exact").sort_index()
-        image = axes.contourf(grid.columns, -grid.index, grid, **filled)
-        look: Look = {"levels": CONTOUR_DEPTHS, "colors": BLACK, "linewidths": 0.5}
-        lines = axes.contour(grid.columns, -grid.index, grid, **look)
-        axes.clabel(lines, fmt="%g", fontsize=SMALL_TEXT, zorder=2.5)
-        for marker, (gamma, group) in zip(MARKERS, marked.groupby("gamma"), strict=False):
-            depth = group["measured"] * np.sqrt(gamma)
-            look = {"c": depth, "edgecolors": BLACK, "s": 26.0, "linewidths": 0.9} | shades
-            axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
-        axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$")
-        axes.set(ylabel=r"barrier $-\tau_\text{b}$", title=conditions(True, damping_ratio=ratio))
-        few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
-    bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
+    depths = Depths(fine["exact"].min(), fine["exact"].max())
+    for axes, ratio in zip(map_panels, ratios, strict=True):
+        of_ratio, runs_of_ratio = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
+        image = _draw_map(axes, of_ratio, runs_of_ratio, depths)
+        axes.set_title(conditions(True, damping_ratio=ratio))
+    bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOUR_DEPTHS)
-    largest = ratios[-1]
-    curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest)]
-    _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
-    curve_axes.set_title(conditions(True, damping_ratio=largest))
+    largest_ratio = ratios[-1]
+    curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest_ratio)]
+    _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest_ratio])
+    curve_axes.set_title(conditions(True, damping_ratio=largest_ratio))
+    _draw_convergence(convergence_axes, runs)
+    return figure
+
+
+class Depths(NamedTuple):
+    """The smallest and the largest depth in both maps."""
+
+    smallest: float
+    largest: float
+
+
+def _draw_map(axes: Axes, fine: pd.DataFrame, runs: pd.DataFrame, depths: Depths) -> QuadContourSet:
+    """Draw exact depths by both levels in colour and as contours, and lattice runs as markers.
+
+    A marker has the colour of its depth, and a shape for each gamma. Return the coloured map.
+    """
+    # Only the light part of the colour map is used, so that dark lines are visible.
+    norm = LogNorm(depths.smallest, 3.0 * depths.largest)
+    shades: Look = {"norm": norm, "cmap": "GnBu"}
+    bands = np.geomspace(depths.smallest, depths.largest, COLOUR_BANDS)
+    # One row for each barrier and one column for each level before it.
+    grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
+    image = axes.contourf(grid.columns, -grid.index, grid, levels=bands, extend="both", **shades)
+    look: Look = {"levels": CONTOUR_DEPTHS, "colors": BLACK, "linewidths": 0.5}
+    lines = axes.contour(grid.columns, -grid.index, grid, **look)
+    axes.clabel(lines, fmt="%g", fontsize=SMALL_TEXT, zorder=2.5)
+    for marker, (gamma, group) in zip(MARKERS, runs.groupby("gamma"), strict=False):
+        depth = group["measured"] * np.sqrt(gamma)
+        look = {"c": depth, "edgecolors": BLACK, "s": 26.0, "linewidths": 0.9} | shades
+        axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
+    axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$")
+    axes.set_ylabel(r"barrier $-\tau_\text{b}$")
+    few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
+    return image
+
+
+def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
+    """Draw the depth on lattices divided by the exact depth, as a function of spacing."""
     for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
         look = OPEN_MARKER | {"color": style.colour("damping_ratio", ratio), "linewidth": 0.7}
         scenes = rows.sort_values("dx").groupby(["tau0", "barrier", "gamma"])
-        for _, line in scenes:
-            convergence.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
-        convergence.lines[-1].set_label(rf"$b = {ratio:g}$")
-    convergence.axhline(1.0, color=BLACK, linewidth=0.8)
-    convergence.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth")
-    convergence.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes a ratio")
-    convergence.legend(loc="upper left")
-    return figure
+        for _, scene in scenes:
+            axes.plot(scene["dx"], scene["measured"] / scene["exact"], line_style, **look)
+        # The last line of a damping ratio gets its entry in the legend.
+        axes.lines[-1].set_label(rf"$b = {ratio:g}$")
+    axes.axhline(1.0, color=BLACK, linewidth=0.8)
+    axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth")
+    axes.set(xlim=(0.0, None), title=rf"$\Gamma = 1$, {scenes.ngroups} scenes for each $b$")
+    axes.legend(loc="upper left")
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
@@ -117,14 +153,14 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         colour = style.colour("tau_0", tau0)
         axes.plot(-rows["barrier"], rows["exact"], color=colour, label=rf"$\tau_0 = {tau0:g}$")
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
-        for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
+        runs_of_level = finest[finest["tau0"] == tau0]
+        for gamma, runs in runs_of_level.groupby("gamma"):
             depth = runs["measured"] * np.sqrt(gamma / CURVE_GAMMA)
             axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN_MARKER)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
-        axes.plot(
-            [], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN_MARKER
-        )
+        label = rf"lattice, $\gamma = {gamma:g}$"
+        axes.plot([], [], marker, color="0.3", label=label, **OPEN_MARKER)
     axes.set(xscale="log", yscale="log", ylim=(0.25, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{CURVE_GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from slippulse.plotting import style
 from slippulse.plotting.space_time import draw_halves
@@ -30,44 +31,67 @@ QUANTITY_MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the map, (b) fronts and trailing edges, (c) slip, (d) the difference by spacing."""
-    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(
-        PAGE_WIDTH, 5.4, "ab;cd"
-    )
-    rows = table[table["scene"] == next(iter(SCENE_COLOURS))]
-    draw_halves(map_axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
-    exact = rows[rows["role"] == "exact"]
-    for quantity, dashes in (("release", "-"), ("stick", "--")):
-        map_axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
-    for height, half in ((0.05, "exact"), (0.91, "lattice")):
-        map_axes.text(0.03, height, half, transform=map_axes.transAxes)
-    map_axes.set_xlim(0.0, None)
-    look: Look = {"markersize": 2.2} | OPEN_MARKER
+    figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
+    map_axes, edge_axes, slip_axes, difference_axes = panels
+    mapped_scene = next(iter(SCENE_COLOURS))
+    _draw_map(map_axes, table[table["scene"] == mapped_scene])
     for scene, colour in SCENE_COLOURS.items():
         rows = table[table["scene"] == scene]
-        for role, front, trailing in (("exact", "-", "--"), ("lattice", "o", "s")):
-            line = rows[rows["role"] == role]
-            edge_axes.plot(line["release"], line["position"], front, color=colour, **look)
-            edge_axes.plot(line["stick"], line["position"], trailing, color=colour, **look)
-            slip_axes.plot(line["position"], line["slip"], front, color=colour, **look)
+        look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
+        # The exact solution is drawn in lines, and the lattice as markers.
+        for role, front_style, trailing_style in (("exact", "-", "--"), ("lattice", "o", "s")):
+            curve = rows[rows["role"] == role]
+            edge_axes.plot(curve["release"], curve["position"], front_style, **look)
+            edge_axes.plot(curve["stick"], curve["position"], trailing_style, **look)
+            slip_axes.plot(curve["position"], curve["slip"], front_style, **look)
     scenes = table[table["role"] == "scene"]
-    looks = {"-": "front, exact", "--": "trailing edge, exact"}
-    looks["o"] = rf"front, lattice, $\Delta x = {scenes['dx'].iloc[0]:g}$"
-    looks["s"] = "trailing edge, lattice"
-    for mark, label in looks.items():
-        edge_axes.plot([], [], mark, color=GREY, label=label, **OPEN_MARKER)
-    edge_axes.legend(loc="upper left", fontsize=SMALL_TEXT)
+    _add_edge_legend(edge_axes, dx=scenes["dx"].iloc[0])
     # Time is on the horizontal axis, as in every figure with fronts.
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
-    lines = []
-    for row in scenes.itertuples():
-        gamma = {"gamma": row.gamma} if row.gamma > 0.0 else {}
-        levels = ", ".join(dict.fromkeys([setting(row.left), setting(row.right)]))
-        name = rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {levels}"
-        lines.append(style.entry(name, color=SCENE_COLOURS[str(row.scene)]))
-    figure.legend(handles=lines, loc="outside upper center", ncols=3)
+    figure.legend(handles=_scene_entries(scenes), loc="outside upper center", ncols=3)
     _draw_differences(difference_axes, table[table["role"] == "difference"].sort_values("dx"))
     return figure
+
+
+def _draw_map(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw slip velocities by time and position, with the exact edges of the rupture.
+
+    The lower half is exact, and the upper half is from a lattice.
+    """
+    draw_halves(axes, rows[rows["role"].isin(["map_exact", "map_lattice"])], "role")
+    exact = rows[rows["role"] == "exact"]
+    for quantity, dashes in (("release", "-"), ("stick", "--")):
+        axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
+    for height, half in ((0.05, "exact"), (0.91, "lattice")):
+        axes.text(0.03, height, half, transform=axes.transAxes)
+    axes.set_xlim(0.0, None)
+
+
+def _add_edge_legend(axes: Axes, dx: float) -> None:
+    """Add a legend for fronts and trailing edges, exact and on lattices with the spacing dx."""
+    label_of_style = {
+        "-": "front, exact",
+        "--": "trailing edge, exact",
+        "o": rf"front, lattice, $\Delta x = {dx:g}$",
+        "s": "trailing edge, lattice",
+    }
+    for line_style, label in label_of_style.items():
+        axes.plot([], [], line_style, color=GREY, label=label, **OPEN_MARKER)
+    axes.legend(loc="upper left", fontsize=SMALL_TEXT)
+
+
+def _scene_entries(scenes: pd.DataFrame) -> list[Line2D]:
+    """Return one legend entry for each scene, with its boundary condition and its levels."""
+    entries = []
+    for scene in scenes.itertuples():
+        has_springs = scene.gamma > 0.0
+        parameters = {"gamma": scene.gamma} if has_springs else {}
+        # Equal levels are written once.
+        levels = ", ".join(dict.fromkeys([setting(scene.left), setting(scene.right)]))
+        label = rf"{style.conditions(has_springs, **parameters)}, $\tau_0$ = {levels}"
+        entries.append(style.entry(label, color=SCENE_COLOURS[str(scene.scene)]))
+    return entries
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:

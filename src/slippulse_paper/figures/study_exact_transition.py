@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
@@ -33,48 +34,72 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
         kept += [f"{source}_{quantity}" for quantity in QUANTITY_LOOKS]
-    roles = zip(NEEDS["measured"], ("sweep", "sweep", "refinement"), strict=True)
-    parts = [tables[name][kept].assign(role=role) for name, role in roles]
+    roles = {
+        "scaling_displacement": "sweep",
+        "scaling_stress": "sweep",
+        "transition_convergence": "refinement",
+    }
+    parts = [tables[name][kept].assign(role=role) for name, role in roles.items()]
     parts.append(tables["gaussian_transition"].assign(role="gaussian"))
     return pd.concat(parts, ignore_index=True)
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) error distributions, (c) refined lattices, (d) the exact transition time."""
-    figure, (*distributions, refined, gaussian) = style.new_panels(PAGE_WIDTH, 5.0, "ab;cd")
+    figure, panels = style.new_panels(PAGE_WIDTH, 5.0, "ab;cd")
+    time_axes, length_axes, refined_axes, gaussian_axes = panels
     roles = style.by_role(table)
-    sweep, runs = roles["sweep"], roles["refinement"]
-    for axes, quantity in zip(distributions, QUANTITY_LOOKS, strict=True):
-        for boundary, (colour, boundary_name) in BOUNDARY_LOOKS.items():
-            sound = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
-            for reference, (name, line) in REFERENCE_LOOKS.items():
-                predicted = sound[f"{reference}_transition_{quantity}"]
-                error = (sound[f"transition_{quantity}"] / predicted - 1.0).dropna().abs()
-                axes.ecdf(error, color=colour, linestyle=line, label=f"{boundary_name}, {name}")
-        symbol = scaling.QUANTITIES[quantity]
-        axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
-        axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs with a smaller error")
+    draw_distributions(time_axes, roles["sweep"], "time")
+    draw_distributions(length_axes, roles["sweep"], "length")
+    draw_refinement(refined_axes, roles["refinement"])
+    style.legend_above(figure, time_axes)
+    draw_exact_times(gaussian_axes, roles["gaussian"])
+    return figure
+
+
+def draw_distributions(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
+    """Draw the fraction of runs with an error below a value, for theory and paper's formula.
+
+    Flagged runs are left out.
+    """
+    for boundary, (colour, boundary_name) in BOUNDARY_LOOKS.items():
+        sound = runs[(runs["boundary"] == boundary) & runs["run_flags"].isna()]
+        for reference, (name, line) in REFERENCE_LOOKS.items():
+            predicted = sound[f"{reference}_transition_{quantity}"]
+            ratio = sound[f"transition_{quantity}"] / predicted
+            error = (ratio - 1.0).dropna().abs()
+            axes.ecdf(error, color=colour, linestyle=line, label=f"{boundary_name}, {name}")
+    symbol = scaling.QUANTITIES[quantity]
+    axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
+    axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs with a smaller error")
+
+
+def draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
+    """Draw the errors of all runs as functions of spacing, with a line through the largest ones."""
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITY_LOOKS.items():
-        error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
-        refined.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN_MARKER)
-        largest, label = error.groupby(spacing).max(), f"${scaling.QUANTITIES[quantity]}$, largest"
-        refined.plot(largest, marker=marker, color=colour, label=label)
-    style.draw_first_order(refined, spacing, 0.4, BLACK)
-    refined.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
-    refined.set_title(r"$\Gamma = 1$, refining")
-    style.few_ticks(refined.xaxis, np.unique(spacing))
-    refined.legend(loc="lower right")
-    style.legend_above(figure, distributions[0])
-    study = roles["gaussian"]
+        ratio = runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"]
+        error = np.abs(ratio - 1.0)
+        axes.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN_MARKER)
+        largest = error.groupby(spacing).max()
+        label = f"${scaling.QUANTITIES[quantity]}$, largest"
+        axes.plot(largest, marker=marker, color=colour, label=label)
+    style.draw_first_order(axes, spacing, 0.4, BLACK)
+    axes.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
+    axes.set_title(r"$\Gamma = 1$, refining")
+    style.few_ticks(axes.xaxis, np.unique(spacing))
+    axes.legend(loc="lower right")
+
+
+def draw_exact_times(axes: Axes, study: pd.DataFrame) -> None:
+    """Draw the exact transition time for nucleation at a point (uniform) and by a Gaussian."""
     uniform = study[study["gamma"].isna()]
-    gaussian.axhline(1.0, color=BLACK, linewidth=0.6)
-    gaussian.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")
+    axes.axhline(1.0, color=BLACK, linewidth=0.6)
+    axes.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")
     for gamma, rows in study.groupby("gamma"):
-        shade, label = style.colour("gamma", gamma), rf"$\gamma = {gamma:g}$"
-        gaussian.plot(rows["left"], rows["over_paper"], color=shade, label=label)
-    gaussian.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
+        colour, label = style.colour("gamma", gamma), rf"$\gamma = {gamma:g}$"
+        axes.plot(rows["left"], rows["over_paper"], color=colour, label=label)
+    axes.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
     title = r"$\Gamma = 1$, $b = 0$, exact"
-    gaussian.set(ylabel=r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$", title=title)
-    gaussian.legend(loc="upper right", ncols=2)
-    return figure
+    axes.set(ylabel=r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$", title=title)
+    axes.legend(loc="upper right", ncols=2)

@@ -1,6 +1,7 @@
 """Other friction laws: where pulses stick or creep, and the front speed at fixed damping."""
 
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
@@ -21,31 +22,39 @@ LEVEL_COLOURS = (SKY, BLUE)
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes of (a) bounded rate laws and (b, c) slip weakening, and (d) front speeds."""
-    figure, (*planes, speeds) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
+    figure, (*planes, speed_axes) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     roles = style.by_role(table)
-    runs, fronts = roles["plane"], roles["selection"]
+    runs = roles["plane"]
     for axes, (laws, (label, title)) in zip(planes, PANEL_LAWS.items(), strict=True):
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    for colour, (level, rows) in zip(LEVEL_COLOURS, fronts.groupby("level"), strict=True):
-        for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
-            resolution = points["d_c"] / dx
-            speeds.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            speeds.plot(resolution, points["speed"], marker, color=colour, **OPEN_MARKER)
-        speeds.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
-    for marker, dx in zip(MARKERS, sorted(fronts["dx"].unique()), strict=False):
-        speeds.plot(
-            [], [], marker, color=GREY, label=rf"lattice, $\Delta x = {dx:g}$", **OPEN_MARKER
-        )
-    speeds.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
-    speeds.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
-    style.few_ticks(speeds.xaxis, (1, 2, 4, 8))
-    speeds.set_title(rf"$1-u/d_c$, $\beta = {fronts['beta'].iloc[0]:g}$")
-    # The legend is below the fast fronts and to the left of the slow ones.
-    speeds.set_ylim(0.7, None)
-    speeds.legend(loc="lower left")
+    draw_speeds(speed_axes, roles["selection"])
     handles = style.labelled(planes)
     style.legend_below(figure, handles, len(handles))
     return figure
+
+
+def draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
+    """Draw front speeds under slip weakening as functions of d_c/dx, exact and on lattices.
+
+    A level of pre-stress has one colour, and a spacing one marker.
+    """
+    for colour, (level, of_level) in zip(LEVEL_COLOURS, runs.groupby("level"), strict=True):
+        for marker, (dx, points) in zip(MARKERS, of_level.groupby("dx"), strict=False):
+            resolution = points["d_c"] / dx
+            (line,) = axes.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
+            axes.plot(resolution, points["speed"], marker, color=colour, **OPEN_MARKER)
+        # The exact lines of a level look alike, and the last one gets the entry in the legend.
+        line.set_label(rf"exact, $\tau_0 = {level:g}$")
+    for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
+        label = rf"lattice, $\Delta x = {dx:g}$"
+        axes.plot([], [], marker, color=GREY, label=label, **OPEN_MARKER)
+    axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
+    axes.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
+    style.few_ticks(axes.xaxis, (1, 2, 4, 8))
+    axes.set_title(rf"$1-u/d_c$, $\beta = {runs['beta'].iloc[0]:g}$")
+    # The legend is below the fast fronts and to the left of the slow ones.
+    axes.set_ylim(0.7, None)
+    axes.legend(loc="lower left")

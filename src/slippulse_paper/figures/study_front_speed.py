@@ -1,4 +1,7 @@
-"""The front speed by pre-stress, beta/dx and leaf springs, and its limit on refined lattices."""
+"""The front speed as a function of pre-stress, damping, leaf springs and spacing.
+
+In all panels lines are the exact speeds of the study front_law, and markers are lattice runs.
+"""
 
 import numpy as np
 import pandas as pd
@@ -43,99 +46,148 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     The column sound is True if the theory should hold for a run.
     """
     lines = tables["front_law"].assign(role="theory")
-    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
-    springs = tables["front_speed_springs"]
-    rule = lines.loc[lines["panel"] == "springs", "release"].iloc[0]
-    springs = springs[springs["release"] == rule]
-    springs = springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2)
-    ratio = tables["continuum_fixed_ratio"]
-    ratio = ratio.assign(held="b", fixed=ratio["damping_ratio"])
-    betas = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
-    refined = pd.concat([ratio, betas.assign(held="beta", fixed=betas["beta"])])
-    # The study has lines for only some of the refined scenes.
-    drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
-    refined = refined.merge(drawn.drop_duplicates()).assign(panel="refined")
-    runs = pd.concat([uniform.assign(panel="prestress"), springs, refined])
-    wide = (runs["pulse_state"] == "steady") & (
-        runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
+    runs = pd.concat(
+        [uniform_runs(tables), spring_runs(tables, lines), refined_runs(tables, lines)]
     )
+    is_steady = runs["pulse_state"] == "steady"
+    is_wide = runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
+    has_no_springs = runs["panel"] == "prestress"
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
-    runs = runs[COLUMNS].assign(
+    rows = runs[COLUMNS].assign(
         role="simulation",
         speed=runs["front_speed_right"],
         # For refined lattices, the lines already contain the theory.
         theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
-        sound=runs["run_flags"].isna() & (wide | (runs["panel"] == "prestress")),
+        sound=runs["run_flags"].isna() & ((is_steady & is_wide) | has_no_springs),
     )
-    return pd.concat([runs, lines], ignore_index=True)
+    return pd.concat([rows, lines], ignore_index=True)
+
+
+def uniform_runs(tables: dict) -> pd.DataFrame:
+    """Return the runs without leaf springs, for both release rules."""
+    runs = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
+    return runs.assign(panel="prestress")
+
+
+def spring_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs with leaf springs under the release rule of the lines."""
+    runs = tables["front_speed_springs"]
+    release = lines.loc[lines["panel"] == "springs", "release"].iloc[0]
+    runs = runs[runs["release"] == release]
+    return runs.assign(panel="springs", springs=runs["gamma"] * runs["dx"] ** 2)
+
+
+def refined_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs on refined lattices that belong to a line.
+
+    Along a line either beta or b = beta/dx is fixed: the column held says which of them, and the
+    column fixed has its value.
+    """
+    at_fixed_ratio = tables["continuum_fixed_ratio"]
+    at_fixed_ratio = at_fixed_ratio.assign(held="b", fixed=at_fixed_ratio["damping_ratio"])
+    at_fixed_beta = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
+    at_fixed_beta = at_fixed_beta.assign(held="beta", fixed=at_fixed_beta["beta"])
+    runs = pd.concat([at_fixed_ratio, at_fixed_beta])
+    columns = ["release", "left", "gamma", "held", "fixed"]
+    with_a_line = lines.loc[lines["panel"] == "refined", columns].drop_duplicates()
+    return runs.merge(with_a_line).assign(panel="refined")
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules, (c) leaf springs and (d) refined lattices."""
-    figure, grid = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
-    panels = {str(panel): rows for panel, rows in table.groupby("panel")}
-    uniform = panels["prestress"]
-    uniform = uniform.assign(scaled_speed=uniform["speed"] * np.sqrt(1.0 - uniform["left"] ** 2))
-    for axes, rule in zip(grid, RELEASE_RULES, strict=False):
-        rows = uniform[uniform["release"] == rule]
-        for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
-            line = group[group["role"] == "theory"]
-            look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
-            axes.plot(line["left"], line["scaled_speed"], **look)
-            _points(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
-        axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
+    figure, panels = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
+    total_axes, elastic_axes, spring_axes, refined_axes = panels
+    rows_of = {str(panel): rows for panel, rows in table.groupby("panel")}
+    for axes, rule in zip((total_axes, elastic_axes), RELEASE_RULES, strict=True):
+        rows = rows_of["prestress"]
+        _draw_uniform(axes, rows[rows["release"] == rule])
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress")
-    grid[0].set(yscale="log", ylim=(0.93, 30.0))
-    few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
-    grid[1].set_ylim(0.98, 1.45)
-    left, label = np.linspace(0.0, 1.0, 101), r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
-    limit = grid[1].plot(left, np.sqrt(1.0 + left), ":", color=BLACK, label=label)
-    grid[1].legend(handles=limit, loc="upper left")
-    springs, rows = grid[2], panels["springs"]
-    looks = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
-    for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
-        line = group[group["role"] == "theory"].sort_values("springs")
-        dashes, marker = looks[level]
-        springs.plot(line["springs"], line["speed"], dashes, color=colour("damping_ratio", ratio))
-        last = line[line["speed"].notna() & line["speed"].isna().shift(-1, fill_value=False)]
-        springs.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
-        _points(springs, group, "springs", "speed", marker)
-    for level, (dashes, marker) in looks.items():
-        springs.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
-    springs.plot([], [], "x", color=GREY, label="no front beyond")
-    springs.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN_MARKER)
-    springs.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
-    springs.set(ylabel="front speed $v$", title=r"$\Gamma = 1$, release by total stress")
-    few_ticks(springs.yaxis, (1, 1.5, 2, 3, 4, 5))
-    springs.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
-    _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
-    style.legend_above(figure, grid[0], title="damping ratio $b$")
+    total_axes.set(yscale="log", ylim=(0.93, 30.0))
+    few_ticks(total_axes.yaxis, (1, 2, 5, 10, 20))
+    elastic_axes.set_ylim(0.98, 1.45)
+    _draw_strong_damping(elastic_axes)
+    _draw_springs(spring_axes, rows_of["springs"])
+    _draw_refined(refined_axes, rows_of["refined"], float(rows_of["limit"]["speed"].max()))
+    style.legend_above(figure, total_axes, title="damping ratio $b$")
     return figure
 
 
+def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the speed divided by that without damping, as a function of pre-stress."""
+    # The undamped speed is 1/sqrt(1 - tau_0^2).
+    rows = rows.assign(scaled_speed=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
+    for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
+        line = group[group["role"] == "theory"]
+        look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
+        axes.plot(line["left"], line["scaled_speed"], **look)
+        _points(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
+    axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
+
+
+def _draw_strong_damping(axes: Axes) -> None:
+    """Draw the limit b -> infinity under the elastic rule, where v = 1/sqrt(1 - tau_0)."""
+    tau0 = np.linspace(0.0, 1.0, 101)
+    label = r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
+    # This is v sqrt(1 - tau_0^2).
+    scaled_speed = np.sqrt(1.0 + tau0)
+    limit = axes.plot(tau0, scaled_speed, ":", color=BLACK, label=label)
+    axes.legend(handles=limit, loc="upper left")
+
+
+def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the speed as a function of gamma dx^2; a cross marks where a line ends."""
+    look_of_level = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
+    for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
+        line = group[group["role"] == "theory"].sort_values("springs")
+        dashes, marker = look_of_level[level]
+        shade = colour("damping_ratio", ratio)
+        axes.plot(line["springs"], line["speed"], dashes, color=shade)
+        # The theory has no speed where no front is faster than the waves.
+        has_speed = line["speed"].notna()
+        next_has_none = line["speed"].isna().shift(-1, fill_value=False)
+        last = line[has_speed & next_has_none]
+        axes.plot(last["springs"], last["speed"], "x", color=shade)
+        _points(axes, group, "springs", "speed", marker)
+    for level, (dashes, marker) in look_of_level.items():
+        axes.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
+    axes.plot([], [], "x", color=GREY, label="no front beyond")
+    axes.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN_MARKER)
+    axes.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
+    axes.set(ylabel="front speed $v$", title=r"$\Gamma = 1$, release by total stress")
+    few_ticks(axes.yaxis, (1, 1.5, 2, 3, 4, 5))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
+
+
 def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
-    """Draw front speeds on refined lattices, with both limits as horizontal lines."""
-    names = {"b": "b", "beta": r"\beta"}
+    """Draw front speeds on refined lattices, with both limits as horizontal lines.
+
+    limit : the exact speed in the limit dx -> 0 at fixed beta, under the elastic rule
+    """
+    symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])
     for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
         line = group[group["role"] == "theory"].sort_values("dx")
-        name = rf"fixed ${names[held]} = {fixed:g}$, {rule}"
+        label = rf"fixed ${symbols[held]} = {fixed:g}$, {rule}"
         look: Look = {"color": GREY, "linewidth": 0.8}
         axes.plot(line["dx"], line["speed"], **look)
         _points(axes, group, "dx", "speed", marker)
-        axes.plot([], [], marker=marker, label=name, **look)
+        axes.plot([], [], marker=marker, label=label, **look)
     undamped = rows["undamped"].max()
-    limits = (limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")
-    for value, dashes, name, side in limits:
-        axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=dashes)
-        look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side}
-        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=TEXT_OUTLINE, **look)
+    _mark_speed(axes, limit, r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
+    _mark_speed(axes, undamped, r"$1/\sqrt{1-\tau_0^2}$", "--", "top")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     title = rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$"
     axes.set(ylim=(0.88 * undamped, None), title=title)
     axes.legend(loc="upper right")
+
+
+def _mark_speed(axes: Axes, speed: float, label: str, dashes: str, side: str) -> None:
+    """Draw a horizontal line at a speed, with a label on its "top" or "bottom" side."""
+    axes.axhline(speed, color=BLACK, linewidth=0.8, linestyle=dashes)
+    look: Look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side}
+    axes.text(0.99, speed, label, path_effects=TEXT_OUTLINE, **look)
 
 
 def _points(
@@ -144,8 +196,11 @@ def _points(
     """Mark simulated speeds in the colour of their damping ratio.
 
     Markers are open if the theory should not hold.
+
+    x, y : columns on the axes
     """
     runs = rows[rows["role"] == "simulation"]
-    for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
-        look: Look = {"label": label} if sound else OPEN_MARKER
+    groups = runs.groupby(["damping_ratio", runs["sound"].astype(bool)])
+    for (ratio, is_sound), group in groups:
+        look: Look = {"label": label} if is_sound else OPEN_MARKER
         axes.plot(group[x], group[y], marker, color=colour("damping_ratio", ratio), **look)

@@ -1,4 +1,9 @@
-"""Pulses of the layer in the plane: what sets speed, width and slip, and which are stable."""
+"""Pulses of the layer in the plane: what sets speed, width and slip, and which are stable.
+
+The fracture energy is always divided by the energy G_0 that the layer releases. The width of a
+pulse is compared with sqrt(2/gamma - 1), which is the distance that a front at the speed of the
+longitudinal wave runs while a shear wave crosses the layer.
+"""
 
 import numpy as np
 import pandas as pd
@@ -22,11 +27,12 @@ from slippulse.plotting.style import (
 NEEDS = {"studies": ["layer", "layer_map"]}
 
 QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
-CASE = ["gamma", "tau0", "fracture_energy"]
-PAPER = [f"paper_{quantity}" for quantity in QUANTITIES]
+# Parameters that distinguish the pulses.
+PULSE_COLUMNS = ["gamma", "tau0", "fracture_energy"]
+FORMULA_COLUMNS = [f"paper_{quantity}" for quantity in QUANTITIES]
 MARKERS = ("o", "^", "s", "D")
-# Colours end at this fraction of the largest velocity, which is that of the tip alone.
-BRIGHT = 0.6
+# Colours end at this fraction of the largest velocity, which only the tip of the pulse has.
+BRIGHTEST_FRACTION = 0.6
 OUTCOMES: dict[str, Look] = {
     "steady": {"marker": "o", "color": GREEN, "label": "steady"},
     "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"}
@@ -38,21 +44,39 @@ OUTCOMES: dict[str, Look] = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts field, pulse (finest grid, with its change from the grid before), step, and map."""
+    """Return the parts field, pulse, step and map.
+
+    A row of the part pulse is a pulse on its finest grid, at the last station. The columns
+    change_of_QUANTITY have the absolute change from the second finest grid.
+    """
     study = tables["layer"]
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
-    pulses = study[study["part"] == "pulse"].sort_values("cells")
-    # The level at which most fracture energies have been run.
-    pulses = pulses[pulses["tau0"] == pulses["tau0"].mode().iloc[0]]
-    pulses = pulses[pulses["station"] == pulses["station"].max()].groupby(CASE)
-    finest, before = (pulses.nth(-1 - step).set_index(CASE) for step in (0, 1))
-    changes = (finest[QUANTITIES] - before[QUANTITIES]).abs().add_prefix("change_of_")
-    drawn = finest[[*QUANTITIES, "cells", *PAPER]].join(changes).reset_index()
     steps = study[study["part"] == "step"]
     steps = steps[steps["cells"] == steps["cells"].max()]
     steps = steps[["part", "gamma", "tau0", "before", "sample_position", "pulse_slip"]]
     points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")
-    return pd.concat([field, drawn.assign(part="pulse"), steps, points], ignore_index=True)
+    pulses = drawn_pulses(study[study["part"] == "pulse"])
+    return pd.concat([field, pulses.assign(part="pulse"), steps, points], ignore_index=True)
+
+
+def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the pulses at one level of pre-stress, with their change from a coarser grid.
+
+    A station is a position on the fault at which a pulse is measured. The last one counts.
+
+    rows : rows of the part pulse of the study, for all levels, grids and stations
+    """
+    rows = rows.sort_values("cells")
+    # The level at which most fracture energies have been run.
+    level = rows["tau0"].mode().iloc[0]
+    rows = rows[rows["tau0"] == level]
+    at_last_station = rows[rows["station"] == rows["station"].max()]
+    # The rows of a pulse are in the order of their grids, the finest last.
+    by_pulse = at_last_station.groupby(PULSE_COLUMNS)
+    finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS)
+    second_finest = by_pulse.nth(-2).set_index(PULSE_COLUMNS)
+    changes = (finest[QUANTITIES] - second_finest[QUANTITIES]).abs().add_prefix("change_of_")
+    return finest[[*QUANTITIES, "cells", *FORMULA_COLUMNS]].join(changes).reset_index()
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -67,50 +91,67 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
+def _crossing_width(gamma: float | pd.Series) -> float | pd.Series:
+    """Return sqrt(2/gamma - 1), the width that pulses are compared with; gamma may be a Series."""
+    return np.sqrt(2.0 / gamma - 1.0)
+
+
 def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
-    """Draw the velocity over the layer, and the shear front from the top of the layer."""
+    """Draw the velocity in the layer, and the shear front that starts from its top at the tip."""
+    # One row for each height and one column for each position.
     grid = field.pivot(index="y", columns="x", values="velocity")
-    brightest = BRIGHT * float(grid.to_numpy().max())
+    brightest = BRIGHTEST_FRACTION * float(grid.to_numpy().max())
     look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
     image = axes.pcolormesh(grid.columns, grid.index, grid, rasterized=True, **look)
     bar = figure.colorbar(image, ax=axes, aspect=6, pad=0.01, extend="max")
     bar.set_label(r"$\dot u_x$")
     axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
-    time, tau0, gamma, energy = field[["time", "tau0", "gamma", "fracture_energy"]].iloc[0]
-    title = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
-    axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {energy:.2g}$")
-    # The tip moves at the speed of the longitudinal wave, almost.
-    tip = grid.columns[np.flatnonzero(grid.to_numpy()[0] > 0.0)[-1]]
-    axes.plot([tip, tip - np.sqrt(2.0 / gamma - 1.0)], [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
+    first = field.iloc[0]
+    gamma = first["gamma"]
+    title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
+    axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
+    # The tip is the foremost point of the fault that moves. It runs almost at the speed of the
+    # longitudinal wave.
+    velocity_on_fault = grid.to_numpy()[0]
+    tip = grid.columns[np.flatnonzero(velocity_on_fault > 0.0)[-1]]
+    shear_front = [tip, tip - _crossing_width(gamma)]
+    axes.plot(shear_front, [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
 
 
 def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
-    """Draw speed, width and slip over the fracture energy, with the formulas of the paper."""
+    """Draw speed, width and slip as functions of the fracture energy, with the paper's formulas."""
+    speed_axes, width_axes, slip_axes = panels
     for marker, (gamma, rows) in zip(MARKERS, pulses.groupby("gamma"), strict=False):
-        rows, colour = rows.sort_values("fracture_energy"), style.colour("gamma", gamma)
-        crossing = np.sqrt(2.0 / gamma - 1.0)
-        scales = 1.0, crossing, rows["paper_pulse_slip"]
-        for axes, quantity, scale in zip(panels, QUANTITIES, scales, strict=True):
-            error = rows[f"change_of_{quantity}"] / scale
-            look: Look = {"color": colour, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
-            x, y = rows["fracture_energy"], rows[quantity] / scale
-            axes.errorbar(x, y, error, fmt=f"{marker}-", linewidth=0.8, **look)
-        line: Look = {"color": colour, "linewidth": 0.8}
-        panels[1].axhline(rows["paper_pulse_width"].iloc[0] / crossing, linestyle="--", **line)
+        rows = rows.sort_values("fracture_energy")
+        colour = style.colour("gamma", gamma)
+        look: Look = {"color": colour, "capsize": 1.5, "linewidth": 0.8}
+        look |= {"fmt": f"{marker}-", "label": rf"$\gamma = {gamma:.2g}$"}
+        crossing_width = _crossing_width(gamma)
+        # Each quantity is divided by a unit of its own.
+        units = {
+            "speed": 1.0,
+            "pulse_width": crossing_width,
+            "pulse_slip": rows["paper_pulse_slip"],
+        }
+        for axes, (quantity, unit) in zip(panels, units.items(), strict=True):
+            value, error = rows[quantity] / unit, rows[f"change_of_{quantity}"] / unit
+            axes.errorbar(rows["fracture_energy"], value, error, **look)
+        formula_width = rows["paper_pulse_width"].iloc[0] / crossing_width
+        width_axes.axhline(formula_width, linestyle="--", color=colour, linewidth=0.8)
     dashed: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": "--"}
-    panels[0].axhline(pulses["paper_speed"].iloc[0], **dashed)
-    panels[2].axhline(1.0, **dashed)
-    for axes in panels[:2]:
+    speed_axes.axhline(pulses["paper_speed"].iloc[0], **dashed)
+    slip_axes.axhline(1.0, **dashed)
+    for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
         axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", xlim=(0.0, 1.0))
         axes.set_ylim(0.0, None)
-    panels[0].set_ylabel(r"front speed $v$")
-    panels[1].set_ylabel(r"$W_\mathrm{p}/H\sqrt{2/\gamma-1}$")
-    panels[2].set_ylabel(r"slip / $(2\tau_0/\gamma)$")
-    handles = panels[0].get_legend_handles_labels()[0]
+    speed_axes.set_ylabel(r"front speed $v$")
+    width_axes.set_ylabel(r"$W_\mathrm{p}/H\sqrt{2/\gamma-1}$")
+    slip_axes.set_ylabel(r"slip / $(2\tau_0/\gamma)$")
+    handles, _ = speed_axes.get_legend_handles_labels()
     formula = entry("formula of the paper", **dashed)
-    panels[0].legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL_TEXT)
+    speed_axes.legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL_TEXT)
 
 
 def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
@@ -134,16 +175,14 @@ def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
-    """Mark what the pulses of each point do, over the fracture energy and the width they have."""
+    """Mark what the pulses of each point do, as a function of fracture energy and width."""
     for outcome, rows in points.groupby("outcome"):
-        width = np.sqrt(2.0 / rows["gamma"] - 1.0)
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
-        axes.plot(rows["fracture_energy"], width, **look)
+        axes.plot(rows["fracture_energy"], _crossing_width(rows["gamma"]), **look)
     axes.axvline(1.0, color=GREY, linewidth=0.6)
-    low, high = (np.sqrt(2.0 / points["gamma"].agg(end) - 1.0) for end in ("max", "min"))
-    axes.set(
-        yscale="log", xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylim=(0.7 * low, 1.9 * high)
-    )
-    axes.set(ylabel=r"width $\sqrt{2/\gamma-1}$", xlim=(0.0, None))
+    narrowest = _crossing_width(points["gamma"].max())
+    widest = _crossing_width(points["gamma"].min())
+    axes.set(yscale="log", ylim=(0.7 * narrowest, 1.9 * widest), xlim=(0.0, None))
+    axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylabel=r"width $\sqrt{2/\gamma-1}$")
     style.few_ticks(axes.yaxis, (1.0, 2.0, 5.0))
     axes.legend(loc="upper left", fontsize=SMALL_TEXT, ncols=2)

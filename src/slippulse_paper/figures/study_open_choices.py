@@ -1,6 +1,10 @@
-"""A specification curve: claims judged by numbers, for every choice that the paper leaves open."""
+"""A specification curve: claims judged by numbers, at every choice that the paper leaves open.
+
+Each claim is judged at all combinations of the open choices. The figure shows all the deviations.
+"""
 
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
@@ -45,12 +49,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     A claim without open choices has one row.
     """
-    rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
+    names = ["id", "label", "verdict", "tolerance", "choice"]
+    rows = []
     for claim in tables["claims"].to_dict("records"):
-        if claim["kind"] in NUMERIC_KINDS and claim["tolerance"]:
-            for choices in claim["choices"] or [{"deviation": claim["deviation"]}]:
-                judged = {name: claim[name] for name in names}
-                rows.append({"release": "", "solution": "lattice"} | choices | judged)
+        if claim["kind"] not in NUMERIC_KINDS or not claim["tolerance"]:
+            continue
+        fields = {name: claim[name] for name in names}
+        combinations = claim["choices"]
+        if not combinations:
+            combinations = [{"deviation": claim["deviation"]}]
+        for combination in combinations:
+            # A combination has the deviation, and the choices that differ from these.
+            rows.append({"release": "", "solution": "lattice"} | combination | fields)
     columns = [*names, "deviation", "release", "solution"]
     drawn = pd.DataFrame(rows)[columns].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
@@ -65,17 +75,7 @@ def draw(table: pd.DataFrame) -> Figure:
     axes.axvspan(1.0 / TOLERANCE_BAND, TOLERANCE_BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
     for position, (id, _) in enumerate(farthest.index):
-        for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
-            look = {
-                "color": CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])["color"]
-            } | SOLUTION_MARKERS[str(solution)]
-            height = position + rows["release"].map(ROW_OFFSETS).fillna(0.0)
-            axes.plot(
-                rows["over"].mask(rows["over"] < MIN_SHOWN_RATIO), height, linestyle="none", **look
-            )
-        if table.loc[table["id"] == id, "over"].min() < MIN_SHOWN_RATIO:
-            bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
-            axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)
+        draw_claim(axes, table[table["id"] == id], position)
     axes.set(xscale="log", xlabel="deviation / tolerance", xlim=(0.7 * MIN_SHOWN_RATIO, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)
@@ -86,3 +86,20 @@ def draw(table: pd.DataFrame) -> Figure:
     handles += [entry(name, color=BLACK, **look) for name, look in SOLUTION_MARKERS.items()]
     style.legend_below(figure, handles, 2)
     return figure
+
+
+def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
+    """Mark the deviations of one claim in a row at this position.
+
+    The colour is that of the choice on which the verdict depends most.
+    """
+    for (choice, solution), rows in claim.groupby(["choice", "solution"]):
+        choice_look = CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])
+        look: Look = {"color": choice_look["color"], "linestyle": "none"}
+        look |= SOLUTION_MARKERS[str(solution)]
+        is_shown = rows["over"] >= MIN_SHOWN_RATIO
+        height = position + rows["release"].map(ROW_OFFSETS).fillna(0.0)
+        axes.plot(rows["over"].where(is_shown), height, **look)
+    if claim["over"].min() < MIN_SHOWN_RATIO:
+        bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
+        axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)

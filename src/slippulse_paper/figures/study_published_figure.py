@@ -1,4 +1,8 @@
-"""Parameters of the published space-time figure, inferred from readings, and their regions."""
+"""Parameters of the published space-time figure, inferred from readings, and their regions.
+
+For each damping ratio b and release rule, tau_0 and gamma are fitted to the readings. Chi-square is
+the sum of the squared residuals divided by the reading errors.
+"""
 
 from collections.abc import Mapping
 
@@ -26,7 +30,7 @@ NEEDS = {
 
 RULE_LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
 CONFIDENCE_LEVELS = (0.68, 0.95)
-# Every how many points of a curve one is kept.
+# One in this number of points of an interpolated curve is kept.
 CURVE_STEP = 25
 READING_LABELS = {
     "front_speed": "front slope",
@@ -39,19 +43,21 @@ READING_LABELS = {
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the study with three additional parts.
 
-    curve : interpolated fits
+    curve : fits interpolated between the damping ratios of the study
     best : residuals of the best fit, divided by the reading error
     ours : parameters of our scene
     """
     study = tables["published_figure"]
-    parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
+    parts = [study]
+    names = ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
     for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):
-        line = interpolate_fits(profile)
-        best = line.loc[line["chi2"].idxmin()]
-        readings = profile.loc[profile["weight"] > 0.0, "reading"].drop_duplicates()
-        rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
-        kept = line.loc[::CURVE_STEP, [*names, "tau0_error", "gamma_error"]]
+        curve = interpolate_fits(profile)
+        kept = curve.loc[::CURVE_STEP, [*names, "tau0_error", "gamma_error"]]
         parts.append(kept.assign(part="curve", release=release))
+        best = curve.loc[curve["chi2"].idxmin()]
+        fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].drop_duplicates()
+        pulls = best[fitted_readings].to_numpy(float)
+        rows = pd.DataFrame({"reading": fitted_readings, "pull": pulls})
         parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
     ours = {"tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
@@ -61,51 +67,69 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and confidence regions by damping ratio above, and residuals below."""
-    figure, (*upper, pulls) = new_panels(PAGE_WIDTH, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
+    figure, panels = new_panels(PAGE_WIDTH, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
+    chi2_axes, tau0_axes, gamma_axes, pull_axes = panels
+    # Rows by part and release rule.
     fits = dict(iter(table.groupby(["part", "release"])))
-    _draw_chi2(upper[0], table, fits)
+    _draw_chi2(chi2_axes, table, fits)
     ours = table[table["part"] == "ours"].iloc[0]
-    _draw_region(upper[1], fits, ours, "tau0", r"pre-stress $\tau_0$")
-    _draw_region(upper[2], fits, ours, "gamma", r"elasticity ratio $\gamma$")
+    _draw_region(tau0_axes, fits, ours, "tau0", r"pre-stress $\tau_0$")
+    _draw_region(gamma_axes, fits, ours, "gamma", r"elasticity ratio $\gamma$")
     for level, alpha in zip(CONFIDENCE_LEVELS, (0.6, 0.25), strict=True):
-        upper[1].fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
-    upper[1].legend(loc="upper left")
-    for axes in upper:
+        tau0_axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
+    tau0_axes.legend(loc="upper left")
+    for axes in (chi2_axes, tau0_axes, gamma_axes):
         axes.set(xscale="log", xlabel=r"damping ratio $b$")
         few_ticks(axes.xaxis, (0.05, 0.1, 0.2, 0.3))
-    pulls.axhspan(-1.0, 1.0, color="0.92")
-    pulls.axhline(0.0, color=BLACK, linewidth=0.6)
-    for (release, (colour, marker, label)), shift in zip(
-        RULE_LOOKS.items(), (-0.12, 0.12), strict=True
-    ):
-        rows = fits["best", release]
-        pulls.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
-    edges = {name: rf"edge, $t = {name.rpartition('_')[2]}$" for name in rows["reading"]}
-    labels = [READING_LABELS.get(name, edge) for name, edge in edges.items()]
-    turned: Look = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
-    pulls.set_xticks(np.arange(len(labels)), labels, **turned)
-    pulls.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
-    pulls.legend(title="released by", loc="upper right", ncols=2)
+    _draw_pulls(pull_axes, fits)
     return figure
 
 
+def _draw_pulls(axes: Axes, fits: Mapping) -> None:
+    """Draw the residuals of the best fit of each rule, divided by the reading errors."""
+    axes.axhspan(-1.0, 1.0, color="0.92")
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    # The two rules are drawn beside each other.
+    shifts = (-0.12, 0.12)
+    for (release, look), shift in zip(RULE_LOOKS.items(), shifts, strict=True):
+        colour, marker, label = look
+        rows = fits["best", release]
+        axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
+    # Both rules have the same readings.
+    labels = []
+    for name in rows["reading"]:
+        _, _, time = name.rpartition("_")
+        labels.append(READING_LABELS.get(name, rf"edge, $t = {time}$"))
+    turned: Look = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
+    axes.set_xticks(np.arange(len(labels)), labels, **turned)
+    axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
+    axes.legend(title="released by", loc="upper right", ncols=2)
+
+
 def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
-    """Draw the smallest chi-square by damping ratio, as far as a fit is accepted."""
+    """Draw the smallest chi-square by damping ratio, as far as a fit is accepted.
+
+    The shaded range of each rule is the confidence interval of its damping ratio.
+    """
     best = table[table["part"] == "best"]
+    # Three parameters are fitted: tau_0, gamma and the damping ratio.
     dof = best["reading"].nunique() - 3
-    accepted = chi_square_rise(CONFIDENCE_LEVELS[1], dof)
-    for release, (colour, marker, label) in RULE_LOOKS.items():
-        line, best_fit = fits["curve", release], fits["best", release].iloc[0]
-        shown = line[line["chi2"] <= accepted]
+    confidence = CONFIDENCE_LEVELS[1]
+    accepted = chi_square_rise(confidence, dof)
+    for release, (colour, marker, rule_name) in RULE_LOOKS.items():
+        curve, best_fit = fits["curve", release], fits["best", release].iloc[0]
+        shown = curve[curve["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
-        inside = line[line["chi2"] <= line["chi2"].min() + chi_square_rise(CONFIDENCE_LEVELS[1])]
+        highest = curve["chi2"].min() + chi_square_rise(confidence)
+        inside = curve[curve["chi2"] <= highest]
         look: Look = {"color": colour, "alpha": 0.18, "linewidth": 0.0}
         axes.fill_between(inside["damping_ratio"], inside["chi2"], **look)
-        label = rf"{label}: $\chi^2 = {best_fit['chi2']:.1f}$"
+        label = rf"{rule_name}: $\chi^2 = {best_fit['chi2']:.1f}$"
         axes.plot(best_fit["damping_ratio"], best_fit["chi2"], marker, color=colour, label=label)
     top = 1.9 * accepted
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
-    label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
+    notebook_chi2 = (notebook["pull"] ** 2).sum()
+    label = rf"notebook, total force: $\chi^2 = {notebook_chi2:.0f}$"
     # The value is far above the top of the axes, where a marker points to it.
     ratio = notebook["damping_ratio"].iloc[0]
     axes.plot(ratio, top, "^", color=RULE_LOOKS["total"][0], label=label, clip_on=False)
@@ -119,17 +143,23 @@ def _draw_region(axes: Axes, fits: Mapping, ours: pd.Series, name: str, label: s
     """Draw confidence regions of the damping ratio and one parameter.
 
     The remaining parameter has its best value at every point.
+
+    name, label : column and axis label of the parameter
     """
     for release, (colour, marker, _) in RULE_LOOKS.items():
-        line, best = fits["curve", release], fits["best", release].iloc[0]
+        curve, best = fits["curve", release], fits["best", release].iloc[0]
         for level, alpha in zip(CONFIDENCE_LEVELS[::-1], (0.22, 0.45), strict=True):
-            room = chi_square_rise(level, 2) - (line["chi2"] - line["chi2"].min())
-            inside = line[room >= 0.0]
-            half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
+            # Chi-square rises by this amount from its minimum to the edge of the region. At each
+            # damping ratio, the parameter may move away from its best value until it has risen by
+            # what is left of this amount.
+            rise_at_edge = chi_square_rise(level, 2)
+            left_over = rise_at_edge - (curve["chi2"] - curve["chi2"].min())
+            inside = curve[left_over >= 0.0]
+            half_width = np.sqrt(left_over[left_over >= 0.0]) * inside[f"{name}_error"]
+            low, high = inside[name] - half_width, inside[name] + half_width
             look: Look = {"color": colour, "alpha": alpha, "gid": f"{release} {level:g}"}
-            low, high = inside[name] - half, inside[name] + half
             axes.fill_between(inside["damping_ratio"], low, high, linewidth=0.0, **look)
-        x, y = best[["damping_ratio", name]]
-        axes.plot(x, y, marker, color=colour, markeredgecolor="white", markersize=4.5)
+        look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
+        axes.plot(best["damping_ratio"], best[name], marker, **look)
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     axes.set(xlim=(0.045, 0.3), ylabel=label)

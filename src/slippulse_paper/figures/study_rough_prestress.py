@@ -1,4 +1,11 @@
-"""Pulses on rough pre-stress: survival, death rate and barriers (Gamma = 1), random walks (0)."""
+"""Pulses on a rough pre-stress: deaths and barriers (Gamma = 1), and random walks (Gamma = 0).
+
+An ensemble is a set of runs whose pre-stress is drawn from the same random field. It has one colour
+and one marker, and is named by the four parameters of the field.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -9,9 +16,30 @@ from slippulse.plotting import style
 from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN_MARKER, PAGE_WIDTH, SMALL_TEXT, Look
 
 NEEDS = {"studies": ["rough_prestress"]}
-KEYS = ["level", "deviation", "correlation_length", "hurst"]
+
+# Parameters of the random field of an ensemble, and their symbols as a title of the legend.
+PARAMETERS = ["level", "deviation", "correlation_length", "hurst"]
+LEGEND_TITLE = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
 COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY)
-HEAD = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
+# Survival is drawn only if more than this fraction of the pulses has died.
+MIN_DRAWN_DEATHS = 0.1
+# The guide of slope -1/2 begins at this fraction of the largest distance, above the curve by the
+# second factor.
+GUIDE_START, GUIDE_OFFSET = 0.2, 1.5
+
+
+class Ensemble(NamedTuple):
+    """One ensemble of the study: its look, its row of the part ensemble, and all its rows."""
+
+    colour: str
+    marker: str
+    label: str
+    row: pd.Series
+    rows: pd.DataFrame
+
+    def part(self, name: str) -> pd.DataFrame:
+        """Return the rows of one part of the study."""
+        return self.rows[self.rows["part"] == name]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -20,63 +48,106 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) survival and (b) death rate with the displacement held, (c, d) the stress held."""
-    figure, (lives, rates, walks, velocities) = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
-    held = table[table["boundary"] == "displacement"]
-    ensembles = held[(held["part"] == "ensemble") & (held["deaths"] > 0.0)]
-    for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
-        label = ", ".join(f"{row[key]:g}" for key in KEYS)
-        _survival(lives, _of(held, row, "survival"), colour, label)
-        errors = [[row["rate"] - row["rate_low"]], [row["rate_high"] - row["rate"]]]
-        bars: Look = {"color": colour, "capsize": 2.0, "fmt": marker, "markersize": 4.0}
-        rates.errorbar(row["barrier_rate"], row["rate"], errors, **bars)
-    lives.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
-    lives.set(ylim=(0.6, 1.01), xlim=(0.0, ensembles["stop"].max()))
-    lives.legend(title=HEAD, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
-    ends = np.array([3e-5, 1e-2])
-    rates.plot(ends, ends, color=BLACK, linewidth=0.8)
-    rates.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
-    rates.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2e-2), title=r"$\Gamma = 1$")
-    rates.set(xlabel="predicted rate of fatal barriers", ylabel="death rate of pulses")
-    stress = table[table["boundary"] == "stress"]
-    ensembles = stress[stress["part"] == "ensemble"]
-    for colour, marker, (_, row) in zip(COLOURS, MARKERS, ensembles.iterrows(), strict=False):
-        label = ", ".join(f"{row[key]:g}" for key in KEYS)
-        if row["deaths"] > 0.1 * row["pulses"]:
-            curve = _of(stress, row, "survival")
-            _survival(walks, curve, colour, label)
-            walks.plot(curve["distance"], curve["predicted"], "--", color=colour, linewidth=0.9)
-        pulses = _of(stress, row, "pulse")
-        pulses = pulses[~pulses["died"].astype(bool)]
-        look: Look = {"color": colour, "label": label, "markersize": 2.5, "linestyle": "none"}
-        # The pulses that differ least are drawn last.
-        look["zorder"] = 3.0 - row["deviation"]
-        velocities.plot(pulses["exact_velocity"], pulses["velocity"], marker, **look, **OPEN_MARKER)
-    long = stress[stress["part"] == "long_survival"]
-    walks.plot(long["distance"], long["survival"], color=GREY, label="balance alone")
-    tail = long[long["distance"] > 0.2 * long["distance"].max()]
-    guide = 1.5 * tail["survival"].iloc[0] * np.sqrt(tail["distance"].iloc[0] / tail["distance"])
-    walks.plot(tail["distance"], guide, ":", color=BLACK, label="slope $-1/2$")
-    walks.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
-    walks.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
-    walks.legend(loc="lower left", fontsize=SMALL_TEXT)
-    top = float(velocities.dataLim.x1)
-    velocities.plot([0.0, top], [0.0, top], color=BLACK, linewidth=0.8, zorder=0.0)
-    velocities.set(xlabel="half of the pre-stress integral", title=r"$\Gamma = 0$")
-    velocities.set_ylabel("slip velocity of the pulse")
-    velocities.legend(title=HEAD, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT)
+    """Draw (a) survival and (b) death rate at Gamma = 1, (c) survival and (d) velocity at 0."""
+    figure, panels = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
+    survival_axes, rate_axes, walk_axes, velocity_axes = panels
+    at_gamma_1 = table[table["boundary"] == "displacement"]
+    dying = at_gamma_1[(at_gamma_1["part"] == "ensemble") & (at_gamma_1["deaths"] > 0.0)]
+    for ensemble in ensembles(at_gamma_1, dying):
+        draw_survival(survival_axes, ensemble)
+        draw_rate(rate_axes, ensemble)
+    finish_survival(survival_axes, dying["stop"].max())
+    finish_rates(rate_axes)
+    at_gamma_0 = table[table["boundary"] == "stress"]
+    for ensemble in ensembles(at_gamma_0, at_gamma_0[at_gamma_0["part"] == "ensemble"]):
+        if ensemble.row["deaths"] > MIN_DRAWN_DEATHS * ensemble.row["pulses"]:
+            draw_survival(walk_axes, ensemble)
+            curve = ensemble.part("survival")
+            look: Look = {"color": ensemble.colour, "linewidth": 0.9}
+            walk_axes.plot(curve["distance"], curve["predicted"], "--", **look)
+        draw_velocities(velocity_axes, ensemble)
+    finish_walks(walk_axes, at_gamma_0[at_gamma_0["part"] == "long_survival"])
+    finish_velocities(velocity_axes)
     return figure
 
 
-def _of(table: pd.DataFrame, row: pd.Series, part: str) -> pd.DataFrame:
-    """Rows of one part and of the ensemble of a row."""
-    same = (table[KEYS] == row[KEYS]).all(axis=1)
-    return table[same & (table["part"] == part)]
+def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
+    """Yield the ensembles of one boundary condition that belong to rows of the part ensemble."""
+    looks = zip(COLOURS, MARKERS, rows.iterrows(), strict=False)
+    for colour, marker, (_, row) in looks:
+        label = ", ".join(f"{row[name]:g}" for name in PARAMETERS)
+        is_in_ensemble = (table[PARAMETERS] == row[PARAMETERS]).all(axis=1)
+        yield Ensemble(colour, marker, label, row, table[is_in_ensemble])
 
 
-def _survival(axes: Axes, curve: pd.DataFrame, colour: str, label: str) -> None:
-    """Draw the fraction alive in steps, with its band."""
-    look: Look = {"color": colour, "linewidth": 1.0, "label": label}
+def draw_survival(axes: Axes, ensemble: Ensemble) -> None:
+    """Draw the fraction of pulses alive as a function of distance, with its confidence band."""
+    curve = ensemble.part("survival")
+    look: Look = {"color": ensemble.colour, "linewidth": 1.0, "label": ensemble.label}
     axes.step(curve["distance"], curve["survival"], where="post", **look)
-    band: Look = {"color": colour, "alpha": 0.15, "linewidth": 0.0, "step": "post"}
+    band: Look = {"color": ensemble.colour, "alpha": 0.15, "linewidth": 0.0, "step": "post"}
     axes.fill_between(curve["distance"], curve["low"], curve["high"], **band)
+
+
+def finish_survival(axes: Axes, stop: float) -> None:
+    """Set the axes of panel a; pulses are followed up to the distance ``stop``."""
+    axes.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
+    axes.set(ylim=(0.6, 1.01), xlim=(0.0, stop))
+    axes.legend(
+        title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
+    )
+
+
+def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
+    """Mark the death rate of an ensemble and its confidence interval."""
+    row = ensemble.row
+    below, above = row["rate"] - row["rate_low"], row["rate_high"] - row["rate"]
+    look: Look = {"color": ensemble.colour, "fmt": ensemble.marker}
+    look |= {"capsize": 2.0, "markersize": 4.0}
+    axes.errorbar(row["barrier_rate"], row["rate"], [[below], [above]], **look)
+
+
+def finish_rates(axes: Axes) -> None:
+    """Draw the line on which both rates are equal, with a factor of two on both sides."""
+    ends = np.array([3e-5, 1e-2])
+    axes.plot(ends, ends, color=BLACK, linewidth=0.8)
+    axes.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
+    axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2e-2), title=r"$\Gamma = 1$")
+    axes.set(xlabel="predicted rate of fatal barriers", ylabel="death rate of pulses")
+
+
+def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
+    """Draw the survival over a long distance, and a guide with the slope of a random walk."""
+    axes.plot(
+        long_survival["distance"], long_survival["survival"], color=GREY, label="balance alone"
+    )
+    start = GUIDE_START * long_survival["distance"].max()
+    tail = long_survival[long_survival["distance"] > start]
+    first = tail.iloc[0]
+    guide = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
+    axes.plot(tail["distance"], guide, ":", color=BLACK, label="slope $-1/2$")
+    axes.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
+    axes.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
+    axes.legend(loc="lower left", fontsize=SMALL_TEXT)
+
+
+def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
+    """Mark the velocity of each pulse that is alive, as a function of its exact velocity."""
+    pulses = ensemble.part("pulse")
+    alive = pulses[~pulses["died"].astype(bool)]
+    look: Look = {"color": ensemble.colour, "label": ensemble.label}
+    look |= {"markersize": 2.5, "linestyle": "none"} | OPEN_MARKER
+    # The pulses that differ least are drawn last.
+    look["zorder"] = 3.0 - ensemble.row["deviation"]
+    axes.plot(alive["exact_velocity"], alive["velocity"], ensemble.marker, **look)
+
+
+def finish_velocities(axes: Axes) -> None:
+    """Draw the line on which both velocities are equal."""
+    largest = float(axes.dataLim.x1)
+    axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
+    axes.set(xlabel="half of the pre-stress integral", title=r"$\Gamma = 0$")
+    axes.set_ylabel("slip velocity of the pulse")
+    axes.legend(
+        title=LEGEND_TITLE, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
+    )

@@ -1,10 +1,13 @@
 """Pulses that enter another pre-stress.
 
-With the displacement held they settle. With the stress held they grow, decay or stay as they are.
+Under a displacement boundary (Gamma = 1) they settle to the steady pulse of the new pre-stress.
+Under a stress boundary (Gamma = 0) they grow, decay or stay as they are. The pre-stress has a step
+on both sides: a pulse forms in the level ``before`` and enters the other level.
 """
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,8 +20,9 @@ from ..text.numerals import setting
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
-# Points kept of a lattice, and how many of them there are for each marker.
-LATTICE_POINTS, POINTS_PER_MARKER = 100, 5
+# Largest number of points kept of a lattice, and one in how many of them is marked.
+LATTICE_POINTS = 100
+POINTS_PER_MARKER = 5
 # What rounding leaves of a distance that is exactly 0.
 ROUNDING_ERROR = 2e-9
 # The smallest drawn velocity.
@@ -29,65 +33,103 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return slip beyond a step (roles exact and lattice) and velocity by time (role velocity)."""
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]
-    for run in (point(across, i) for i in range(across.sizes["point"])):
-        position, level = prestress_from(run.attrs).steps[-1]
-        x = run["x"].values - position
-        # Keep the slip of stuck blocks at the distances that the exact solution covers.
-        drawn = exact.loc[np.isclose(exact["level"], level), "x"]
-        inside = np.isfinite(run["stick_time"].values) & (x > drawn.min()) & (x < drawn.max())
-        kept = np.flatnonzero(inside)
-        kept = kept[:: max(1, kept.size // LATTICE_POINTS)]
-        rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
-        parts.append(rows.assign(role="lattice", level=level, dx=run.attrs["dx"]))
+    across = data["pulses_across_a_step"]
+    for number in range(across.sizes["point"]):
+        parts.append(lattice_slip(point(across, number), exact).assign(role="lattice"))
+    under_stress = data["regimes_beyond"]
     # The runs with the lowest level on the left have the narrowest pulse.
-    lowest = beyond_step["left"].values == beyond_step["left"].values.min()
-    for run in (point(beyond_step, int(i)) for i in np.flatnonzero(lowest)):
-        right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
-        position, level = prestress_from(run.attrs).steps[-1]
-        largest = right.max("sample_position").values
-        rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
-        before = {"before": run.attrs["right"], "step": position}
-        parts.append(rows.assign(role="velocity", level=level, **before))
+    left_levels = under_stress["left"].values
+    for index in np.flatnonzero(left_levels == left_levels.min()):
+        velocities = largest_velocities(point(under_stress, int(index)))
+        parts.append(velocities.assign(role="velocity"))
     return pd.concat(parts, ignore_index=True)
+
+
+def lattice_slip(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
+    """Return the final slip of a run as a function of the distance x from the step.
+
+    exact : the exact slip of all runs, whose range of distances is kept
+    """
+    position, level = prestress_from(run.attrs).steps[-1]
+    x = run["x"].values - position
+    exact_x = exact.loc[np.isclose(exact["level"], level), "x"]
+    has_stuck = np.isfinite(run["stick_time"].values)
+    inside = np.flatnonzero(has_stuck & (x > exact_x.min()) & (x < exact_x.max()))
+    kept = inside[:: max(1, inside.size // LATTICE_POINTS)]
+    rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
+    return rows.assign(level=level, dx=run.attrs["dx"])
+
+
+def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
+    """Return the largest slip velocity on the right of x = 0 at each sampled time."""
+    position, level = prestress_from(run.attrs).steps[-1]
+    right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
+    largest = right.max("sample_position").values
+    rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
+    return rows.assign(level=level, before=run.attrs["right"], step=position)
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its deviation from the new steady slip, (c) velocity."""
-    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE_WIDTH, 3.2, "abc")
+    figure, (slip_axes, deviation_axes, velocity_axes) = style.new_panels(PAGE_WIDTH, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])].sort_values("x")
     for level, rows in slip.groupby("level"):
-        colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
+        colour = style.colour("tau_0", level)
         exact, lattice = (rows[rows["role"] == role] for role in ("exact", "lattice"))
-        steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-        slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
-        marks = lattice.iloc[::POINTS_PER_MARKER]
-        look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
-        slip_axes.plot(marks["x"], marks["slip"], "o", **look)
-        slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
-        # The exact deviation is 0 beyond the memory of the pulse.
-        ahead = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
-        for part, line in ((exact[ahead], "-"), (marks, "o")):
-            part = part[part["x"] > 0.0]
-            rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING_ERROR)
-            rest_axes.plot(part["x"] / memory, rest, line, **look)
+        marked = lattice.iloc[::POINTS_PER_MARKER]
+        _draw_slip(slip_axes, exact, marked, colour, rf"$\tau_0 = {level:g}$ beyond")
+        _draw_deviation(deviation_axes, exact, marked, colour)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
-    lattice = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
-    handles.append(entry(lattice, color=GREY, marker="o", **OPEN_MARKER))
-    handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
+    levels, _ = slip_axes.get_legend_handles_labels()
+    lattice_label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
+    handles = [
+        *levels,
+        entry("exact", color=GREY),
+        entry(lattice_label, color=GREY, marker="o", **OPEN_MARKER),
+        entry("finite memory", color=GREY, marker="|", markersize=7.0),
+    ]
     style.legend_below(figure, handles, 4)
-    rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
-    # A deviation of exactly 0 is drawn at the rounding error.
-    rest_axes.axhspan(0.1 * ROUNDING_ERROR, 2.0 * ROUNDING_ERROR, color="0.9", linewidth=0.0)
-    rest_axes.text(0.04, 0.45 * ROUNDING_ERROR, "rounding", va="center")
-    rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING_ERROR, 3.0))
-    rest_axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", title=r"$\Gamma = 1$")
-    rest_axes.set_ylabel("|slip / new steady slip $-$ 1|")
+    _finish_deviation(deviation_axes)
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure
+
+
+def _draw_slip(
+    axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray, label: str
+) -> None:
+    """Draw the exact slip, the marked points of the lattice, and the end of the memory."""
+    steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
+    axes.plot(exact["x"], exact["slip"], color=colour, label=label)
+    axes.plot(marked["x"], marked["slip"], "o", color=colour, markersize=2.2, **OPEN_MARKER)
+    axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
+
+
+def _draw_deviation(
+    axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray
+) -> None:
+    """Draw the relative deviation from the new steady slip, by distance in units of the memory."""
+    steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
+    # The exact deviation is 0 beyond the memory of the pulse. Draw it up to the first such point.
+    is_drawn = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
+    look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
+    for rows, line in ((exact[is_drawn], "-"), (marked, "o")):
+        beyond_step = rows[rows["x"] > 0.0]
+        deviation = np.abs(beyond_step["slip"] / steady - 1.0)
+        # A deviation of exactly 0 is drawn at the rounding error.
+        drawn = np.maximum(deviation, ROUNDING_ERROR)
+        axes.plot(beyond_step["x"] / memory, drawn, line, **look)
+
+
+def _finish_deviation(axes: Axes) -> None:
+    """Mark the end of the memory and the rounding error, and set the axes."""
+    axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
+    axes.axhspan(0.1 * ROUNDING_ERROR, 2.0 * ROUNDING_ERROR, color="0.9", linewidth=0.0)
+    axes.text(0.04, 0.45 * ROUNDING_ERROR, "rounding", va="center")
+    axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING_ERROR, 3.0))
+    axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", title=r"$\Gamma = 1$")
+    axes.set_ylabel("|slip / new steady slip $-$ 1|")
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
@@ -99,12 +141,15 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        end = time.iloc[-1], velocity.iloc[-1]
-        if end[1] <= MIN_DRAWN_VELOCITY:
-            # Put the label where the line leaves the panel. Velocities fall with time.
-            last = time.iloc[::-1], np.log(velocity.iloc[::-1])
-            end = np.interp(np.log(MIN_DRAWN_VELOCITY), last[1], last[0]), 1.15 * MIN_DRAWN_VELOCITY
-        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL_TEXT, **look)
+        label_time, label_velocity = time.iloc[-1], velocity.iloc[-1]
+        if label_velocity <= MIN_DRAWN_VELOCITY:
+            # Put the label where the line leaves the panel. Velocities fall with time, so they
+            # ascend in reversed order.
+            ascending = np.log(velocity.iloc[::-1])
+            label_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending, time.iloc[::-1])
+            label_velocity = 1.15 * MIN_DRAWN_VELOCITY
+        place = (label_time, label_velocity)
+        axes.annotate(setting(level), place, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_xlim(None, 1.28 * rows["time"].max())

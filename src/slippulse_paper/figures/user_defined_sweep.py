@@ -1,6 +1,7 @@
 """A user-defined sweep: its main numbers as functions of what varies, beside exact theory."""
 
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.model.scene import EXTRA_TERMS
@@ -56,33 +57,52 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     fixed : the settings that all runs share, as a text
     """
     (runs,) = tables.values()
-    alike = (runs["left"] == runs["right"]).all()
-    runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
-    axis, *others = varying_columns(runs) or ["profile" if "profile" in runs else "left"]
-    held = runs["boundary"].iloc[0] == "displacement"
-    levels = ["tau_0"] if alike else ["left", "right"]
-    fixed = runs[[*(["gamma"] if held else []), *levels, "damping_ratio", "width", "dx"]]
-    if "profile" in runs:
-        fixed = fixed.drop(columns=levels)
-    fixed = conditions(held, **fixed.loc[:, fixed.nunique() == 1].iloc[0])
+    has_equal_levels = (runs["left"] == runs["right"]).all()
+    runs = runs.assign(tau_0=runs["left"] if has_equal_levels else 0.0)
+    varying = varying_columns(runs)
+    if not varying:
+        varying = ["profile" if "profile" in runs else "left"]
+    axis, *others = varying
     parts = []
     for _, run in runs.iterrows():
-        series = ", ".join(f"{_name(name)} = {_text(run[name])}" for name in others)
+        series = ", ".join(f"{_name(column)} = {_text(run[column])}" for column in others)
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
     rows = pd.concat(parts).set_index("quantity")
     # A quantity that equals another one in every run is left out.
-    different = rows.groupby("quantity", sort=False)["value"].agg(tuple).drop_duplicates()
-    return rows.loc[different.index].reset_index().assign(fixed=fixed)
+    values_of_all_runs = rows.groupby("quantity", sort=False)["value"].agg(tuple)
+    kept = values_of_all_runs.drop_duplicates().index
+    levels = ["tau_0"] if has_equal_levels else ["left", "right"]
+    return rows.loc[kept].reset_index().assign(fixed=fixed_settings(runs, levels))
+
+
+def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
+    """Return the boundary condition and the settings that all runs share, as a text.
+
+    levels : the columns with the levels of the pre-stress, which tables of pre-stress do not have
+    """
+    has_springs = runs["boundary"].iloc[0] == "displacement"
+    columns = ["gamma"] if has_springs else []
+    if "profile" not in runs:
+        columns += levels
+    columns += ["damping_ratio", "width", "dx"]
+    shared = [column for column in columns if runs[column].nunique() == 1]
+    return conditions(has_springs, **runs[shared].iloc[0])
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
     """Return the columns that vary: numbers before texts, and those with most values first."""
+    columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     # A column that always equals another one is left out.
-    names = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
-    different = runs[[*names]].T.drop_duplicates().index
-    varying = [name for name in different if runs[name].nunique() > 1]
-    return sorted(varying, key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
+    different = runs[[*columns]].T.drop_duplicates().index
+    varying = [column for column in different if runs[column].nunique() > 1]
+
+    def rank(column: str) -> tuple[bool, int]:
+        """Return a key that sorts numbers before texts, and then by the number of values."""
+        is_number = runs[column].dtype.kind == "f"
+        return not is_number, -runs[column].nunique()
+
+    return sorted(varying, key=rank)
 
 
 def _name(column: str) -> str:
@@ -99,27 +119,33 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each quantity: runs as markers, open if flagged, and theory as lines."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
     figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
-    quantities = list(table.groupby("quantity", sort=False))[: len(panels)]
-    for axes, (_, rows) in zip(panels, quantities, strict=False):
-        groups = rows.groupby("series", sort=False)
-        colours = (
-            COLOUR_CYCLE if 1 < groups.ngroups <= len(COLOUR_CYCLE) else [GREY] * groups.ngroups
-        )
-        for colour, (series, group) in zip(colours, groups, strict=False):
-            group = group.sort_values("x")
-            flagged = group["run_flags"].notna()
-            axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-            sound, hollow = group["value"].mask(flagged), group["value"].where(flagged)
-            axes.plot(group["x"], sound, "o", color=colour, label=series or None)
-            axes.plot(group["x"], hollow, "o", color=colour, **OPEN_MARKER)
-        axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
-    for axes in panels[len(quantities) :]:
-        axes.set_visible(False)
+    quantities = [rows for _, rows in table.groupby("quantity", sort=False)]
+    drawn = quantities[: len(panels)]
+    for axes, rows in zip(panels, drawn, strict=False):
+        draw_quantity(axes, rows)
+    for empty in panels[len(drawn) :]:
+        empty.set_visible(False)
     figure.suptitle(table["fixed"].iloc[0])
-    handles = [entry("simulation", marker="o", color=GREY)]
+    series, _ = panels[0].get_legend_handles_labels()
+    handles = [*series, entry("simulation", marker="o", color=GREY)]
     if table["theory"].notna().any():
         handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, **OPEN_MARKER))
-    legend_below(figure, [*panels[0].get_legend_handles_labels()[0], *handles], 5)
+    legend_below(figure, handles, 5)
     return figure
+
+
+def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw one quantity; each series has a colour, if there are enough colours."""
+    groups = rows.groupby("series", sort=False)
+    has_colours = 1 < groups.ngroups <= len(COLOUR_CYCLE)
+    colours = COLOUR_CYCLE if has_colours else [GREY] * groups.ngroups
+    for colour, (series, group) in zip(colours, groups, strict=False):
+        group = group.sort_values("x")
+        is_flagged = group["run_flags"].notna()
+        axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
+        sound, flagged = group["value"].mask(is_flagged), group["value"].where(is_flagged)
+        axes.plot(group["x"], sound, "o", color=colour, label=series or None)
+        axes.plot(group["x"], flagged, "o", color=colour, **OPEN_MARKER)
+    axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))

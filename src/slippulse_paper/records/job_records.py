@@ -20,6 +20,8 @@ from typing import Any, NamedTuple
 from slippulse.data.files import write_text
 
 FOLDER = ".records"
+# The call in a rule that runs a step of this project and so has a record.
+STEP_CALL = "run_step("
 
 
 class ChangedFile(RuntimeError):
@@ -126,6 +128,19 @@ def read_record(path: str | Path) -> Record:
         raise ValueError(str(error)) from error
 
 
+class _Job(NamedTuple):
+    """Outputs of a job in one folder, and the SHA-256 of each input that it read, by path."""
+
+    outputs: list[str]
+    inputs: dict[str, str]
+
+    def replaced_inputs(self, states: Mapping[str, FileState]) -> Iterator[str]:
+        """Yield the inputs whose recorded content is no longer the one that the job read."""
+        for path, sha256 in self.inputs.items():
+            if path in states and states[path].sha256 != sha256:
+                yield path
+
+
 class RecordedFiles:
     """All records in a folder of results, and the state of the recorded files."""
 
@@ -163,26 +178,61 @@ class RecordedFiles:
                 yield name, "not what its job wrote"
             elif name not in snakemake_files and Path(name).is_file():
                 yield name, "Snakemake's own record of it (in .snakemake) is lost"
+        for job in self._jobs():
+            source = next(job.replaced_inputs(states), None)
+            if source is not None:
+                yield from ((output, f"made from another {source}") for output in job.outputs)
+
+    def older_than_inputs(self) -> set[str]:
+        """Return the files that were made from files that have been made again since then.
+
+        This includes files that were made from such files.
+        """
+        states, jobs = self.states(), self._jobs()
+        found = {
+            output for job in jobs for _ in job.replaced_inputs(states) for output in job.outputs
+        }
+        added = found
+        while added:
+            added = {output for job in jobs if found & {*job.inputs} for output in job.outputs}
+            added -= found
+            found |= added
+        return found
+
+    def _jobs(self) -> list["_Job"]:
+        """Return outputs and inputs of each record, by their paths from the working directory."""
+        jobs = []
         for path, record in self.records.items():
             folder = path.parent.parent
-            for name, digest in record.inputs.items():
-                source = os.path.normpath(folder / name)
-                if source in states and states[source].sha256 != digest:
-                    for output in record.outputs:
-                        yield str(folder / output), f"made from another {source}"
-                    break
+            inputs = {os.path.normpath(folder / name): sha for name, sha in record.inputs.items()}
+            jobs.append(_Job([str(folder / name) for name in record.outputs], inputs))
+        return jobs
 
 
-def _files_recorded_by_snakemake() -> set[str]:
-    """Return the paths of files with a record of Snakemake, which are encoded in its file names."""
+def _files_recorded_by_snakemake() -> dict[str, Path]:
+    """Return Snakemake's record of each file by the path of the file, which its name encodes."""
     folder = Path(".snakemake/metadata")
-    names = set()
+    records = {}
     for path in folder.rglob("*"):
         # Snakemake splits a long name into folders whose names begin with @.
         encoded = "".join(part.removeprefix("@") for part in path.relative_to(folder).parts)
         with suppress(ValueError):
-            names.add(base64.urlsafe_b64decode(encoded).decode())
-    return names
+            records[base64.urlsafe_b64decode(encoded).decode()] = path
+    return records
+
+
+def made_without_step(paths: Iterable[str]) -> set[str]:
+    """Return the files that Snakemake made by a rule without a step of this project.
+
+    Such a rule is one of the user, and its jobs have no record here.
+    """
+    records, found = _files_recorded_by_snakemake(), set()
+    for name in {*paths} & {*records}:
+        with suppress(OSError, ValueError, TypeError, AttributeError):
+            code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
+            if code and STEP_CALL not in code:
+                found.add(name)
+    return found
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:

@@ -19,6 +19,7 @@ import pandas as pd
 from slippulse.data.files import UnreadableFile
 from slippulse.data.tables import load_table
 
+from ..records.job_records import RecordedFiles
 from ..records.provenance import changes
 from .joined_runs import (
     LATTICE_COLUMNS,
@@ -53,6 +54,8 @@ class Comparison:
 
     ``numbers`` has one row per number that is in both folders, and ``runs`` one row per table.
     ``changes`` has the differences of the configuration and of the verdicts by the file's name.
+    ``older`` has by this name the folders in which the file was not made again after a change of
+    other results, so that it does not describe them.
     """
 
     apart: list[str] = field(default_factory=list)
@@ -60,6 +63,7 @@ class Comparison:
     numbers: pd.DataFrame = field(default_factory=pd.DataFrame)
     runs: list[dict[str, Any]] = field(default_factory=list)
     changes: dict[str, list[dict]] = field(default_factory=dict)
+    older: dict[str, list[Path]] = field(default_factory=dict)
 
     def count(self, *outcomes: str) -> int:
         """Return the number of numbers with one of these outcomes."""
@@ -80,6 +84,10 @@ class Comparison:
         """Number of numbers that differ between lattices and have no uncertainty."""
         return self.count(UNKNOWN)
 
+    def older_files(self, name: str) -> str:
+        """List the paths of a file of this name that is older than other results."""
+        return " and ".join(str(folder / name) for folder in self.older[name])
+
     def summary(self) -> str:
         """Say in one sentence how many numbers agree."""
         agree = (
@@ -97,9 +105,14 @@ def compare(here: Path, other: Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
+    older = {tree: RecordedFiles(tree).older_than_inputs() for tree in trees}
     for name, line in DIFFERENCE_LINES.items():
         contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
-        if len(contents) < 2:
+        result.older[name] = [tree for tree in trees if str(tree / name) in older[tree]]
+        if result.older[name]:
+            newer = f"other results are newer than {result.older_files(name)}"
+            result.other.append(f"{name}: not compared, since {newer}")
+        elif len(contents) < 2:
             result.other.append(f"{name}: missing in one tree; not compared")
         else:
             result.changes[name] = changes(contents[1], contents[0])

@@ -92,7 +92,7 @@ def whole_ledger(ledger: Ledger) -> str:
         evidence = claim.compared_text(), claim.verdict, claim.evidence_text()
         rows.append((name, *numbers, *evidence))
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
-    return table(f"{head} | verdict l9 | rests on l29", rows)
+    return table(f"{head} | verdict l9 | evidence l29", rows)
 
 
 def tolerances(ledger: Ledger) -> str:

@@ -16,13 +16,17 @@ REMAINING_FRACTIONS = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the times, in units of |x_minus|, at which each fraction remains, by damping ratio."""
+    # The sweep has several spacings, on which the exact path does not depend.
+    run_by_ratio = {run.damping_ratio: run for run in runs(settings["sweeps"]["arrest"])}
     parts = []
-    swept = {run.damping_ratio: run for run in runs(settings["sweeps"]["arrest"])}
-    for ratio, run in swept.items():
+    for ratio, run in run_by_ratio.items():
         crack = ArrestingCrack(run.prestress, ratio, run.release)
+        distance = -crack.balance_position
         times = np.array([crack.transition(1.0 - to_go).time for to_go in REMAINING_FRACTIONS])
-        times /= -crack.balance_position
-        parts.append(
-            pd.DataFrame({"damping_ratio": ratio, "time": times, "to_go": REMAINING_FRACTIONS})
-        )
+        columns = {
+            "damping_ratio": ratio,
+            "time": times / distance,
+            "to_go": REMAINING_FRACTIONS,
+        }
+        parts.append(pd.DataFrame(columns))
     return pd.concat(parts)

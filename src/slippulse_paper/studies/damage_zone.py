@@ -9,26 +9,60 @@ NEEDS = {"settings": ["figures.fig07_damage_zone"]}
 
 # The example of the sketch, in units of the thickness of the damage zone.
 ROCK_THICKNESS = 1.6
-SLIP, IMPOSED_DISPLACEMENT = 1.1, 1.9
+SLIP = 1.1
+IMPOSED_DISPLACEMENT = 1.9
 STIFFNESS_RATIO = 0.2  # G/G_r
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles curve (stress drop), before and after (displacements); section IV C 2."""
+    """Return the roles curve, before and after; section IV C 2.
+
+    curve : stress drop by ratio of stiffness, for several thicknesses of the rock
+    before, after : displacement by height y in the example of the sketch, before and after slip
+    """
     figure = settings["figures"]["fig07_damage_zone"]
     steps = figure["stiffness_ratios"]
     ratios = np.geomspace(steps["from"], steps["to"], steps["count"])
-    parts = []
-    for thickness in map(float, figure["thickness_ratios"]):
-        drop = damage_zone_stress_drop(1.0, 1.0, 1.0 / ratios, 1.0, thickness)
-        columns = {"thickness_ratio": thickness, "stiffness_ratio": ratios, "stress_drop": drop}
-        parts.append(pd.DataFrame({"role": "curve"} | columns))
-    y = np.array([0.0, 1.0, 1.0 + ROCK_THICKNESS])
-    for role, slip in (("before", 0.0), ("after", SLIP)):
-        # Both layers have the same stress, so strains are inversely proportional to the moduli.
-        drop = damage_zone_stress_drop(
-            IMPOSED_DISPLACEMENT - slip, 1.0, 1.0 / STIFFNESS_RATIO, 1.0, ROCK_THICKNESS
-        )
-        moved = slip + float(drop) * np.array([0.0, 1.0, 1.0 + STIFFNESS_RATIO * ROCK_THICKNESS])
-        parts.append(pd.DataFrame({"role": role, "y": y, "displacement": moved}))
+    parts = [curve(float(thickness), ratios) for thickness in figure["thickness_ratios"]]
+    parts.append(displacements(0.0).assign(role="before"))
+    parts.append(displacements(SLIP).assign(role="after"))
     return pd.concat(parts, ignore_index=True)
+
+
+def curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
+    """Return the stress drop by ratio of stiffness, for one thickness of the rock.
+
+    The slip, and the thickness and shear modulus of the damage zone, are 1.
+    """
+    drop = damage_zone_stress_drop(
+        slip=1.0,
+        shear_modulus=1.0,
+        rock_shear_modulus=1.0 / stiffness_ratios,
+        thickness=1.0,
+        rock_thickness=thickness,
+    )
+    columns = {"thickness_ratio": thickness, "stiffness_ratio": stiffness_ratios}
+    return pd.DataFrame({"role": "curve"} | columns | {"stress_drop": drop})
+
+
+def displacements(slip: float) -> pd.DataFrame:
+    """Return the displacement at the fault, at the top of the damage zone, and at that of the rock.
+
+    The top of the rock has the imposed displacement.
+    """
+    # Both layers together are sheared by the imposed displacement minus the slip. Stress is
+    # proportional to it with the same factor as the stress drop to the slip.
+    stress = float(
+        damage_zone_stress_drop(
+            slip=IMPOSED_DISPLACEMENT - slip,
+            shear_modulus=1.0,
+            rock_shear_modulus=1.0 / STIFFNESS_RATIO,
+            thickness=1.0,
+            rock_thickness=ROCK_THICKNESS,
+        )
+    )
+    # Both layers have the same stress, so strains are inversely proportional to the moduli.
+    y = np.array([0.0, 1.0, 1.0 + ROCK_THICKNESS])
+    relative_displacement = np.array([0.0, 1.0, 1.0 + STIFFNESS_RATIO * ROCK_THICKNESS])
+    displacement = slip + stress * relative_displacement
+    return pd.DataFrame({"role": "", "y": y, "displacement": displacement})

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from slippulse.model.run import Run
 from slippulse.theory.closed_pulse import paper_pulse, pulse_at_speed
 from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.pulse import steady_pulse
@@ -18,19 +19,34 @@ RELATIVE_DAMPING_RATIOS = np.linspace(0.0, 1.0, 61) ** 2
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the roles curve (in units of the paper's formulas) and limit (dx -> 0)."""
-    swept, (refined, *_) = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
-    left, ratio = refined.prestress.left, refined.damping_ratio
-    pulse = steady_pulse(left, refined.gamma, damping_ratio=ratio, release=refined.release)
-    limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in QUANTITIES]
-    limits.append(("limit", left, ratio, "front_speed", pulse.speed))
-    first, rows = swept[0], []
-    ratios = max(one.damping_ratio for one in swept) * RELATIVE_DAMPING_RATIOS
-    for left in sorted({one.prestress.left for one in swept}):
-        paper = paper_pulse(left, first.gamma)
-        for ratio, speed in zip(ratios, front_speed(left, ratios, first.release), strict=True):
-            pulse = pulse_at_speed(left, first.gamma, ratio * first.dx, speed)
-            for name in QUANTITIES:
-                value = getattr(pulse, name) / getattr(paper, name)
-                rows.append(("curve", left, ratio, name, value))
+    swept, refined = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
+    # All refined runs are the same scene at several spacings, so they have the same limit.
+    rows = curve_rows(swept) + limit_rows(refined[0])
     columns = ["role", "left", "damping_ratio", "quantity", "value"]
-    return pd.DataFrame(rows + limits, columns=columns)
+    return pd.DataFrame(rows, columns=columns)
+
+
+def curve_rows(swept: list[Run]) -> list[tuple]:
+    """Return exact pulses divided by the paper's formula, for each level and damping ratio."""
+    first = swept[0]
+    largest_ratio = max(run.damping_ratio for run in swept)
+    ratios = largest_ratio * RELATIVE_DAMPING_RATIOS
+    rows = []
+    for level in sorted({run.prestress.left for run in swept}):
+        paper = paper_pulse(level, first.gamma)
+        speeds = front_speed(level, ratios, first.release)
+        for ratio, speed in zip(ratios, speeds, strict=True):
+            pulse = pulse_at_speed(level, first.gamma, ratio * first.dx, speed)
+            for quantity in QUANTITIES:
+                value = getattr(pulse, quantity) / getattr(paper, quantity)
+                rows.append(("curve", level, ratio, quantity, value))
+    return rows
+
+
+def limit_rows(run: Run) -> list[tuple]:
+    """Return the exact pulse in the limit dx -> 0 at the damping ratio of a run."""
+    level, ratio = run.prestress.left, run.damping_ratio
+    pulse = steady_pulse(level, run.gamma, damping_ratio=ratio, release=run.release)
+    values = {quantity: getattr(pulse, quantity) for quantity in QUANTITIES}
+    values["front_speed"] = pulse.speed
+    return [("limit", level, ratio, quantity, value) for quantity, value in values.items()]

@@ -17,9 +17,17 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the release and stick times of positions; NaN for a stick time if sliding goes on."""
     parts = []
     for name, sweep in settings["sweeps"].items():
-        rupture = exact_rupture(expand(sweep)[0][0])
-        ends = rupture.front_ends
-        x = np.concatenate([ends[0][0].x * PATH_FRACTIONS[:0:-1], ends[-1][1].x * PATH_FRACTIONS])
-        edges = {"release_time": rupture.release_time(x), "stick_time": rupture.stick_time(x)}
-        parts.append(pd.DataFrame({"simulation": name, "position": x} | edges))
+        scenes, _ = expand(sweep)
+        rupture = exact_rupture(scenes[0])
+        left_end, right_end = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
+        # From the end of the left front to that of the right one, with x = 0 once.
+        left, right = left_end * PATH_FRACTIONS[:0:-1], right_end * PATH_FRACTIONS
+        x = np.concatenate([left, right])
+        columns = {
+            "simulation": name,
+            "position": x,
+            "release_time": rupture.release_time(x),
+            "stick_time": rupture.stick_time(x),
+        }
+        parts.append(pd.DataFrame(columns))
     return pd.concat(parts, ignore_index=True)

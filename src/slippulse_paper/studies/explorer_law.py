@@ -12,20 +12,25 @@ NEEDS = {"sweeps": ()}
 LOG_EXCESS_SPEEDS = np.linspace(-8.0, 12.0, 61)
 # Even steps of asinh(b/RATIO_SCALE), which is linear in b where b is small and logarithmic beyond.
 RATIO_SCALE = 0.005
-LARGEST_RATIO, RATIO_COUNT = 5.0, 33
+LARGEST_RATIO = 5.0
+RATIO_COUNT = 33
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row per grid point, with the logit of the pre-stress, ln(tau/(1 - tau))."""
+    """Return the front law: the pre-stress by release rule, damping ratio b and front speed v.
+
+    There is one row per grid point. Coordinates and pre-stress are transformed so that they vary
+    evenly: asinh(b/RATIO_SCALE), ln(v - 1), and the logit of the pre-stress, ln(tau/(1 - tau)).
+    """
     arsinhs = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / RATIO_SCALE), RATIO_COUNT)
-    arsinh, excess = (
-        grid.ravel() for grid in np.meshgrid(arsinhs, LOG_EXCESS_SPEEDS, indexing="ij")
-    )
-    ratio = RATIO_SCALE * np.sinh(arsinh)
-    columns = {"damping_ratio": ratio, "ratio_arsinh": arsinh, "excess_log": excess}
+    arsinh_grid, log_excess_grid = np.meshgrid(arsinhs, LOG_EXCESS_SPEEDS, indexing="ij")
+    arsinh, log_excess = arsinh_grid.ravel(), log_excess_grid.ravel()
+    ratio, speed = RATIO_SCALE * np.sinh(arsinh), 1.0 + np.exp(log_excess)
+    columns = {"damping_ratio": ratio, "ratio_arsinh": arsinh, "excess_log": log_excess}
     parts = []
     for release in RELEASES:
-        tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)
-        logit = np.round(np.log(tau) - np.log1p(-tau), 6)
-        parts.append(pd.DataFrame({"release": release} | columns | {"logit": logit}))
+        tau = prestress_for_speed(speed, ratio, release)
+        logit = np.log(tau) - np.log1p(-tau)
+        rows = {"release": release} | columns | {"logit": np.round(logit, 6)}
+        parts.append(pd.DataFrame(rows))
     return pd.concat(parts, ignore_index=True)

@@ -1,4 +1,8 @@
-"""Other laws of friction: which make pulses that stick or creep, and what selects front speeds."""
+"""Other laws of friction: which make pulses that stick or creep, and what selects front speeds.
+
+Two laws depend on the slip rate and two on the slip. All ruptures have leaf springs and a uniform
+pre-stress, and only their right side is measured.
+"""
 
 from functools import cache
 from itertools import product
@@ -18,17 +22,28 @@ from slippulse.simulation.sweep import recorded
 from slippulse.solver.fixed_step import solve_by_scheme
 from slippulse.theory.law_pulses import rate_pulse, weakening_pulse
 
-from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
+from .right_side import (
+    CRACK,
+    CREEPING,
+    STICKING,
+    PulseSize,
+    pulse_at,
+    right_of_centre,
+    sliding_part,
+)
 
 NEEDS = {"settings": ["measure"]}
 
 GAMMA = 2.0 / 3.0
 # Damping beta/dx of laws of slip rate, and beta of slip weakening.
-DAMPING_RATIO, BETA = 0.1, 0.05
+DAMPING_RATIO = 0.1
+BETA = 0.05
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
-# Limit F of laws of slip rate, divided by the pre-stress; v_0 of strengthening and a of weakening.
+# Limit F of laws of slip rate, divided by the pre-stress.
 RELATIVE_LIMITS = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3)
-V_0, SLOPE = 0.1, 1.5
+# Velocity v_0 of rate strengthening, and slope a of rate weakening.
+STRENGTHENING_VELOCITY = 0.1
+WEAKENING_SLOPE = 1.5
 # d_c of slip weakening, divided by tau_0^2/gamma; at larger d_c the fracture energy stops ruptures.
 RELATIVE_DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
 # There is no friction within this distance of x = 0, which nucleates the rupture.
@@ -42,9 +57,12 @@ STEP_OVER_DX, FINE_STEP_OVER_DX = 0.1, 0.0127
 MIN_OVERSHOOT = 1.01
 # In a running rupture, front and trailing edge advance by more than this factor during the second
 # half of the run.
-MIN_GROWTH, NO_RUPTURE = 1.1, "no rupture"
+MIN_GROWTH = 1.1
+# Regime of a rupture that stops soon after its nucleation.
+NO_RUPTURE = "no rupture"
 # Front speed as a function of d_c/dx at fixed beta: levels, spacings, and values of d_c/dx.
-SELECTION_LEVELS, SELECTION_SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
+SELECTION_LEVELS = (0.5, 0.8)
+SELECTION_SPACINGS = (0.08, 0.04, 0.02)
 SPACINGS_PER_DISTANCE = (1.0, 2.0, 4.0, 8.0)
 # Cases with exact numbers, on lattices of these spacings: level, law, and step divided by dx.
 CASES: tuple[tuple[float, Friction, float], ...] = (
@@ -59,86 +77,145 @@ cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles plane, selection (with d_c and exact_speed), case and theory."""
+    """Return the roles plane, selection, case and theory.
+
+    plane : runs of all laws at all levels, for the regime as a function of level and strength
+    selection : front speeds under slip weakening by spacing and d_c, with the exact speed
+    case, theory : some runs at several spacings, and their exact numbers
+    """
     still = settings["measure"]["still"]
-    plane, selection = [], []
-    for level in LEVELS:
-        laws: list[Friction] = []
-        for limit in RELATIVE_LIMITS:
-            laws += [BoundedRate(limit * level, V_0), RateWeakening(SLOPE, limit * level)]
-        for distance, weakening in product(
-            RELATIVE_DISTANCES, (SlipWeakening, ExponentialWeakening)
-        ):
-            laws.append(weakening(distance * level**2 / GAMMA, NUCLEATION_HALF_LENGTH))
-        plane += [_run(level, law, STEP_OVER_DX, DX, still) for law in laws]
-    for level, dx, resolution in product(
-        SELECTION_LEVELS, SELECTION_SPACINGS, SPACINGS_PER_DISTANCE
-    ):
-        law = SlipWeakening(resolution * dx, NUCLEATION_HALF_LENGTH)
-        ruptures = _strength(level, law) < 1.0
-        speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed if ruptures else np.nan
-        known = {"d_c": law.d_c, "exact_speed": speed}
-        selection.append(_run(level, law, STEP_OVER_DX, dx, still) | known)
+    cases = [
+        _run(level, law, step, dx, still)
+        for (level, law, step), dx in product(CASES, SELECTION_SPACINGS)
+    ]
     parts = {
-        "plane": plane,
-        "selection": selection,
-        "case": [_run(*case, dx, still) for case, dx in product(CASES, SELECTION_SPACINGS)],
+        "plane": _plane(still),
+        "selection": _selection(still),
+        "case": cases,
         "theory": [_theory(level, law) for level, law, _ in CASES],
     }
-    rows = [pd.DataFrame(rows).assign(role=role) for role, rows in parts.items()]
-    return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA)
+    tables_by_role = [pd.DataFrame(rows).assign(role=role) for role, rows in parts.items()]
+    return pd.concat(tables_by_role, ignore_index=True).assign(gamma=GAMMA)
+
+
+def _plane(still: float) -> list[dict[str, Any]]:
+    """Run all laws at all levels."""
+    rows = []
+    for level in LEVELS:
+        laws: list[Friction] = []
+        for relative_limit in RELATIVE_LIMITS:
+            limit = relative_limit * level
+            laws.append(BoundedRate(limit, STRENGTHENING_VELOCITY))
+            laws.append(RateWeakening(WEAKENING_SLOPE, limit))
+        for relative_distance in RELATIVE_DISTANCES:
+            d_c = relative_distance * level**2 / GAMMA
+            laws.append(SlipWeakening(d_c, NUCLEATION_HALF_LENGTH))
+            laws.append(ExponentialWeakening(d_c, NUCLEATION_HALF_LENGTH))
+        rows += [_run(level, law, STEP_OVER_DX, DX, still) for law in laws]
+    return rows
+
+
+def _selection(still: float) -> list[dict[str, Any]]:
+    """Run slip weakening at several spacings and d_c; NaN as exact speed if nothing ruptures."""
+    rows = []
+    for level, dx, spacings_per_distance in product(
+        SELECTION_LEVELS, SELECTION_SPACINGS, SPACINGS_PER_DISTANCE
+    ):
+        law = SlipWeakening(spacings_per_distance * dx, NUCLEATION_HALF_LENGTH)
+        exact_speed = np.nan
+        if _strength(level, law) < 1.0:
+            exact_speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed
+        row = _run(level, law, STEP_OVER_DX, dx, still)
+        rows.append(row | {"d_c": law.d_c, "exact_speed": exact_speed})
+    return rows
 
 
 def _strength(level: float, law: Friction) -> float:
+    """Return the strength of a law relative to the pre-stress level.
+
+    This is d_c gamma/tau_0^2 for slip weakening, F/tau_0 for rate strengthening, and -F/tau_0 for
+    rate weakening.
+    """
     parameters = law.mapping()
     if "d_c" in parameters:
         return parameters["d_c"] * GAMMA / level**2
-    limit = parameters["limit"] / level
-    return -limit if isinstance(law, RateWeakening) else limit
+    relative_limit = parameters["limit"] / level
+    return -relative_limit if isinstance(law, RateWeakening) else relative_limit
 
 
 def _run(level: float, law: Friction, step: float, dx: float, still: float) -> dict[str, Any]:
     """Simulate one run and return its regime and pulse; width and slip are NaN if nothing sticks.
 
-    Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
+    step : largest time step divided by dx
+    still : fraction of the largest velocity below which the centre of a pulse counts as at rest
     """
     step = min(step, 0.9 * law.traits.longest_step / dx)
     # Slip weakening has a limit dx -> 0 at fixed beta, all other laws at fixed beta/dx.
     beta = BETA if isinstance(law, SlipWeakening) else DAMPING_RATIO * dx
-    profile = Prestress(level, level)
-    values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
-    scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
+    scene = Scene(
+        boundary="displacement",
+        prestress=Prestress(level, level),
+        duration=DURATION,
+        dx=dx,
+        gamma=GAMMA,
+        beta=beta,
+        scheme="fixed_step",
+        max_step=step,
+        friction=law,
+    )
     run = recorded(scene, None, solve_by_scheme(scene)).dataset()
     right = right_of_centre(run)
-    # The front speed is measured over the last third of the run.
-    time, x = right["release_time"].values, right["x"].values
-    late = time > 2.0 / 3.0 * DURATION
-    speed = float(np.polyfit(time[late], x[late], 1)[0]) if late.sum() > 2 else np.nan
     regime = _regime(right, level / GAMMA, still)
-    width, slip = pulse_at(right, DURATION) if regime == STICKING else (np.nan, np.nan)
-    strength = _strength(level, law)
-    row = {"law": law.law, "level": level, "strength": strength, "dx": dx, "beta": beta}
-    row |= {"regime": regime, "speed": speed, "pulse_width": width, "pulse_slip": slip}
-    return row | {name: run.attrs[name] for name in ("energy_residual", "run_flags")}
+    pulse = pulse_at(right, DURATION) if regime == STICKING else PulseSize(np.nan, np.nan)
+    return {
+        "law": law.law,
+        "level": level,
+        "strength": _strength(level, law),
+        "dx": dx,
+        "beta": beta,
+        "regime": regime,
+        "speed": _late_front_speed(right),
+        "pulse_width": pulse.width,
+        "pulse_slip": pulse.slip,
+        "energy_residual": run.attrs["energy_residual"],
+        "run_flags": run.attrs["run_flags"],
+    }
 
 
-def _regime(right: xr.Dataset, rest: float, still: float) -> str:
-    """Classify a rupture; ``rest`` is the slip at which it would rest without overshoot."""
-    before, after = (sliding_part(right, time) for time in (0.5 * DURATION, DURATION))
-    if after[1] <= NUCLEATION_HALF_LENGTH + MIN_GROWTH * (before[1] - NUCLEATION_HALF_LENGTH):
+def _late_front_speed(right: xr.Dataset) -> float:
+    """Return the front speed over the last third of a run; NaN if too few blocks are released."""
+    release_time, x = right["release_time"].values, right["x"].values
+    is_late = release_time > 2.0 / 3.0 * DURATION
+    if is_late.sum() <= 2:
+        return np.nan
+    speed, _ = np.polyfit(release_time[is_late], x[is_late], 1)
+    return float(speed)
+
+
+def _regime(right: xr.Dataset, slip_at_rest: float, still: float) -> str:
+    """Classify a rupture, from the growth of its right side over the second half of the run.
+
+    slip_at_rest : slip at which the springs balance the pre-stress, tau_0/gamma
+    """
+    halfway, end = sliding_part(right, 0.5 * DURATION), sliding_part(right, DURATION)
+    # The path of the front is counted from the edge of the nucleation.
+    path_halfway = halfway.front - NUCLEATION_HALF_LENGTH
+    if end.front <= NUCLEATION_HALF_LENGTH + MIN_GROWTH * path_halfway:
         return NO_RUPTURE
-    if after[0] > MIN_GROWTH * before[0] and pulse_at(right, DURATION)[1] > MIN_OVERSHOOT * rest:
+    edge_advances = end.trailing_edge > MIN_GROWTH * halfway.trailing_edge
+    if edge_advances and pulse_at(right, DURATION).slip > MIN_OVERSHOOT * slip_at_rest:
         return STICKING
     velocity = right["slip_velocity"].values
     return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
 
 
 def _theory(level: float, law: Friction) -> dict:
-    """Return the exact numbers of a case."""
+    """Return the exact numbers of a case; width and slip are left out if its pulse never sticks."""
     if isinstance(law, SlipWeakening):
         pulse = cached_pulse(level, GAMMA, BETA, law.d_c)
     else:
         pulse = rate_pulse(level, GAMMA, DAMPING_RATIO, law)
     row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
-    sizes = {"pulse_width": pulse.width, "pulse_slip": pulse.slip} if pulse.sticks else {}
-    return row | sizes
+    if pulse.sticks:
+        row |= {"pulse_width": pulse.width, "pulse_slip": pulse.slip}
+    return row

@@ -1,5 +1,7 @@
 """Tabulate exact front speeds as functions of pre-stress, leaf springs and spacing."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pandas as pd
 
@@ -32,41 +34,71 @@ LINE_COLUMNS = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the panels prestress, springs (by gamma dx^2), refined (by dx) and limit (dx -> 0)."""
-    sweeps = (parameters(settings["sweeps"][name]) for name in NEEDS["sweeps"])
-    swept, springs, fixed_ratio, *fixed_beta = map(pd.DataFrame, sweeps)
-    held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
-    held += [scenes.assign(held="beta", fixed=scenes["beta"]) for scenes in fixed_beta]
-    parts = []
+    """Return the panels prestress, springs (by gamma dx^2), refined (by dx) and limit (dx -> 0).
+
+    A line belongs to a set of parameters of the swept runs.
+    """
+    swept, springs, fixed_ratio, *fixed_beta = (
+        pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
+    )
+    refined = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
+    refined += [runs.assign(held="beta", fixed=runs["beta"]) for runs in fixed_beta]
+    parts = [*prestress_lines(swept), *spring_lines(springs), refined_lines(pd.concat(refined))]
+    return pd.concat(parts, ignore_index=True)
+
+
+def prestress_lines(swept: pd.DataFrame) -> Iterator[pd.DataFrame]:
+    """Yield the front speed as a function of the pre-stress, for each release rule and ratio."""
     for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
-        line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS}
-        line |= {"panel": "prestress", "release": release, "damping_ratio": ratio}
-        parts.append(pd.DataFrame(line))
-    for left, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
-        line = {"panel": "springs", "release": "total", "left": left}
-        line |= {"damping_ratio": ratio, "springs": SPRING_STIFFNESSES}
-        line["speed"] = [_speed(left, spring, 1.0, ratio, "total") for spring in SPRING_STIFFNESSES]
-        parts.append(pd.DataFrame(line))
-    return pd.concat([*parts, over_spacing(pd.concat(held))], ignore_index=True)
+        line = {
+            "left": prestress_for_speed(SPEEDS, ratio, release),
+            "speed": SPEEDS,
+            "panel": "prestress",
+            "release": release,
+            "damping_ratio": ratio,
+        }
+        yield pd.DataFrame(line)
 
 
-def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
-    """Return lines as functions of the spacing, at fixed beta or beta/dx, and their limits."""
+def spring_lines(springs: pd.DataFrame) -> Iterator[pd.DataFrame]:
+    """Yield the front speed as a function of gamma dx^2, for each level and damping ratio."""
+    for level, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
+        # Only gamma dx^2 counts, so the lattice has dx = 1.
+        speeds = [_speed(level, gamma, 1.0, ratio, "total") for gamma in SPRING_STIFFNESSES]
+        line = {
+            "panel": "springs",
+            "release": "total",
+            "left": level,
+            "damping_ratio": ratio,
+            "springs": SPRING_STIFFNESSES,
+            "speed": speeds,
+        }
+        yield pd.DataFrame(line)
+
+
+def refined_lines(runs: pd.DataFrame) -> pd.DataFrame:
+    """Return front speeds as functions of the spacing, and their limits dx -> 0.
+
+    Along a line either beta or b = beta/dx is fixed: the column held says which of them, and the
+    column fixed has its value.
+    """
     rows = []
-    for values, dx in scenes.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
+    for values, spacings in runs.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
         line = dict(zip(LINE_COLUMNS, values, strict=True))
-        left, gamma = line["left"], line["gamma"]
+        level, gamma = line["left"], line["gamma"]
         if line["held"] == "beta" and line["release"] == "elastic":
-            speed = continuum_front_speed(left, gamma, line["fixed"])
+            speed = continuum_front_speed(level, gamma, line["fixed"])
             rows.append(line | {"panel": "limit", "speed": speed})
-        for spacing in np.union1d(np.geomspace(dx.min(), dx.max(), SPACING_COUNT), dx):
-            ratio = line["fixed"] / (1.0 if line["held"] == "b" else spacing)
-            speed = _speed(left, gamma, spacing, ratio, line["release"])
-            point = {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed}
-            rows.append(line | point)
+        # The line has even points, and the spacings of the runs.
+        even = np.geomspace(spacings.min(), spacings.max(), SPACING_COUNT)
+        for dx in np.union1d(even, spacings):
+            ratio = line["fixed"] if line["held"] == "b" else line["fixed"] / dx
+            speed = _speed(level, gamma, dx, ratio, line["release"])
+            row = {"panel": "refined", "dx": dx, "damping_ratio": ratio, "speed": speed}
+            rows.append(line | row)
     return pd.DataFrame(rows)
 
 
-def _speed(left: float, gamma: float, dx: float, ratio: float, release: str) -> float:
+def _speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
     """Return the front speed on a lattice; NaN if no front outruns the waves."""
-    return value_or_nan(lambda: lattice_front_speed(left, gamma, dx, ratio, release))
+    return value_or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))

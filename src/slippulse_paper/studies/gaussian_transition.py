@@ -15,13 +15,18 @@ GAMMAS = (0.01, 0.1, 0.65)
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return T_trans sqrt(gamma)/pi at Gamma = 1; gamma is NaN for nucleation at a point."""
     rows = []
-    for left in LEVELS:
-        rows += [(left, over_paper(left, gamma), gamma) for gamma in (None, *GAMMAS)]
-    return pd.DataFrame(rows, columns=["left", "over_paper", "gamma"])
+    for level in LEVELS:
+        for gamma in (None, *GAMMAS):
+            rows.append({"left": level, "over_paper": over_paper(level, gamma), "gamma": gamma})
+    return pd.DataFrame(rows)
 
 
 def over_paper(level: float, gamma: float | None = None) -> float:
-    """Return T_trans sqrt(gamma)/pi for a Gaussian of W = 1, or for a point if gamma is None."""
+    """Return the exact transition time divided by the paper's formula, pi/sqrt(gamma).
+
+    Rupture begins at a Gaussian of W = 1. If gamma is None it begins at a point, where the ratio
+    does not depend on gamma.
+    """
     if gamma is None:
         return uniform_transition_time(level, 1.0) / np.pi
     exact = exact_transition_displacement(Prestress(level, level), gamma)

@@ -1,7 +1,9 @@
 """Simulate the layer in two dimensions with slip weakening, and compare it with the paper.
 
-Fracture energies d_c/2 are given as fractions of G_0 = tau_0^2/(2 gamma), the energy that a length
-of the layer releases between the pre-stress and the kinetic friction.
+The strength of the fault falls linearly over the slip d_c (weakening), so the fracture energy is
+d_c/2. It is given as a fraction of G_0 = tau_0^2/(2 gamma), the energy that a length of the layer
+releases between the pre-stress and the kinetic friction. A run is measured at several stations,
+which are positions on the fault, and repeated on finer grids.
 """
 
 import math
@@ -23,100 +25,170 @@ NEEDS = {"settings": ()}
 # gamma for lambda = G, which the paper has in mind; at smaller gamma pulses are many H wide.
 GAMMA = 2.0 / 3.0
 GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
-# Fracture energies divided by G_0 at LEVEL, and other levels at one fracture energy.
+# Relative fracture energies at the pre-stress LEVEL, and other levels at one fracture energy.
+LEVEL = 0.8
 FRACTURE_ENERGIES = (0.05, 0.09, 0.21, 0.42, 0.7, 0.9)
-LEVEL, OTHER_LEVELS, OTHER_LEVELS_ENERGY = 0.8, (0.5, 0.65, 0.95), 0.42
+OTHER_LEVELS = (0.5, 0.65, 0.95)
+OTHER_LEVELS_ENERGY = 0.42
 # Half-length of the region without friction, and the duration, at GAMMA. At other gamma all lengths
 # and times are multiplied by sqrt(GAMMA/gamma), like those of the paper's pulses.
-NUCLEATION_HALF_LENGTH, DURATION = 2.0, 48.0
-# Positions at which a pulse is measured at GAMMA. Each measurement averages over a window around
-# the position; comparing the last two positions shows whether the pulse is steady.
+NUCLEATION_HALF_LENGTH = 2.0
+DURATION = 48.0
+# Stations of a pulse at GAMMA. Each measurement averages over a window around the position.
+# Comparing the last two stations shows whether the pulse is steady.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
-# The same for other parts, as fractions of the path of the front.
+# Stations of other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
 # Cells over the height. The run on the first grid determines how long the other runs must be.
-CELLS, FINE_CELLS = (10, 20, 40), (20, 40, 80)
+CELLS = (10, 20, 40)
+FINE_CELLS = (20, 40, 80)
 # The finer grids are used below this fracture energy and above this gamma: small fracture energies
 # need them, but at small gamma they would take too long.
-FINE_GRID_MAX_ENERGY, FINE_GRID_MIN_GAMMA = 0.3, 0.2
-# Margins, relative and in H, for a trailing edge that arrives later on a finer grid.
-TRAIL_MARGINS = 0.03, 1.0
+FINE_GRID_MAX_ENERGY = 0.3
+FINE_GRID_MIN_GAMMA = 0.2
+# A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
+LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
 # The paper's damping.
 BETA = 1e-3
-# Pre-stress and weakening of a pulse whose top may rise, and of a crack under held stress.
-FREE_TOP_CASE, CRACK_CASE, OTHER_DURATION = (0.5, 0.225), (0.8, 0.8), 30.0
-# Level that stops the left front under held stress, width of the Gaussian at nucleation, and
-# weakening distances.
-BARRIER_LEVEL, GAUSSIAN_WIDTH = -0.75, 5.0
+# Pre-stress and weakening of a pulse whose top may rise, and of a crack under a stress boundary.
+FREE_TOP_LEVEL, FREE_TOP_WEAKENING = 0.5, 0.225
+CRACK_LEVEL, CRACK_WEAKENING = 0.8, 0.8
+# Duration of all parts except pulse and step.
+OTHER_DURATION = 30.0
+# Part barrier: the level that stops the left front under a stress boundary, the width of the
+# Gaussian at the nucleation, weakening distances, and the duration in units of OTHER_DURATION.
+BARRIER_LEVEL = -0.75
+GAUSSIAN_WIDTH = 5.0
 WEAKENINGS = (0.05, 0.2, 0.8)
+BARRIER_RELATIVE_DURATION = 1.8
 # Friction coefficients of a strength that depends on the normal stress.
 COUPLINGS = (0.3, 0.6)
-# A pulse enters another pre-stress at STEP_POSITION, with this weakening and these levels at GAMMA.
-# It is measured at positions before and beyond the step.
-STEP_POSITION, STEP_WEAKENING, STEP_LEVELS = 10.0, 0.3, (0.65, 0.8)
+# Part step: a pulse enters another pre-stress at STEP_POSITION, with this weakening and these
+# levels at GAMMA. Its stations lie before and beyond the step.
+STEP_POSITION = 10.0
+STEP_WEAKENING = 0.3
+STEP_LEVELS = (0.65, 0.8)
 STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
-# Fracture energy of the pulse that is drawn, time of the picture, and every how many cells.
-DRAWN_ENERGY, SNAPSHOT_TIME, DRAWN_EVERY_CELLS = 0.21, 12.0, 2
+# Part patch: its duration, in units of the time at which a strip that slides uniformly sticks.
+PATCH_RELATIVE_DURATION = 1.2
+# Part field: fracture energy of the pulse that is drawn, and time of the picture. One in two nodes
+# of the grid is drawn along each axis.
+DRAWN_ENERGY = 0.21
+SNAPSHOT_TIME = 12.0
+DRAWN_STRIDE = 2
+
+Rows = list[dict[str, Any]]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the measurements of all runs by part, and the part field for the picture.
 
-    Parts: pulse (held displacement), patch (the same until the length without friction has stuck),
-    step (a pulse enters another pre-stress), free (its top free to rise), coupled (strength by
-    normal stress), crack and barrier (held stress).
+    There is one row for each run, grid and station. Under a displacement boundary the parts are
+    pulse, patch (the same until the region without friction has stuck), step (a pulse enters
+    another pre-stress), free (the top is free to rise) and coupled (the strength depends on the
+    normal stress). Under a stress boundary they are crack and barrier.
     """
-    rows = []
+    rows: Rows = []
     for gamma in GAMMAS:
-        cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
-        for tau0, energy in cases + [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]:
-            scene = uniform("displacement", gamma, tau0, energy * tau0**2 / gamma)
-            theory = one_dimension(scene)
-            grids = (
-                FINE_CELLS
-                if energy < FINE_GRID_MAX_ENERGY and gamma > FINE_GRID_MIN_GAMMA
-                else CELLS
-            )
-            rows += [row | theory for row in at_places("pulse", scene, grids, STATION_POSITIONS)]
-        # A strip that slides uniformly sticks when a shear wave has run to the top and back.
-        strip = {"strip_first_stick": 2.0 / math.sqrt(0.5 * gamma)}
-        patch = uniform("displacement", gamma, LEVEL, OTHER_LEVELS_ENERGY * LEVEL**2 / gamma)
-        patch = replace(patch, duration=1.2 * strip["strip_first_stick"])
-        rows += [
-            row | strip for row in along_path("patch", patch, CELLS)[:: len(FRACTIONS_OF_PATH)]
-        ]
+        rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
         rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:])
-    rows += along_path(
-        "free", replace(uniform("displacement", GAMMA, *FREE_TOP_CASE), top="free"), CELLS
-    )
-    crack, barrier = (
-        uniform("stress", GAMMA, *CRACK_CASE),
-        Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH),
-    )
-    rows += along_path("crack", crack, CELLS)
-    main = uniform("displacement", GAMMA, LEVEL, OTHER_LEVELS_ENERGY * LEVEL**2 / GAMMA)
+    rows += free_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
+    drawn = uniform("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
+    field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
+    return pd.concat([pd.DataFrame(rows), field])
+
+
+def pulse_rows(gamma: float) -> Rows:
+    """Return pulses at several fracture energies and levels, beside one-dimensional theory."""
+    cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
+    cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
+    rows: Rows = []
+    for tau0, energy in cases:
+        scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
+        needs_fine_grid = energy < FINE_GRID_MAX_ENERGY and gamma > FINE_GRID_MIN_GAMMA
+        grids = FINE_CELLS if needs_fine_grid else CELLS
+        theory = one_dimensional_theory(scene)
+        rows += [row | theory for row in at_stations("pulse", scene, grids, STATION_POSITIONS)]
+    return rows
+
+
+def patch_rows(gamma: float) -> Rows:
+    """Return when the region without friction sticks, one row for each grid.
+
+    The column strip_first_stick has the time at which a strip that slides uniformly would stick: a
+    shear wave has then run to the top and back.
+    """
+    shear_wave_speed = math.sqrt(0.5 * gamma)
+    strip_first_stick = 2.0 / shear_wave_speed
+    scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
+    scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
+    rows = along_path("patch", scene, CELLS)
+    # The stick of the region is the same at all stations of a grid.
+    first_stations = rows[:: len(FRACTIONS_OF_PATH)]
+    return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
+
+
+def free_top_rows() -> Rows:
+    """Return a pulse in a layer whose top is free to rise."""
+    scene = uniform("displacement", GAMMA, FREE_TOP_LEVEL, FREE_TOP_WEAKENING)
+    return along_path("free", replace(scene, top="free"), CELLS)
+
+
+def crack_rows() -> Rows:
+    """Return a crack in uniform pre-stress under a stress boundary."""
+    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS)
+
+
+def coupled_rows() -> Rows:
+    """Return pulses on both sides if the strength depends on the normal stress."""
+    weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
+    scene = uniform("displacement", GAMMA, LEVEL, weakening)
+    rows: Rows = []
     for coupling in COUPLINGS:
-        rows += along_path("coupled", replace(main, coupling=coupling), FINE_CELLS[:2], (1, -1))
-    crack = replace(crack, prestress=barrier, duration=1.8 * OTHER_DURATION)
-    balance = {"balance_distance": paper_transition_stress(barrier)[0]}
+        rows += along_path("coupled", replace(scene, coupling=coupling), FINE_CELLS[:2], (1, -1))
+    return rows
+
+
+def barrier_rows() -> Rows:
+    """Return ruptures under a stress boundary whose left front is stopped by a negative level.
+
+    The column balance_distance has the distance at which the paper's equation stops it.
+    """
+    prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
+    scene = replace(
+        uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING),
+        prestress=prestress,
+        duration=BARRIER_RELATIVE_DURATION * OTHER_DURATION,
+    )
+    balance = {"balance_distance": paper_transition_stress(prestress)[0]}
+    rows: Rows = []
     for weakening in WEAKENINGS:
-        stopped = along_path("barrier", replace(crack, weakening=weakening), CELLS, (1, -1))
+        stopped = along_path("barrier", replace(scene, weakening=weakening), CELLS, (1, -1))
         rows += [row | balance for row in stopped]
-    drawn = uniform("displacement", GAMMA, LEVEL, DRAWN_ENERGY * LEVEL**2 / GAMMA)
-    return pd.concat([pd.DataFrame(rows), field(replace(drawn, duration=SNAPSHOT_TIME))])
+    return rows
+
+
+def weakening_of(relative_energy: float, tau0: float, gamma: float) -> float:
+    """Return the slip d_c over which the strength falls, for a fracture energy divided by G_0."""
+    return relative_energy * tau0**2 / gamma
 
 
 def stretch(gamma: float) -> float:
-    """Return the lengths and times of a scene divided by those at GAMMA."""
+    """Return the factor by which lengths and times at gamma are larger than those at GAMMA."""
     return math.sqrt(GAMMA / gamma)
 
 
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
     """Return a scene in uniform pre-stress; a region without friction nucleates the rupture."""
-    duration, nucleation = OTHER_DURATION * stretch(gamma), NUCLEATION_HALF_LENGTH * stretch(gamma)
-    prestress = Prestress(tau0, tau0, peak=tau0)
-    return LayerScene(boundary, gamma, prestress, weakening, duration, nucleation=nucleation)
+    return LayerScene(
+        boundary,
+        gamma,
+        Prestress(tau0, tau0, peak=tau0),
+        weakening,
+        duration=OTHER_DURATION * stretch(gamma),
+        nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
+    )
 
 
 def across_a_step(
@@ -125,31 +197,37 @@ def across_a_step(
     weakening: float,
     before: float,
     grids: Sequence[int],
-    places: Sequence[float] = STEP_STATIONS,
-) -> list[dict[str, Any]]:
-    """Measure a pulse that forms in one pre-stress and enters another one at STEP_POSITION."""
-    scene, position = (
-        uniform("displacement", gamma, before, weakening),
-        STEP_POSITION * stretch(gamma),
-    )
+    stations: Sequence[float] = STEP_STATIONS,
+) -> Rows:
+    """Measure a pulse that forms in the pre-stress ``before`` and enters ``level``.
+
+    The pre-stress changes at STEP_POSITION on both sides. If both values are equal, the pre-stress
+    is uniform. In the rows, tau0 is the level that the pulse enters.
+    """
+    scene = uniform("displacement", gamma, before, weakening)
     if before != level:
-        steps = (position, level), (-position, level)
+        position = STEP_POSITION * stretch(gamma)
+        steps = ((position, level), (-position, level))
         scene = replace(scene, prestress=replace(scene.prestress, steps=steps))
-    rows = at_places("step", scene, grids, places)
-    energy = weakening * gamma / level**2
-    return [row | {"before": before, "tau0": level, "fracture_energy": energy} for row in rows]
+    relative_energy = weakening * gamma / level**2
+    levels = {"before": before, "tau0": level, "fracture_energy": relative_energy}
+    return [row | levels for row in at_stations("step", scene, grids, stations)]
 
 
-def at_places(
-    part: str, scene: LayerScene, grids: Sequence[int], places: Sequence[float]
-) -> list[dict[str, Any]]:
-    """Measure one scene at fixed positions on each grid; a run ends soon after the last one."""
+def at_stations(
+    part: str, scene: LayerScene, grids: Sequence[int], stations: Sequence[float]
+) -> Rows:
+    """Measure one scene at fixed stations on each grid; a run ends soon after the last one.
+
+    stations : positions at GAMMA, which are stretched to the gamma of the scene
+    """
     scene = replace(scene, duration=DURATION * stretch(scene.gamma))
-    positions = [place * stretch(scene.gamma) for place in places]
-    rows = []
+    positions = [station * stretch(scene.gamma) for station in stations]
+    rows: Rows = []
     for cells in grids:
-        run = simulate_layer(replace(scene, cells=cells))
-        rows += measured(part, replace(scene, cells=cells), run, 1, positions)
+        scene = replace(scene, cells=cells)
+        run = simulate_layer(scene)
+        rows += measured(part, scene, run, 1, positions)
         if cells == grids[0]:
             scene = shortened(scene, run, positions)
     return rows
@@ -159,73 +237,124 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
     """Return the scene with a duration and a trail that suffice to measure at all positions.
 
     The scene is returned as it is if the pulse does not pass all of them.
+
+    run : the run of the scene on a coarse grid
     """
-    half = 0.5 * scene.nucleation
-    near = (run.x >= min(positions) - half) & (run.x <= max(positions) + half)
-    sticks = run.stick_time[near]
+    half_window = 0.5 * scene.nucleation
+    first, last = min(positions) - half_window, max(positions) + half_window
+    is_measured = (run.x >= first) & (run.x <= last)
+    sticks = run.stick_time[is_measured]
     if not np.isfinite(sticks).all():
         return scene
-    relative, absolute = TRAIL_MARGINS
-    later = absolute + relative * float(sticks.max())
-    return replace(
-        scene,
-        duration=float(sticks.max()) + later,
-        trail=max(0.0, float((sticks - run.x[near]).max())) + later,
-    )
+    last_stick = float(sticks.max())
+    # The trailing edge may arrive later on a finer grid.
+    margin = LATER_ABSOLUTE + LATER_RELATIVE * last_stick
+    # Compressional waves move at speed 1, so this is how far the trailing edge falls behind them.
+    lag = float((sticks - run.x[is_measured]).max())
+    return replace(scene, duration=last_stick + margin, trail=max(0.0, lag) + margin)
 
 
 def along_path(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
-) -> list[dict[str, Any]]:
-    """Measure one scene at fractions of the path of its front, for each grid and side."""
-    rows = []
+) -> Rows:
+    """Measure one scene at fractions of the path of its front, for each grid and side.
+
+    sides : 1 for the right side of x = 0, -1 for the left
+    """
+    rows: Rows = []
     for cells in grids:
-        run = simulate_layer(replace(scene, cells=cells))
+        scene = replace(scene, cells=cells)
+        run = simulate_layer(scene)
         for side in sides:
-            end = float((side * run.x[np.isfinite(run.release_time)]).max())
-            positions = [side * fraction * end for fraction in FRACTIONS_OF_PATH]
-            rows += measured(part, replace(scene, cells=cells), run, side, positions)
+            distance = path_length(run, side)
+            positions = [side * fraction * distance for fraction in FRACTIONS_OF_PATH]
+            rows += measured(part, scene, run, side, positions)
     return rows
+
+
+def path_length(run: LayerRun, side: int) -> float:
+    """Return the distance that the front on one side (1 or -1) has run by the end."""
+    released = np.isfinite(run.release_time)
+    return float((side * run.x[released]).max())
 
 
 def measured(
     part: str, scene: LayerScene, run: LayerRun, side: int, positions: Sequence[float]
-) -> list[dict[str, Any]]:
-    """Measure the pulse that passes each position of a run, and the slip that it leaves."""
+) -> Rows:
+    """Return one row for each position: the parameters, `whole_run` and `pulse_at_station`."""
     tau0, gamma = scene.prestress.right, scene.gamma
-    known: dict[str, Any] = {"part": part, "gamma": gamma, "tau0": tau0, "side": side}
-    known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": scene.cells}
+    known: dict[str, Any] = {
+        "part": part,
+        "gamma": gamma,
+        "tau0": tau0,
+        "side": side,
+        "weakening": scene.weakening,
+        "coupling": scene.coupling,
+        "cells": scene.cells,
+    }
     if tau0 > 0.0:
         known["fracture_energy"] = scene.weakening * gamma / tau0**2
-    # Infinite if the middle of the region without friction never sticks.
-    middle = float(run.stick_time[np.argmin(np.abs(run.x))])
-    known["first_stick"] = middle if math.isfinite(middle) else math.inf
-    if math.isfinite(scene.trail):
-        # The run was too short to follow the middle until it sticks.
-        known["first_stick"] = math.nan
-    sticks = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
-    known["earliest_stick"] = float(sticks.min())
-    known["earliest_stick_position"] = float(abs(run.x[np.argmin(sticks)]))
-    known["energy_residual"] = run.energy_residual
-    known["end"] = side * float((side * run.x[np.isfinite(run.release_time)]).max())
+    known |= whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
-        distance = np.abs(run.x - position)
-        near, about = distance <= 0.5 * scene.nucleation, distance <= scene.nucleation
-        slid, released = (run.stick_time - run.release_time)[near], run.release_time[about]
-        row = {"station": station, "sample_position": position, "speed": math.nan}
-        if np.isfinite(released).all():
-            row["speed"] = 1.0 / abs(np.polyfit(run.x[about], released, 1)[0])
-        row["pulse_width"] = row["speed"] * float(slid.mean())
-        rows.append(known | row | {"pulse_slip": float(run.slip[near].mean())})
+        row = {"station": station} | pulse_at_station(run, position, scene.nucleation)
+        rows.append(known | row)
     return rows
 
 
-def one_dimension(scene: LayerScene) -> dict[str, float]:
-    """Return the numbers of the paper's equation for the parameters of a scene."""
+def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
+    """Return the numbers of a run that do not belong to a station: sticks, energy and path."""
+    # The first stick is that of the middle of the region without friction. It is infinite if the
+    # middle never sticks, and NaN if the run was too short to follow it (with a finite trail).
+    first_stick = float(run.stick_time[np.argmin(np.abs(run.x))])
+    if not math.isfinite(first_stick):
+        first_stick = math.inf
+    if math.isfinite(scene.trail):
+        first_stick = math.nan
+    sticks = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
+    return {
+        "first_stick": first_stick,
+        "earliest_stick": float(sticks.min()),
+        "earliest_stick_position": float(abs(run.x[np.argmin(sticks)])),
+        "energy_residual": run.energy_residual,
+        "end": side * path_length(run, side),
+    }
+
+
+def pulse_at_station(run: LayerRun, position: float, window: float) -> dict[str, float]:
+    """Return speed, width and slip of the pulse that passes a position.
+
+    The width is the front speed times the mean time for which the fault slides. Width and slip are
+    averages over a window of this length around the position. The speed is fitted over twice the
+    window, and is NaN if the front has not passed all of it.
+    """
+    distance = np.abs(run.x - position)
+    in_window, in_wide_window = distance <= 0.5 * window, distance <= window
+    sliding_times = (run.stick_time - run.release_time)[in_window]
+    release_times = run.release_time[in_wide_window]
+    speed = math.nan
+    if np.isfinite(release_times).all():
+        slowness, _ = np.polyfit(run.x[in_wide_window], release_times, 1)
+        speed = 1.0 / abs(slowness)
+    return {
+        "sample_position": position,
+        "speed": speed,
+        "pulse_width": speed * float(sliding_times.mean()),
+        "pulse_slip": float(run.slip[in_window].mean()),
+    }
+
+
+def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
+    """Return the pulse of the paper's one-dimensional equation, for the parameters of a scene.
+
+    paper : the paper's formulas, without weakening and damping
+    damped : with the weakening of the scene and the damping BETA
+    balance_pulse_slip : final slip with weakening and without damping, from the energy balance
+    """
     tau0, gamma = scene.prestress.right, scene.gamma
     weakening = scene.weakening
-    paper, damped = paper_pulse(tau0, gamma), weakening_pulse(tau0, gamma, BETA, weakening)
+    paper = paper_pulse(tau0, gamma)
+    damped = weakening_pulse(tau0, gamma, BETA, weakening)
     return {
         "paper_speed": paper.speed,
         "paper_pulse_width": paper.width,
@@ -237,15 +366,24 @@ def one_dimension(scene: LayerScene) -> dict[str, float]:
     }
 
 
-def field(scene: LayerScene) -> pd.DataFrame:
-    """Return the horizontal velocity in the layer at the end of a scene, where anything moves."""
+def field_rows(scene: LayerScene) -> pd.DataFrame:
+    """Return the horizontal velocity in the layer at the end of a scene, on some of its nodes.
+
+    The part of the layer that nothing can have reached is left out.
+    """
     run = simulate_layer(scene)
-    ahead = run.x <= scene.duration + 2.0 * scene.nucleation
-    columns = np.flatnonzero(ahead)[::DRAWN_EVERY_CELLS]
-    rows = np.arange(0, scene.cells + 1, DRAWN_EVERY_CELLS)
-    y, x = np.meshgrid(rows / scene.cells, run.x[columns], indexing="ij")
+    reach = scene.duration + 2.0 * scene.nucleation
+    columns = np.flatnonzero(run.x <= reach)[::DRAWN_STRIDE]
+    rows = np.arange(0, scene.cells + 1, DRAWN_STRIDE)
+    heights = rows / scene.cells
+    y, x = np.meshgrid(heights, run.x[columns], indexing="ij")
     velocity = run.velocity[np.ix_(rows, columns)]
-    shape = {"x": x.ravel(), "y": y.ravel(), "velocity": velocity.ravel()}
-    numbers = {"gamma": scene.gamma, "tau0": scene.prestress.right, "weakening": scene.weakening}
-    numbers["fracture_energy"] = DRAWN_ENERGY
-    return pd.DataFrame(shape).assign(part="field", time=scene.duration, **numbers)
+    field = pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "velocity": velocity.ravel()})
+    return field.assign(
+        part="field",
+        time=scene.duration,
+        gamma=scene.gamma,
+        tau0=scene.prestress.right,
+        weakening=scene.weakening,
+        fracture_energy=DRAWN_ENERGY,
+    )

@@ -1,4 +1,10 @@
-"""Compute the exact transitions of figure 5 at every combination of open choices."""
+"""Compute the exact transitions of figure 5 at every combination of open choices.
+
+The choices are those that the paper leaves open: damping ratio, release rule, and, under a stress
+boundary, the nucleation and the fraction of its path at which the left front counts as arrested.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -6,6 +12,7 @@ import pandas as pd
 from slippulse.model.prestress import Prestress
 from slippulse.theory.arrest import ArrestingCrack
 from slippulse.theory.closed_pulse import paper_transition_displacement
+from slippulse.theory.curve import Curve
 from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.part import Part
 from slippulse.theory.two_fronts import fast_fronts
@@ -27,70 +34,126 @@ TENT_NODES, TENT_WEIGHTS = np.polynomial.legendre.leggauss(24)
 PAPER_COLUMNS = ["paper_transition_time", "paper_transition_length"]
 
 
+class Arrest(NamedTuple):
+    """The arrest of the left front at W = 1, exact and by the paper's estimates.
+
+    The paper estimates that both fronts cover the distance |x_minus| at speed 1.
+    """
+
+    nucleation: str
+    fraction: float
+    transition_time: float
+    transition_length: float
+    paper_transition_time: float
+    paper_transition_length: float
+
+
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return exact transitions and the paper's estimates, for each run of figure 5 and choice."""
-    sweeps = (parameters(settings["sweeps"][name]) for name in NEEDS["sweeps"])
-    springs, cracks = map(pd.DataFrame, sweeps)
+    springs, cracks = (
+        pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
+    )
     springs, cracks = springs.query("left > 0"), cracks.query("left < 0")
-    choices = tables["open_choices"].groupby("choice")
-    values = choices.get_group("fraction")["value"]
-    fractions = [value for value in values if isinstance(value, float)]
+    values_by_choice = tables["open_choices"].groupby("choice")
+    fraction_choices = values_by_choice.get_group("fraction")["value"]
+    # The choice "last release" is a text; it belongs to lattices.
+    fractions = [value for value in fraction_choices if isinstance(value, float)]
+    damping_choices = values_by_choice.get_group("damping_ratio")[["value", "release"]]
     parts = []
-    for ratio, release in choices.get_group("damping_ratio")[["value", "release"]].values:
-        both = displacement(springs, ratio, release), stress(cracks, ratio, release, fractions)
-        parts += [rows.assign(damping_ratio=ratio, release=release) for rows in both]
+    for ratio, release in damping_choices.values:
+        for rows in (
+            displacement(springs, ratio, release),
+            stress(cracks, ratio, release, fractions),
+        ):
+            parts.append(rows.assign(damping_ratio=ratio, release=release))
     return pd.concat(parts, ignore_index=True)
 
 
-def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame:
-    """Return the first sticks of symmetric scenes at x = 0; all gammas share the same fronts."""
-    parts = []
-    for (left, width), rows in grid.groupby(["left", "width"]):
-        gammas = rows["gamma"].to_numpy()
-        latest = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
-        # The past cone of (0, t) begins at x + T(x) = t, so x < t.
-        reach = max(float(latest.max()), 2.0 * GAUSSIAN_REACH * width)
-        fronts = fast_fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
-        both = zip(gammas, latest, strict=True)
-        times = np.array(
-            [float(Part(fronts, *one).find_stick_times(np.zeros(1))[0]) for one in both]
-        )
-        # The pre-stress is uniform beyond the Gaussian.
-        uniform_from = GAUSSIAN_REACH * width
-        time_beyond = times - fronts.arrival(uniform_from)
-        positions = uniform_from + float(front_speed(left, ratio, release)) * time_beyond
-        for i in np.flatnonzero(positions <= uniform_from):
-            positions[i] = fronts.front_at(times[i], 0.0, 1.0)
-        rows = rows[["boundary"]].assign(nucleation="Gaussian", left=left, width=width)
-        rows = rows.assign(gamma=gammas, transition_time=times, transition_length=2.0 * positions)
-        rows[PAPER_COLUMNS] = [paper_transition_displacement(left, gamma) for gamma in gammas]
-        parts.append(rows)
-    return pd.concat(parts)
+def displacement(runs: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame:
+    """Return the transitions under a displacement boundary, which are first sticks at x = 0.
 
-
-def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> pd.DataFrame:
-    """Return arrests at each fraction of |x_minus|; for a finite tail also at the whole of it.
-
-    W is the only length without leaf springs: every number of a level is proportional to it.
+    runs : left (the level on both sides), width and gamma of each run
     """
-    # A tent has half-width 1 on both sides of x = 0: the last characteristic enters at its end.
-    crossing = (
-        float(TENT_WEIGHTS @ (1.0 / front_speed(0.5 + 0.5 * TENT_NODES, ratio, release))) / 2.0
-    )
-    columns = ["nucleation", "fraction", "transition_time", "transition_length", *PAPER_COLUMNS]
     parts = []
-    for left, rows in grid.groupby("left"):
-        crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
-        way = -crack.balance_position
-        arrests = []
-        for part in fractions:
-            arrests.append(("Gaussian", part, *crack.transition(part), way, 2.0 * way))
-        # The stress of the tent is 1/2 on the right and (1 + left)/2 on the left of x = 0.
-        way = 1.0 + (1.0 + 0.5 * left) / -left
-        # Beyond x = 1 the right front runs at the wave speed.
-        arrests.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way, 2.0 * way))
-        scenes = rows[["boundary", "left", "width"]]
-        rows = scenes.merge(pd.DataFrame(arrests, columns=columns), how="cross")
-        rows[columns[2:]] = rows[columns[2:]].mul(rows["width"], axis=0)
+    # Leaf springs do not change the fronts, so all runs of a level and width share them.
+    for (level, width), group in runs.groupby(["left", "width"]):
+        gammas = group["gamma"].to_numpy()
+        latest = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
+        # The velocity at (0, t) depends on |x| with |x| + T(x) < t, where T is the release time,
+        # so only on |x| < t.
+        reach = max(float(latest.max()), 2.0 * GAUSSIAN_REACH * width)
+        fronts = fast_fronts(Prestress(level, level, width), ratio, release, reach, gammas.max())
+        times = []
+        for gamma, until in zip(gammas, latest, strict=True):
+            (stick_time,) = Part(fronts, gamma, until).find_stick_times(np.zeros(1))
+            times.append(float(stick_time))
+        positions = front_positions(fronts, np.array(times), level, width, ratio, release)
+        rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
+        rows["gamma"] = gammas
+        rows["transition_time"] = times
+        rows["transition_length"] = 2.0 * positions
+        rows[PAPER_COLUMNS] = [paper_transition_displacement(level, gamma) for gamma in gammas]
         parts.append(rows)
     return pd.concat(parts)
+
+
+def front_positions(
+    fronts: Curve, times: np.ndarray, level: float, width: float, ratio: float, release: str
+) -> np.ndarray:
+    """Return the positions of the right front at some times.
+
+    Beyond the Gaussian the pre-stress is uniform, and the front runs at a constant speed.
+    """
+    uniform_from = GAUSSIAN_REACH * width
+    speed = float(front_speed(level, ratio, release))
+    positions = uniform_from + speed * (times - fronts.arrival(uniform_from))
+    for index in np.flatnonzero(positions <= uniform_from):
+        positions[index] = fronts.front_at(times[index], 0.0, 1.0)
+    return positions
+
+
+def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> pd.DataFrame:
+    """Return arrests under a stress boundary, for nucleation by a Gaussian and by a tent.
+
+    For the Gaussian there is one row for each fraction of |x_minus|. A tent is a pre-stress that
+    falls linearly from 1 at x = 0 to its level at a distance W. Its left front arrives at x_minus,
+    so there is one row, with the fraction 1.
+
+    runs : boundary, left (level on the left) and width W of each run. W is the only length without
+        leaf springs, so all times and lengths of a level are proportional to it.
+    """
+    # All columns except the nucleation and the fraction are times and lengths.
+    proportional = list(Arrest._fields[2:])
+    parts = []
+    for left, group in runs.groupby("left"):
+        crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
+        distance = -crack.balance_position
+        arrests = []
+        for fraction in fractions:
+            time, length = crack.transition(fraction)
+            arrests.append(Arrest("Gaussian", fraction, time, length, distance, 2.0 * distance))
+        arrests.append(tent_arrest(left, ratio, release))
+        at_width_1 = pd.DataFrame(arrests)
+        rows = group[["boundary", "left", "width"]].merge(at_width_1, how="cross")
+        rows[proportional] = rows[proportional].mul(rows["width"], axis=0)
+        parts.append(rows)
+    return pd.concat(parts)
+
+
+def tent_arrest(left: float, ratio: float, release: str) -> Arrest:
+    """Return the arrest for nucleation by a tent with W = 1."""
+    # On the right the pre-stress falls evenly from 1 to 0 over the distance 1, so the time in which
+    # the right front crosses the tent is the mean slowness (1/speed) over these levels. The nodes
+    # of the integration lie between -1 and 1.
+    levels = 0.5 + 0.5 * TENT_NODES
+    slownesses = 1.0 / front_speed(levels, ratio, release)
+    crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
+    # The integral of the pre-stress is 1/2 on the right and (1 + left)/2 on the left of x = 0. The
+    # negative level beyond the tent balances it at x_minus.
+    tent_integral = 1.0 + 0.5 * left
+    distance = 1.0 + tent_integral / -left
+    # The last wave that drives the left front enters at the end of the tent on the right. Beyond
+    # it the right front runs at the wave speed.
+    time = distance + 1.0 + crossing_time
+    length = 2.0 * distance + 2.0
+    return Arrest("tent", 1.0, time, length, distance, 2.0 * distance)

@@ -1,8 +1,11 @@
 """Tabulate the exact final slip of a pulse that enters another pre-stress, and its memory."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
+from slippulse.model.scene import Scene
 from slippulse.simulation.exact_rupture import exact_rupture
 from slippulse.theory.pulse import steady_pulse
 
@@ -20,20 +23,22 @@ DISTANCES_BEYOND = np.concatenate(
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the final slip by distance from the step, with both steady slips and the memory."""
-    parts = []
-    for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:
-        position, level = scene.prestress.steps[-1]
-        before = scene.prestress.right
-        # In the limit dx -> 0 damping acts only through the front speed.
-        ratio, release = scene.damping_ratio, scene.release
-        old, new = (
-            steady_pulse(tau, scene.gamma, damping_ratio=ratio, release=release)
-            for tau in (before, level)
-        )
-        memory = new.width / (new.speed - 1.0)
-        x = np.concatenate([DISTANCES_BEFORE, memory * DISTANCES_BEYOND])
-        slip = exact_rupture(scene).final_slip(position + x)
-        rows = pd.DataFrame({"level": level, "x": x, "slip": slip})
-        rows = rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory)
-        parts.append(rows)
-    return pd.concat(parts, ignore_index=True)
+    scenes, _ = expand(settings["sweeps"]["pulses_across_a_step"])
+    return pd.concat([rows_of_scene(scene) for scene in scenes], ignore_index=True)
+
+
+def rows_of_scene(scene: Scene) -> pd.DataFrame:
+    """Return the final slip of one pulse, which passes from one level to another at a step."""
+    position, level = scene.prestress.steps[-1]
+    before = scene.prestress.right
+    # In the limit dx -> 0 damping acts only through the front speed.
+    rules: dict[str, Any] = {"damping_ratio": scene.damping_ratio, "release": scene.release}
+    pulse_before = steady_pulse(before, scene.gamma, **rules)
+    pulse_beyond = steady_pulse(level, scene.gamma, **rules)
+    memory = pulse_beyond.width / (pulse_beyond.speed - 1.0)
+    x = np.concatenate([DISTANCES_BEFORE, memory * DISTANCES_BEYOND])
+    slip = exact_rupture(scene).final_slip(position + x)
+    rows = pd.DataFrame({"level": level, "x": x, "slip": slip})
+    return rows.assign(
+        before=before, steady=pulse_beyond.slip, steady_before=pulse_before.slip, memory=memory
+    )

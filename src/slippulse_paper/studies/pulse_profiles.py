@@ -25,33 +25,54 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts = []
     for name, sweep in settings["sweeps"].items():
         for number, run in enumerate(runs(sweep)):
-            rows = far_profile(run) if run.boundary == "stress" else profile(run)
+            rows = stress_profile(run) if run.boundary == "stress" else displacement_profile(run)
             parts.append(rows.assign(simulation=name, run=number))
     return pd.concat(parts, ignore_index=True)
 
 
-def profile(run: Run) -> pd.DataFrame:
-    """Return a steady pulse with sharp corners at the front and at the trailing edge."""
+def displacement_profile(run: Run) -> pd.DataFrame:
+    """Return the exact steady pulse under a displacement boundary.
+
+    It has sharp corners at the front and at the trailing edge, so both sides of each are included.
+    """
     level, ratio = run.prestress.right, run.damping_ratio
     pulse = steady_pulse(level, run.gamma, run.beta, damping_ratio=ratio, release=run.release)
-    even = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT) * pulse.width
-    edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
-    xi = np.unique(np.concatenate([even, edges]))
+    relative = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT)
+    trailing_edge = -pulse.width
+    corners = [
+        trailing_edge,
+        np.nextafter(trailing_edge, -np.inf),
+        0.0,
+        1e-12 * pulse.width,
+    ]
+    # The distance xi from the front is negative behind it.
+    xi = np.unique(np.concatenate([relative * pulse.width, corners]))
     fields = dict(zip(FIELDS, pulse.profile(xi), strict=True))
     return pd.DataFrame({"x": xi - pulse.peak_position} | fields)
 
 
-def far_profile(run: Run) -> pd.DataFrame:
-    """Return the pulse far from its nucleation under held stress, its integral and derivative."""
+def stress_profile(run: Run) -> pd.DataFrame:
+    """Return the exact pulse under a stress boundary, far from its nucleation.
+
+    Its velocity is known; slip is the integral of the velocity, and acceleration its derivative.
+    """
     crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
-    pulse = np.array(crack.far_pulse())
-    delay, velocity = pulse[:, np.argsort(pulse[0], kind="stable")]
-    start = max(0, int(np.argmax(velocity > TAIL_CUT * velocity.max())) - 1)
-    x, v = delay[start:] - delay[np.argmax(velocity)], velocity[start:]
-    apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
-    x, v = x[apart], v[apart]
-    # The pulse moves unchanged at the wave speed, so slip is the integral of the velocity.
-    slip = cumulative_trapezoid(v[::-1], -x[::-1], initial=0.0)[::-1]
-    curves = (slip, v, -np.gradient(v, x))
-    rows = pd.DataFrame({"x": x} | dict(zip(FIELDS, curves, strict=True)))
-    return rows.iloc[:: max(1, len(rows) // (2 * POINT_COUNT))]
+    delay, velocity = crack.far_pulse()
+    # x - t in ascending order, from the tail to the front
+    order = np.argsort(delay, kind="stable")
+    delay, velocity = delay[order], velocity[order]
+    first_fast = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
+    start = max(0, first_fast - 1)
+    peak = delay[np.argmax(velocity)]
+    x, velocity = delay[start:] - peak, velocity[start:]
+    # A derivative needs points that are apart.
+    is_apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
+    x, velocity = x[is_apart], velocity[is_apart]
+    # The pulse moves unchanged at the wave speed 1, so du/dt = -du/dx. The integral begins at the
+    # front, where the slip is 0.
+    slip = cumulative_trapezoid(velocity[::-1], -x[::-1], initial=0.0)[::-1]
+    acceleration = -np.gradient(velocity, x)
+    curves = dict(zip(FIELDS, (slip, velocity, acceleration), strict=True))
+    rows = pd.DataFrame({"x": x} | curves)
+    stride = max(1, len(rows) // (2 * POINT_COUNT))
+    return rows.iloc[::stride]

@@ -1,4 +1,9 @@
-"""Checks of rough ensembles on a part: finer lattices, exact solutions, and what pulses forget."""
+"""Checks of the rough ensembles on some of their seeds.
+
+Part grid: death rates on finer lattices. Part balance: deaths under a stress boundary, compared
+with the balance of the pre-stress. Part exact: final slip, compared with the exact solution. Part
+memory: how far beyond a bump of the pre-stress the final slip still depends on it.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -7,123 +12,174 @@ import numpy as np
 import pandas as pd
 
 from slippulse.data.points import Recorded
+from slippulse.model.scene import Scene
 from slippulse.simulation.exact_rupture import exact_rupture
 from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.pulse import steady_pulse
 from slippulse.theory.rupture import Rupture
 
 from ..configuration.expand import expand
-from .rough_prestress import KEYS, MIDDLES, START, fate, integral
+from .rough_prestress import CELL_MIDDLES, ROUGH_KEYS, START, fate_of_pulse, prestress_integral
 from .rough_theory import balance_position
 from .survival_statistics import death_rate
 
 NEEDS = {"sweeps": ["rough_displacement", "rough_settling", "rough_stress"]}
 
-# Seeds of each ensemble whose deaths are compared between spacings.
-GRID_SEEDS, GRID_SPACINGS = 10, (0.05, 0.025)
-# Seeds whose deaths with the stress held are compared with the balance, up to a time, by spacing.
-BALANCE_SEEDS, BALANCE_TIME, BALANCE_SPACINGS = 20, 60.0, (0.1, 0.05, 0.025)
-# Seeds that are also solved exactly, up to a time, against lattices of these spacings, at blocks at
-# this distance from each other.
-EXACT_SEEDS, EXACT_TIME, EXACT_SPACINGS = 2, 12.0, (0.05, 0.025)
-EXACT_DISTANCE = 0.25
-# Bump of the pre-stress that a pulse forgets, the seeds that meet it, and distances beyond the bump
-# in units of the memory. A Gaussian ends EDGE widths from its centre.
-BUMP, EDGE = (15.0, 0.1, 1.0), 3.0
-BUMP_SEEDS, BEYOND = 10, np.linspace(0.1, 1.4, 14)
+# Part grid: seeds of each ensemble, and spacings of the lattices.
+GRID_SEEDS = 10
+GRID_SPACINGS = (0.05, 0.025)
+# Part balance: seeds, duration and spacings.
+BALANCE_SEEDS = 20
+BALANCE_DURATION = 60.0
+BALANCE_SPACINGS = (0.1, 0.05, 0.025)
+# Part exact: seeds, duration and spacings, and the distance between the blocks that are compared.
+EXACT_SEEDS = 2
+EXACT_DURATION = 12.0
+EXACT_SPACINGS = (0.05, 0.025)
+COMPARED_BLOCK_DISTANCE = 0.25
+# Part memory: seeds, and the Gaussian bump, which ends some widths from its position.
+BUMP_SEEDS = 10
+BUMP_POSITION = 15.0
+BUMP_HEIGHT = 0.1
+BUMP_WIDTH = 1.0
+BUMP_REACH_IN_WIDTHS = 3.0
+# The slip is compared at these distances beyond the end of the bump, in units of the memory.
+RELATIVE_DISTANCES = np.linspace(0.1, 1.4, 14)
+
+# One rough pre-stress of the configuration, with its seed.
+Profile = Mapping[str, Any]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts grid (death rates), balance (deaths), exact (slip) and memory (of a bump)."""
+    """Return the parts grid, balance, exact and memory, which the module describes."""
     dying, settling, stress = (settings["sweeps"][name] for name in NEEDS["sweeps"])
-    parts = [
-        grid(dying),
-        balance(next(ensembles(stress)), stress),
-        *(exact(group, settling) for group in ensembles(settling)),
-    ]
-    parts += [memory(group, settling) for group in ensembles(settling)]
+    first_stress_ensemble = next(ensembles_of(stress))
+    parts = [grid_rows(dying), balance_rows(first_stress_ensemble, stress)]
+    parts += [exact_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
+    parts += [memory_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
     return pd.concat(parts, ignore_index=True)
 
 
-def ensembles(sweep: Mapping[str, Any]) -> Iterator[list[dict]]:
-    """Yield the profiles of each ensemble of a sweep."""
-    groups: dict[tuple, list[dict]] = {}
+def ensembles_of(sweep: Mapping[str, Any]) -> Iterator[list[Profile]]:
+    """Yield the profiles of each ensemble of a sweep, which differ only in the seed."""
+    ensembles: dict[tuple, list[Profile]] = {}
     for profile in sweep["profiles"]:
-        groups.setdefault(tuple(profile["rough"][key] for key in KEYS), []).append(profile)
-    yield from groups.values()
+        key = tuple(profile["rough"][name] for name in ROUGH_KEYS)
+        ensembles.setdefault(key, []).append(profile)
+    yield from ensembles.values()
 
 
-def keys_of(group: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Parameters that the profiles of an ensemble have in common."""
-    return {key: group[0]["rough"][key] for key in KEYS}
+def parameters_of(ensemble: Sequence[Profile]) -> dict[str, Any]:
+    """Return the parameters of the random field, which all profiles of an ensemble share."""
+    return {name: ensemble[0]["rough"][name] for name in ROUGH_KEYS}
 
 
-def grid(sweep: Mapping[str, Any]) -> pd.DataFrame:
-    """Death rate over some seeds of all ensembles on lattices of several spacings."""
-    profiles = [one for group in ensembles(sweep) for one in group[:GRID_SEEDS]]
+def scenes_of(
+    sweep: Mapping[str, Any], profiles: Sequence[Profile], **changed: Any
+) -> Sequence[Scene]:
+    """Return the scenes of a sweep with these profiles, and with some keys of the sweep changed."""
+    scenes, _ = expand({**sweep, "profiles": profiles, **changed})
+    return scenes
+
+
+def simulated_run(scene: Scene) -> Recorded:
+    """Simulate a scene on its lattice."""
+    return Recorded(solve_on_lattice(scene).arrays(), {"dx": scene.dx})
+
+
+def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the death rate on lattices of several spacings, over some seeds of all ensembles."""
+    profiles: list[Profile] = []
+    for ensemble in ensembles_of(sweep):
+        profiles += ensemble[:GRID_SEEDS]
+    stop = profiles[0]["rough"]["stop"]
     rows = []
     for dx in GRID_SPACINGS:
         fates = []
-        for scene in expand({**sweep, "profiles": profiles, "dx": [dx]})[0]:
-            solution = solve_on_lattice(scene)
-            run = Recorded(solution.arrays(), {"dx": dx})
-            fates += [fate(run, side, profiles[0]["rough"]["stop"]) for side in (1, -1)]
+        for scene in scenes_of(sweep, profiles, dx=[dx]):
+            run = simulated_run(scene)
+            fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
 
 
-def balance(group: Sequence[Mapping[str, Any]], sweep: Mapping[str, Any]) -> pd.DataFrame:
-    """Median distance by which pulses on lattices die before the balance of the pre-stress."""
+def balance_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Compare deaths on lattices with the balance of the pre-stress, one row for each spacing.
+
+    A pulse on a lattice dies before it reaches the balance position; the column change has the
+    median distance between them, over all pulses that die within BALANCE_DURATION.
+    """
+    profiles = ensemble[:BALANCE_SEEDS]
+    integrals = [prestress_integral(profile) for profile in profiles]
+    balance_positions = [balance_position(CELL_MIDDLES, integral) for integral in integrals]
+    stop = ensemble[0]["rough"]["stop"]
     rows = []
-    profiles = group[:BALANCE_SEEDS]
-    exact_deaths = [balance_position(MIDDLES, integral(profile)) for profile in profiles]
-    shorter = {**sweep, "profiles": profiles, "duration": {"time": BALANCE_TIME}}
     for dx in BALANCE_SPACINGS:
+        scenes = scenes_of(sweep, profiles, dx=[dx], duration={"time": BALANCE_DURATION})
         gaps = []
-        for scene, death in zip(expand({**shorter, "dx": [dx]})[0], exact_deaths, strict=True):
-            one = fate(
-                Recorded(solve_on_lattice(scene).arrays(), {"dx": dx}), 1, group[0]["rough"]["stop"]
-            )
-            gaps += [death - one.distance] if one.died else []
-        counts = {"deaths": len(gaps), "pulses": len(profiles)}
-        rows.append({"part": "balance", "dx": dx, "change": np.median(gaps)} | counts)
-    return pd.DataFrame(rows).assign(**keys_of(group))
+        for scene, balance in zip(scenes, balance_positions, strict=True):
+            right_pulse = fate_of_pulse(simulated_run(scene), 1, stop)
+            if right_pulse.died:
+                gaps.append(balance - right_pulse.distance)
+        row = {"part": "balance", "dx": dx, "change": np.median(gaps)}
+        rows.append(row | {"deaths": len(gaps), "pulses": len(profiles)})
+    return pd.DataFrame(rows).assign(**parameters_of(ensemble))
 
 
-def exact(group: Sequence[Mapping[str, Any]], sweep: Mapping[str, Any]) -> pd.DataFrame:
-    """Median deviation of the final slip on lattices from the exact solution, by spacing."""
-    shorter = {**sweep, "profiles": group[:EXACT_SEEDS], "duration": {"time": EXACT_TIME}}
+def exact_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Compare the final slip on lattices with the exact solution, one row for each spacing.
+
+    The column change has the median of |lattice/exact - 1| over some blocks of some seeds.
+    """
+    profiles = ensemble[:EXACT_SEEDS]
     ruptures: list[Rupture] = []
     rows = []
     for dx in EXACT_SPACINGS:
-        scenes = expand({**shorter, "dx": [dx]})[0]
-        # The exact solution has no spacing, only the damping ratio.
-        ruptures = ruptures or [exact_rupture(scene) for scene in scenes]
+        scenes = scenes_of(sweep, profiles, dx=[dx], duration={"time": EXACT_DURATION})
+        if not ruptures:
+            # The exact solution depends on the damping ratio and not on the spacing, so all
+            # lattices are compared with the same one.
+            ruptures = [exact_rupture(scene) for scene in scenes]
+        blocks_per_comparison = round(COMPARED_BLOCK_DISTANCE / dx)
         deviations = []
         for scene, rupture in zip(scenes, ruptures, strict=True):
             solution = solve_on_lattice(scene)
-            at = np.isfinite(solution.stick_time)
-            at[at] = np.arange(np.sum(at)) % round(EXACT_DISTANCE / dx) == 0
-            slip = rupture.final_slip(solution.x[at])
-            deviations.append(np.abs(solution.slip[at] / slip - 1.0))
-        change = float(np.nanmedian(np.concatenate(deviations)))
-        rows.append({"part": "exact", "dx": dx, "change": change} | keys_of(group))
+            stuck_blocks = np.flatnonzero(np.isfinite(solution.stick_time))
+            compared = stuck_blocks[::blocks_per_comparison]
+            exact_slip = rupture.final_slip(solution.x[compared])
+            deviations.append(np.abs(solution.slip[compared] / exact_slip - 1.0))
+        median = float(np.nanmedian(np.concatenate(deviations)))
+        row = {"part": "exact", "dx": dx, "change": median}
+        rows.append(row | parameters_of(ensemble))
     return pd.DataFrame(rows)
 
 
-def memory(group: Sequence[Mapping[str, Any]], sweep: Mapping[str, Any]) -> pd.DataFrame:
-    """Change of the final slip by a bump, over the distance beyond it in units of the memory."""
-    plain = [dict(one) for one in group[:BUMP_SEEDS]]
-    slips = []
-    for profiles in (plain, [one | {"bumps": [list(BUMP)]} for one in plain]):
-        scenes = expand({**sweep, "profiles": profiles})[0]
-        pulse = steady_pulse(
-            group[0]["rough"]["level"], scenes[0].gamma, damping_ratio=scenes[0].damping_ratio
-        )
-        length = pulse.width / (pulse.speed - 1.0)
-        at = BUMP[0] + EDGE * BUMP[2] + length * BEYOND
-        solutions = [solve_on_lattice(scene) for scene in scenes]
-        slips.append(np.array([np.interp(at, one.x, one.slip) for one in solutions]))
-    change = np.abs(slips[1] / slips[0] - 1.0)
-    columns = {"distance": BEYOND, "change": np.median(change, axis=0), "high": change.max(axis=0)}
-    return pd.DataFrame(columns).assign(part="memory", **keys_of(group))
+def memory_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Return how much a bump of the pre-stress changes the final slip beyond it.
+
+    There is one row for each of RELATIVE_DISTANCES, with the median (change) and the largest value
+    (high) of the relative change over some seeds.
+    """
+    plain = [dict(profile) for profile in ensemble[:BUMP_SEEDS]]
+    bump = [BUMP_POSITION, BUMP_HEIGHT, BUMP_WIDTH]
+    with_bump = [profile | {"bumps": [bump]} for profile in plain]
+    slip, slip_with_bump = (slip_beyond_bump(sweep, profiles) for profiles in (plain, with_bump))
+    change = np.abs(slip_with_bump / slip - 1.0)
+    columns = {
+        "distance": RELATIVE_DISTANCES,
+        "change": np.median(change, axis=0),
+        "high": change.max(axis=0),
+    }
+    return pd.DataFrame(columns).assign(part="memory", **parameters_of(ensemble))
+
+
+def slip_beyond_bump(sweep: Mapping[str, Any], profiles: Sequence[Profile]) -> np.ndarray:
+    """Return the final slip on lattices, with one row per profile, at RELATIVE_DISTANCES."""
+    scenes = scenes_of(sweep, profiles)
+    level, gamma = profiles[0]["rough"]["level"], scenes[0].gamma
+    pulse = steady_pulse(level, gamma, damping_ratio=scenes[0].damping_ratio)
+    memory = pulse.width / (pulse.speed - 1.0)
+    end_of_bump = BUMP_POSITION + BUMP_REACH_IN_WIDTHS * BUMP_WIDTH
+    positions = end_of_bump + memory * RELATIVE_DISTANCES
+    solutions = [solve_on_lattice(scene) for scene in scenes]
+    return np.array([np.interp(positions, solution.x, solution.slip) for solution in solutions])

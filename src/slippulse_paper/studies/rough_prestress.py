@@ -1,4 +1,10 @@
-"""Ensembles of pulses on a rough pre-stress: how far they run, and the slip they leave behind."""
+"""Ensembles of pulses on a rough pre-stress: how far they run, and the slip they leave behind.
+
+An ensemble is a set of runs whose pre-stress is drawn from the same random field with different
+seeds. Under a displacement boundary, pulses run to both sides, and their deaths are compared with
+the rate of fatal barriers. Under a stress boundary, only the right pulse runs on; it dies where the
+integral of the pre-stress behind it has fallen to 0, like a random walk (`rough_theory`).
+"""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -9,6 +15,7 @@ import xarray as xr
 
 from slippulse.data.points import Recorded, runs_in
 from slippulse.model.rough_prestress import rough
+from slippulse.theory.closed_pulse import SteadyPulse
 from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.pulse import steady_pulse
 
@@ -31,187 +38,321 @@ NEEDS = {
     "sweeps": ["rough_displacement", "rough_settling", "rough_stress"],
 }
 
-# Keys of a rough profile that all runs of an ensemble have in common.
-KEYS = ("level", "deviation", "correlation_length", "hurst", "spacing", "stop")
-# Pulses are followed from here on, farther than their nucleation reaches.
+# Keys of a rough profile and attributes of a run that all runs of an ensemble have in common.
+ROUGH_KEYS = ("level", "deviation", "correlation_length", "hurst", "spacing", "stop")
+RUN_KEYS = ("boundary", "gamma", "damping_ratio", "dx")
+# Pulses are counted from here on, which is beyond the region that the nucleation reaches.
 START = 5.0
-# Levels at which front speeds are computed, for interpolation.
+# Levels at which front speeds are computed; between them the slowness is interpolated.
 SPEED_LEVELS = np.linspace(0.01, 0.95, 95)
-# Positions to which the pre-stress is integrated, beyond every pulse and its beginning.
-FINE = 0.05
-MIDDLES = FINE * (np.arange(-600, 3200) + 0.5)
-# Further seeds whose deaths are found without a simulation, up to a distance, from fields of a
-# coarser spacing. The exponent of survival is that beyond ASYMPTOTE, many death scales.
-FIRST_SEED, LONG_SEEDS, LONG, LONG_SPACING, ASYMPTOTE = 1001, 500, 2000.0, 0.5, 200.0
-# Every so many steps of the long curve of survival are kept.
-LONG_STEP = 5
+# The pre-stress is integrated over cells of this width, whose middles cover every pulse and x_*.
+CELL_WIDTH = 0.05
+CELL_MIDDLES = CELL_WIDTH * (np.arange(-600, 3200) + 0.5)
+# Additional pulses are followed over a long distance by the balance of the pre-stress, without a
+# simulation: first seed, number of seeds, distance, and grid spacing of their fields.
+FIRST_LONG_SEED = 1001
+LONG_SEEDS = 500
+LONG_DISTANCE = 2000.0
+LONG_SPACING = 0.5
+# The exponent of survival is fitted beyond this distance, which is many death scales.
+ASYMPTOTIC_DISTANCE = 200.0
+# The table has every fifth row of the long survival curve.
+LONG_CURVE_STEP = 5
 
 
 class Ensemble(NamedTuple):
-    """Runs that differ in their seed alone, with the parameters that they have in common."""
+    """Runs whose pre-stress fields differ only in their seed.
 
-    keys: dict[str, Any]
+    parameters : what all runs have in common, by the names in RUN_KEYS and ROUGH_KEYS
+    runs : one simulated run for each seed
+    profiles : the pre-stress profile of each run, as in the configuration
+    """
+
+    parameters: dict[str, Any]
     runs: list[Recorded]
     profiles: list[dict]
 
 
 def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Parts ensemble and survival; with the stress held pulse, long and long_survival, too."""
-    sweeps = settings["sweeps"]
-    groups = [
-        group for name in NEEDS["data"] for group in ensembles(data[name], sweeps[name]["profiles"])
-    ]
-    held = [group for group in groups if group.keys["boundary"] == "displacement"]
-    stress = [group for group in groups if group.keys["boundary"] == "stress"]
-    (reference,) = (group for group in stress if not group.keys["deviation"])
-    total = integral(reference.profiles[0])
-    # Twice the largest velocity of the pulse.
-    push = total[-1] - total[MIDDLES < 0.0].min()
-    parts = [held_displacement(group) for group in held]
-    parts.append(long_walks(stress[0], reference.profiles[0]))
-    parts += [held_stress(group, push) for group in stress if group.keys["deviation"]]
+    """Return the parts ensemble (one row each) and survival (curves) of all ensembles.
+
+    For a stress boundary there are also the parts pulse (one row per run), and long and
+    long_survival (the same as ensemble and survival, for the long distance).
+    """
+    ensembles: list[Ensemble] = []
+    for name in NEEDS["data"]:
+        ensembles += ensembles_of(data[name], settings["sweeps"][name]["profiles"])
+    by_boundary: dict[str, list[Ensemble]] = {"displacement": [], "stress": []}
+    for ensemble in ensembles:
+        by_boundary[ensemble.parameters["boundary"]].append(ensemble)
+    parts = [displacement_rows(ensemble) for ensemble in by_boundary["displacement"]]
+
+    under_stress = by_boundary["stress"]
+    (smooth,) = (one for one in under_stress if one.parameters["deviation"] == 0.0)
+    smooth_profile = smooth.profiles[0]
+    # This is twice the largest velocity that the pulse would have without roughness.
+    smooth_push = push_at(prestress_integral(smooth_profile), CELL_MIDDLES.size - 1)
+    parts.append(long_distance_rows(under_stress[0], smooth_profile))
+    for ensemble in under_stress:
+        if ensemble is not smooth:
+            parts.append(stress_rows(ensemble, smooth_push))
     return pd.concat(parts, ignore_index=True)
 
 
-def ensembles(data: xr.Dataset, profiles: list[dict]) -> Iterator[Ensemble]:
-    """Yield the ensembles of a sweep, each with the runs of its seeds."""
-    groups: dict[tuple, Ensemble] = {}
+def ensembles_of(data: xr.Dataset, profiles: list[dict]) -> Iterator[Ensemble]:
+    """Yield the ensembles of a sweep; ``profiles`` has the pre-stress profile of each run."""
+    ensembles: dict[tuple, Ensemble] = {}
     for run, profile in zip(runs_in(data), profiles, strict=True):
-        rough = {key: profile["rough"][key] for key in KEYS}
-        keys = {name: run.attrs[name] for name in ("boundary", "gamma", "damping_ratio", "dx")}
-        group = groups.setdefault(tuple(rough.values()), Ensemble(keys | rough, [], []))
-        group.runs.append(run)
-        group.profiles.append(profile)
-    yield from groups.values()
+        run_parameters = {name: run.attrs[name] for name in RUN_KEYS}
+        rough_parameters = {name: profile["rough"][name] for name in ROUGH_KEYS}
+        key = tuple(rough_parameters.values())
+        if key not in ensembles:
+            ensembles[key] = Ensemble(run_parameters | rough_parameters, [], [])
+        ensembles[key].runs.append(run)
+        ensembles[key].profiles.append(profile)
+    yield from ensembles.values()
 
 
-def fate(run: Recorded, side: int, stop: float) -> Fate:
-    """Return how far the pulse on one side (1 or -1) has gone, and whether all of it has stuck.
+def fate_of_pulse(run: Recorded, side: int, stop: float) -> Fate:
+    """Return how far the pulse on one side of x = 0 has gone, and whether it died there.
 
-    A pulse is no longer followed where the rough pre-stress stops.
+    The pulse has gone as far as the outermost block that was released. It has died if all released
+    blocks have stuck again. The rough pre-stress ends at the distance ``stop``; a pulse that gets
+    there is no longer followed and counts as alive.
+
+    side : 1 for the right side, -1 for the left
     """
-    ahead = (side * run["x"] > 0.0) & np.isfinite(run["release_time"])
-    # Rounded, equal distances stay equal on both sides.
-    distance = round(float(np.max(side * run["x"][ahead], initial=0.0)), 9)
-    died = bool(np.isfinite(run["stick_time"][ahead]).all())
-    return Fate(min(distance, stop), died and distance < stop)
+    distances = side * run["x"]
+    released = (distances > 0.0) & np.isfinite(run["release_time"])
+    farthest = float(np.max(distances[released], initial=0.0))
+    # After rounding, distances that should be equal on both sides are equal.
+    distance = round(farthest, 9)
+    all_stuck = bool(np.isfinite(run["stick_time"][released]).all())
+    return Fate(min(distance, stop), died=all_stuck and distance < stop)
 
 
-def held_displacement(group: Ensemble) -> pd.DataFrame:
-    """Deaths against the rate of barriers, survival, and the local state where slip is recorded."""
-    stop = group.keys["stop"]
-    fates = [fate(run, side, stop) for run in group.runs for side in (1, -1)]
-    row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(group.keys)
-    if "slip" in group.runs[0]:
-        row |= local_state(group)
-    parts = [pd.DataFrame([row]), survival(fates).assign(part="survival")]
-    return pd.concat(parts).assign(**group.keys)
+def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
+    """Return the rows of one ensemble under a displacement boundary.
+
+    The row of the part ensemble has the death rate and the predicted rate of fatal barriers, and,
+    if slip was recorded, `local_state`. The part survival has the curve of both sides together.
+    """
+    stop = ensemble.parameters["stop"]
+    fates = []
+    for run in ensemble.runs:
+        fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
+    row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(ensemble.parameters)
+    if "slip" in ensemble.runs[0]:
+        row |= local_state(ensemble)
+    curve = survival(fates).assign(part="survival")
+    return pd.concat([pd.DataFrame([row]), curve]).assign(**ensemble.parameters)
 
 
-def local_state(group: Ensemble) -> dict[str, float]:
-    """Final slip and front speed against steady pulses at the local and at the mean pre-stress."""
-    level, ratio = group.keys["level"], group.keys["damping_ratio"]
-    pulse = steady_pulse(level, group.keys["gamma"], damping_ratio=ratio)
+def local_state(ensemble: Ensemble) -> dict[str, float]:
+    """Compare final slip and front speed with steady pulses at the local and the mean pre-stress.
+
+    Both are in units of the steady pulse at the mean pre-stress.
+    """
+    parameters = ensemble.parameters
+    level, damping_ratio = parameters["level"], parameters["damping_ratio"]
+    pulse = steady_pulse(level, parameters["gamma"], damping_ratio=damping_ratio)
+    # A pulse forgets what it met after this distance.
     memory = pulse.width / (pulse.speed - 1.0)
-    slowness_at_levels = 1.0 / front_speed(SPEED_LEVELS, ratio)
-    slips, levels, times, exact_times = [], [], [], []
-    for run in group.runs:
-        settled = (run["x"] > memory) & np.isfinite(run["stick_time"])
-        slips.append(run["slip"][settled] / pulse.slip)
-        levels.append(run["prestress"][settled] / level)
-        passed = (run["x"] > START) & np.isfinite(run["release_time"])
-        release = run["release_time"][passed]
-        distance = np.ptp(run["x"][passed])
-        times.append((release[-1] - release[0]) / distance)
-        slowness = np.interp(run["prestress"][passed], SPEED_LEVELS, slowness_at_levels)
-        exact_times.append(np.mean(slowness))
-    slip, relative_level = np.concatenate(slips), np.concatenate(levels)
+    numbers = {"pulse_width": pulse.width, "memory": memory}
+    return numbers | slip_numbers(ensemble, pulse, memory) | slowness_numbers(ensemble, pulse)
+
+
+def slip_numbers(ensemble: Ensemble, pulse: SteadyPulse, memory: float) -> dict[str, float]:
+    """Compare the final slip of all blocks of an ensemble with steady slip.
+
+    The columns off_local and off_mean have the median deviations from the slip of steady pulses at
+    the local and at the mean pre-stress. Steady slip is proportional to the pre-stress.
+
+    pulse : the steady pulse at the mean pre-stress
+    memory : blocks are compared beyond this position, where the nucleation is forgotten
+    """
+    slips, levels = [], []
+    for run in ensemble.runs:
+        is_compared = (run["x"] > memory) & np.isfinite(run["stick_time"])
+        slips.append(run["slip"][is_compared])
+        levels.append(run["prestress"][is_compared])
+    relative_slip = np.concatenate(slips) / pulse.slip
+    relative_level = np.concatenate(levels) / ensemble.parameters["level"]
     return {
-        "pulse_width": pulse.width,
-        "memory": memory,
-        # Median distance from the steady slip at the local pre-stress, and at the mean one.
-        "off_local": float(np.median(np.abs(slip / relative_level - 1.0))),
-        "off_mean": float(np.median(np.abs(slip - 1.0))),
-        "slip_mean": float(np.mean(slip)),
-        "slip_deviation": float(np.std(slip)),
-        "slowness": float(np.mean(times) * pulse.speed),
-        "slowness_off": float(np.max(np.abs(np.divide(times, exact_times) - 1.0))),
+        "off_local": float(np.median(np.abs(relative_slip / relative_level - 1.0))),
+        "off_mean": float(np.median(np.abs(relative_slip - 1.0))),
+        "slip_mean": float(np.mean(relative_slip)),
+        "slip_deviation": float(np.std(relative_slip)),
     }
 
 
-def held_stress(group: Ensemble, push: float) -> pd.DataFrame:
-    """Deaths and velocities against the integral of the pre-stress of each run, and survival."""
-    fates = [fate(run, 1, group.keys["stop"]) for run in group.runs]
+def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]:
+    """Compare the slowness of fronts (time per distance) with that of steady fronts.
+
+    slowness : mean over all runs, divided by the slowness of the steady pulse
+    slowness_off : largest deviation of a run from the mean of the slownesses of steady fronts at
+        the local pre-stress
+    """
+    exact_slownesses = 1.0 / front_speed(SPEED_LEVELS, ensemble.parameters["damping_ratio"])
+    slownesses, local_slownesses = [], []
+    for run in ensemble.runs:
+        is_passed = (run["x"] > START) & np.isfinite(run["release_time"])
+        x, times = run["x"][is_passed], run["release_time"][is_passed]
+        slownesses.append((times[-1] - times[0]) / np.ptp(x))
+        at_blocks = np.interp(run["prestress"][is_passed], SPEED_LEVELS, exact_slownesses)
+        local_slownesses.append(np.mean(at_blocks))
+    ratios = np.divide(slownesses, local_slownesses)
+    return {
+        "slowness": float(np.mean(slownesses) * pulse.speed),
+        "slowness_off": float(np.max(np.abs(ratios - 1.0))),
+    }
+
+
+def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
+    """Return the rows of one ensemble under a stress boundary: ensemble, pulse and survival.
+
+    Only the right pulse counts. Its death and its velocity are compared with the integral of the
+    pre-stress of its own run, and the survival curve with a random walk.
+    """
+    parameters = ensemble.parameters
+    fates = [fate_of_pulse(run, 1, parameters["stop"]) for run in ensemble.runs]
+    integrals = [prestress_integral(profile) for profile in ensemble.profiles]
     pulses = pd.DataFrame(fates).assign(part="pulse")
-    integrals = [integral(profile) for profile in group.profiles]
-    pulses["balance"] = [balance_position(MIDDLES, total) for total in integrals]
-    states = [end_state(run, total) for run, total in zip(group.runs, integrals, strict=True)]
-    pulses = pulses.join(pd.DataFrame(states))
-    row = {"part": "ensemble"} | death_rate(fates, START)
-    at_start = int(np.searchsorted(MIDDLES, START))
-    pushes = np.array([push_at(total, at_start) for total in integrals])
-    rate = diffusivity(group.keys)
-    row |= {"push": push, "diffusivity": rate, "death_scale": float(np.mean(pushes)) ** 2 / rate}
+    pulses["balance"] = [balance_position(CELL_MIDDLES, integral) for integral in integrals]
+    runs = zip(ensemble.runs, integrals, strict=True)
+    end_states = [end_state(run, integral) for run, integral in runs]
+    pulses = pulses.join(pd.DataFrame(end_states))
+
+    index_of_start = int(np.searchsorted(CELL_MIDDLES, START))
+    pushes = np.array([push_at(integral, index_of_start) for integral in integrals])
     curve = survival(fates).assign(part="survival")
-    walked = np.maximum(curve["distance"].to_numpy() - START, FINE)[:, np.newaxis]
-    walks = first_passage(walked, pushes, group.keys)
-    curve["predicted"] = np.mean(walks, axis=1)
-    row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
-    alive = pulses[~pulses["died"]]
+    curve["predicted"] = predicted_survival(curve["distance"].to_numpy(), pushes, parameters)
+
+    rate = diffusivity(parameters)
+    row = {"part": "ensemble"} | death_rate(fates, START)
     row |= {
+        "push": smooth_push,
+        "diffusivity": rate,
+        "death_scale": float(np.mean(pushes)) ** 2 / rate,
+    }
+    # Survival at the largest distance.
+    row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
+    row |= velocity_numbers(pulses[~pulses["died"]], rate)
+    return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**parameters)
+
+
+def velocity_numbers(alive: pd.DataFrame, rate: float) -> dict[str, float]:
+    """Return the spread of the velocities of living pulses, and the spread by theory.
+
+    The velocity is half of the push. Its variance grows with distance like that of a random walk.
+
+    alive : rows of the part pulse
+    rate : variance of the push per distance, from `diffusivity`
+    """
+    errors = (alive["velocity"] - alive["exact_velocity"]).abs()
+    return {
         "cracks": int(alive["is_crack"].sum()),
         "velocity_mean": alive["velocity"].mean(),
         "velocity_deviation": alive["velocity"].std(),
         "velocity_predicted": 0.5 * np.sqrt(rate * alive["distance"].mean()),
-        "velocity_off": (alive["velocity"] - alive["exact_velocity"]).abs().median(),
+        "velocity_off": errors.median(),
     }
-    return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**group.keys)
 
 
-def push_at(total: np.ndarray, index: int) -> float:
-    """Integral of the pre-stress from x_* to one of MIDDLES."""
-    return float(total[index] - total[MIDDLES < 0.0].min())
+def predicted_survival(
+    distances: np.ndarray, pushes: np.ndarray, parameters: Mapping[str, Any]
+) -> np.ndarray:
+    """Return the mean over all pulses of the probability to survive to each distance.
 
-
-def long_walks(group: Ensemble, smooth: dict) -> pd.DataFrame:
-    """Survival of further seeds over a long distance, by the balance of the pre-stress alone."""
-    rough_keys = group.profiles[0]["rough"] | {"spacing": LONG_SPACING, "stop": LONG}
-    x = rough_keys["start"] + LONG_SPACING * np.arange(
-        round((LONG - rough_keys["start"]) / LONG_SPACING) + 1
-    )
-    # The Gaussian at x = 0 takes the place of the background.
-    background, peak = -np.expm1(-0.5 * (x / smooth["width"]) ** 2), prestress_of(smooth)(x)
-    fates = []
-    for seed in range(LONG_SEEDS):
-        field = rough(**rough_keys | {"seed": FIRST_SEED + seed}).tau
-        at = balance_position(x, LONG_SPACING * np.cumsum(field * background + peak))
-        fates.append(Fate(min(at, LONG), bool(at < LONG)))
-    row = {"part": "long"} | death_rate(fates, START) | survival_exponent(fates, ASYMPTOTE)
-    curve = survival(fates).iloc[::LONG_STEP].assign(part="long_survival")
-    return pd.concat([pd.DataFrame([row]), curve]).assign(**group.keys)
-
-
-def end_state(run: Recorded, total: np.ndarray) -> dict[str, float]:
-    """Velocity of the pulse at the end of its run, that by theory, and whether it is a crack.
-
-    The wave that began at x_* carries the largest velocity. By theory this is half of the integral
-    of the pre-stress from x_* to where the wave that it meets has left the right front.
+    pushes : push of each pulse at START, where its random walk begins
     """
-    x, release, end = run["x"], run["release_time"], run.attrs["end_time"]
-    before = MIDDLES < 0.0
-    start = float(MIDDLES[before][np.argmin(total[before])])
-    crest = start + end - float(np.interp(start, x, np.nan_to_num(release, nan=end)))
-    ahead = (x > 0.0) & np.isfinite(release)
-    left_front = float(np.interp(crest + end, x[ahead] + release[ahead], x[ahead]))
-    gained = float(np.interp(left_front, MIDDLES, total) - total[before].min())
-    near = np.isnan(run["stick_time"][np.searchsorted(x, START)])
+    beyond_start = np.maximum(distances - START, CELL_WIDTH)
+    # The probabilities have one row per distance and one column per pulse.
+    probabilities = first_passage(beyond_start[:, np.newaxis], pushes, parameters)
+    return np.mean(probabilities, axis=1)
+
+
+def prestress_integral(profile: Mapping[str, Any]) -> np.ndarray:
+    """Return the integral of the pre-stress over all cells up to each of CELL_MIDDLES."""
+    return CELL_WIDTH * np.cumsum(prestress_of(profile)(CELL_MIDDLES))
+
+
+def push_at(integral: np.ndarray, index: int) -> float:
+    """Return the push of a pulse at the cell with this index: the pre-stress integral from x_*.
+
+    The left front stops at x_* < 0, where the integral (see `prestress_integral`) is smallest.
+    """
+    return float(integral[index] - integral[CELL_MIDDLES < 0.0].min())
+
+
+def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame:
+    """Return survival over LONG_DISTANCE for more seeds, by the balance of the pre-stress alone.
+
+    smooth_profile : the profile of the run without roughness
+    """
+    field_parameters = ensemble.profiles[0]["rough"] | {
+        "spacing": LONG_SPACING,
+        "stop": LONG_DISTANCE,
+    }
+    first = field_parameters["start"]
+    x = first + LONG_SPACING * np.arange(round((LONG_DISTANCE - first) / LONG_SPACING) + 1)
+    # The Gaussian at x = 0 takes the place of the rough background, so there the field is
+    # multiplied by 1 minus the Gaussian.
+    background_weight = -np.expm1(-0.5 * (x / smooth_profile["width"]) ** 2)
+    smooth_prestress = prestress_of(smooth_profile)(x)
+    fates = []
+    for seed in range(FIRST_LONG_SEED, FIRST_LONG_SEED + LONG_SEEDS):
+        field = rough(**field_parameters | {"seed": seed}).tau
+        prestress = field * background_weight + smooth_prestress
+        death = balance_position(x, LONG_SPACING * np.cumsum(prestress))
+        fates.append(Fate(min(death, LONG_DISTANCE), died=bool(death < LONG_DISTANCE)))
+    row = {"part": "long"} | death_rate(fates, START)
+    row |= survival_exponent(fates, ASYMPTOTIC_DISTANCE)
+    curve = survival(fates).iloc[::LONG_CURVE_STEP].assign(part="long_survival")
+    return pd.concat([pd.DataFrame([row]), curve]).assign(**ensemble.parameters)
+
+
+def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
+    """Return the velocity of the right pulse at the end of its run, simulated and by theory.
+
+    The pulse has its largest velocity at its crest. By theory this is half of the integral of the
+    pre-stress from x_* to the origin of the wave that the crest meets there. Also return whether
+    the pulse is a crack: then the blocks near the nucleation are still sliding.
+
+    integral : of the pre-stress, up to each of CELL_MIDDLES
+    """
+    crest = crest_position(run, integral)
+    integral_at_origin = float(np.interp(origin_on_front(run, crest), CELL_MIDDLES, integral))
+    push = integral_at_origin - integral[CELL_MIDDLES < 0.0].min()
+    first_block_beyond_start = np.searchsorted(run["x"], START)
     return {
-        "velocity": float(np.interp(crest, x, run["slip_velocity"])),
-        "exact_velocity": 0.5 * gained,
-        "is_crack": bool(near),
+        "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
+        "exact_velocity": 0.5 * push,
+        "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
     }
 
 
-def integral(profile: Mapping[str, Any]) -> np.ndarray:
-    """Integral of the pre-stress of a profile up to MIDDLES."""
-    return FINE * np.cumsum(prestress_of(profile)(MIDDLES))
+def crest_position(run: Recorded, integral: np.ndarray) -> float:
+    """Return the position of the crest of the right pulse at the end of a run.
+
+    The crest is the wave that started to the right at x_* < 0, where the left front stopped and the
+    integral is smallest, when this front arrived. Waves move at speed 1.
+    """
+    is_left = CELL_MIDDLES < 0.0
+    x_star = float(CELL_MIDDLES[is_left][np.argmin(integral[is_left])])
+    end_time = run.attrs["end_time"]
+    # A block that was never released counts as released at the end.
+    release_time = np.nan_to_num(run["release_time"], nan=end_time)
+    departure = float(np.interp(x_star, run["x"], release_time))
+    return x_star + end_time - departure
+
+
+def origin_on_front(run: Recorded, position: float) -> float:
+    """Return where the wave that is at a position at the end left the right front.
+
+    The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
+    the end.
+    """
+    is_on_front = (run["x"] > 0.0) & np.isfinite(run["release_time"])
+    x, time = run["x"][is_on_front], run["release_time"][is_on_front]
+    return float(np.interp(position + run.attrs["end_time"], x + time, x))

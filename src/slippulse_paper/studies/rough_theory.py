@@ -1,4 +1,8 @@
-"""Theory of pulses on a rough pre-stress: death rate, random walk, and the balance at death."""
+"""Theory of pulses on a rough pre-stress: death rate, random walk, and the balance at death.
+
+The parameters of an ensemble of rough pre-stress fields are passed as a mapping, with the mean of
+the field (level), its standard deviation, correlation_length, hurst exponent and grid spacing.
+"""
 
 import math
 from collections.abc import Mapping
@@ -10,70 +14,94 @@ from scipy.special import ndtr
 
 from slippulse.theory.barrier import barrier_depth
 
-# Barriers of the predicted death rate, in units of the level before them.
-BARRIERS = np.geomspace(0.03, 10.0, 12)
+# The death rate is maximised over these barriers, given as -(stress of the barrier)/(mean level).
+RELATIVE_BARRIERS = np.geomspace(0.03, 10.0, 12)
 # -zeta(1/2): how far behind 0 a walk is absorbed whose steps are an Ornstein-Uhlenbeck process, in
 # units of their deviation times their correlation length (Doering, Hagan and Levermore 1987).
 MILNE = 1.4603545088095868
-# Correlation lengths that the sums over a spectrum cover.
-PERIODS = 400
+# Length of the field over which sums over the spectrum run, in correlation lengths.
+PERIOD_IN_CORRELATION_LENGTHS = 400
 
 
-def spectrum(keys: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Wave numbers of the field of an ensemble, and the variance that each contributes."""
-    length = PERIODS * keys["correlation_length"]
-    wave_number = 2.0 * np.pi * np.fft.fftfreq(round(length / keys["spacing"]), keys["spacing"])
-    power = (1.0 + (wave_number * keys["correlation_length"]) ** 2) ** -(keys["hurst"] + 0.5)
-    return wave_number, keys["deviation"] ** 2 * power / np.sum(power)
+def spectrum(parameters: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the wave numbers of a periodic rough field, and the variance that each contributes."""
+    correlation_length, spacing = parameters["correlation_length"], parameters["spacing"]
+    point_count = round(PERIOD_IN_CORRELATION_LENGTHS * correlation_length / spacing)
+    wave_numbers = 2.0 * np.pi * np.fft.fftfreq(point_count, spacing)
+    scaled = 1.0 + (wave_numbers * correlation_length) ** 2
+    shape = scaled ** -(parameters["hurst"] + 0.5)
+    return wave_numbers, parameters["deviation"] ** 2 * shape / np.sum(shape)
 
 
-def barrier_rate(keys: Mapping[str, Any]) -> dict[str, float]:
-    """Rate of barriers that are deeper than the exact critical depth, by Rice's formula.
+def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
+    """Return the predicted number of fatal barriers per length, with the most frequent barrier.
 
-    A barrier of level -r tau_0 stops a steady pulse of level tau_0 if it is longer than the
-    critical depth d. The mean of the pre-stress over a length d is a Gaussian field. Rice's formula
-    gives the rate at which it falls below -r tau_0; the r with the largest rate is taken.
+    A barrier is a stretch of negative pre-stress. It stops a steady pulse if it is longer than the
+    critical depth, which theory gives for each stress of the barrier. So a pulse dies where the
+    mean of the pre-stress over a critical depth falls below that stress. This mean is a Gaussian
+    field, and Rice's formula gives the rate of its downcrossings. The stress with the largest rate
+    is chosen from RELATIVE_BARRIERS.
     """
-    level = keys["level"]
-    wave_number, power = spectrum(keys)
-    best = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
-    for barrier in level * BARRIERS:
-        depth = barrier_depth(level, -barrier, keys["gamma"], keys["damping_ratio"])
-        averaged = power * np.sinc(wave_number * depth / (2.0 * np.pi)) ** 2
-        variance, slope = np.sum(averaged), np.sum(averaged * wave_number**2)
-        rate = math.exp(-((level + barrier) ** 2) / (2.0 * variance))
-        rate *= math.sqrt(slope / variance) / (2.0 * np.pi)
-        if rate > best["barrier_rate"]:
-            best = {"barrier_rate": rate, "barrier": -barrier, "depth": depth}
-    return best
+    level = parameters["level"]
+    wave_numbers, variances = spectrum(parameters)
+    most_frequent = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
+    for barrier in level * RELATIVE_BARRIERS:
+        depth = barrier_depth(level, -barrier, parameters["gamma"], parameters["damping_ratio"])
+        # Averaging over a length multiplies each amplitude by sin(k depth/2)/(k depth/2).
+        averaging_factors = np.sinc(wave_numbers * depth / (2.0 * np.pi))
+        averaged = variances * averaging_factors**2
+        variance_of_mean = np.sum(averaged)
+        variance_of_slope = np.sum(averaged * wave_numbers**2)
+        # Rice's formula for the rate at which the mean falls this far below its average.
+        fall = level + barrier
+        rate = math.exp(-(fall**2) / (2.0 * variance_of_mean))
+        rate *= math.sqrt(variance_of_slope / variance_of_mean) / (2.0 * np.pi)
+        if rate > most_frequent["barrier_rate"]:
+            most_frequent = {"barrier_rate": rate, "barrier": -barrier, "depth": depth}
+    return most_frequent
 
 
-def diffusivity(keys: Mapping[str, Any]) -> float:
-    """Variance of the integral of a field over a long distance, divided by that distance."""
-    hurst = keys["hurst"]
-    scale = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
-    return float(scale * keys["correlation_length"] * keys["deviation"] ** 2)
+def diffusivity(parameters: Mapping[str, Any]) -> float:
+    """Return the variance of the integral of a rough field over a long distance, per distance."""
+    hurst, deviation = parameters["hurst"], parameters["deviation"]
+    shape = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
+    return float(shape * parameters["correlation_length"] * deviation**2)
 
 
-def first_passage(distance: np.ndarray, push: np.ndarray, keys: Mapping[str, Any]) -> np.ndarray:
-    """Probability that the push of a pulse has not come to 0 over a distance.
+def first_passage(
+    distance: np.ndarray, push: np.ndarray, parameters: Mapping[str, Any]
+) -> np.ndarray:
+    """Return the probability that the push of a pulse stays positive over a distance.
 
-    The push is a random walk whose steps are correlated. Far from 0 it is Brownian motion, which is
-    absorbed behind 0, at a distance that is exact for exponential correlation (`MILNE`).
+    The push is the integral of the pre-stress from where the left front stopped up to the pulse,
+    and the pulse dies when it reaches 0. As the pulse advances, the push makes a random walk whose
+    steps are correlated. Far from 0 this is Brownian motion with drift. Near 0 the correlation
+    matters. It is taken into account by letting the Brownian motion end not at 0 but below it, at a
+    distance that is known exactly for exponential correlation (`MILNE`).
+
+    distance : distances over which pulses go on
+    push : push of each pulse at the beginning; the two arrays are broadcast against each other
     """
-    rate, drift = diffusivity(keys), keys["level"]
-    start = push + MILNE * rate / (2.0 * keys["deviation"])
-    spread = np.sqrt(rate * distance)
-    returned = np.exp(-2.0 * drift * start / rate)
-    ahead, behind = start + drift * distance, start - drift * distance
-    return ndtr(ahead / spread) - returned * ndtr(-behind / spread)
+    variance_rate, drift = diffusivity(parameters), parameters["level"]
+    height = push + MILNE * variance_rate / (2.0 * parameters["deviation"])
+    spread = np.sqrt(variance_rate * distance)
+    # The method of images: a mirror image of the walk starts at -height, with this weight.
+    image_weight = np.exp(-2.0 * drift * height / variance_rate)
+    mean = height + drift * distance
+    mean_of_image = -height + drift * distance
+    return ndtr(mean / spread) - image_weight * ndtr(mean_of_image / spread)
 
 
-def balance_position(x: np.ndarray, total: np.ndarray) -> float:
-    """Position on the right at which the integral of the pre-stress from x_* is back to 0.
+def balance_position(x: np.ndarray, prestress_integral: np.ndarray) -> float:
+    """Return the position x > 0 where the pre-stress on the way of the pulse has balanced to 0.
 
-    ``total`` is the integral up to each x, and x_* < 0 where it is smallest. Infinite if the
-    integral stays positive.
+    The pre-stress is integrated from x_* < 0, where its integral up to x is smallest. Infinite if
+    the integral stays positive.
+
+    x : positions in ascending order
+    prestress_integral : integral of the pre-stress up to each position, from any origin
     """
-    lost = np.flatnonzero((x > 0.0) & (total <= total[x < 0.0].min()))
-    return float(x[lost[0]]) if lost.size else math.inf
+    smallest = prestress_integral[x < 0.0].min()
+    is_balanced = (x > 0.0) & (prestress_integral <= smallest)
+    balanced = np.flatnonzero(is_balanced)
+    return float(x[balanced[0]]) if balanced.size else math.inf

@@ -1,8 +1,14 @@
-"""Compare measured and derived limits of the time step, for every scheme and damping ratio."""
+"""Compare measured and derived limits of the time step, for every scheme and damping ratio.
+
+The measured limit is the largest step at which a lattice run stays stable. A growing mode makes
+slip velocities negative, so that blocks stick; in the runs of this study nothing sticks otherwise.
+"""
 
 import math
 from collections.abc import Callable
 from functools import partial
+from itertools import product
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -18,78 +24,106 @@ NEEDS = {"settings": ()}
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 # The bisection searches between these fractions of the derived limit, to a relative resolution.
 # Orders with weak growth have a derived limit far below the step at which the growth is visible.
-BISECTION_RANGE, RESOLUTION = (0.7, 12.0), 0.01
-# Results of a bisection: the limit lies within the range, below it or above it.
-WITHIN, BELOW, ABOVE = "within", "below", "above"
+SMALLEST_FRACTION, LARGEST_FRACTION = 0.7, 12.0
+RESOLUTION = 0.01
 # A mode beyond the bound grows from rounding in STEP_COUNT steps, before a wave crosses the blocks.
 BLOCK_COUNT, STEP_COUNT = 400, 400
-# No stress releases blocks at this pre-stress.
+# No stress releases blocks at this pre-stress. Beyond walls of it the lattice stays at rest.
 HELD_PRESTRESS = -1.0e9
-WALL_LEVELS = (BLOCK_COUNT + 0.5, HELD_PRESTRESS), (-BLOCK_COUNT - 0.5, HELD_PRESTRESS)
+WALLS = ((BLOCK_COUNT + 0.5, HELD_PRESTRESS), (-BLOCK_COUNT - 0.5, HELD_PRESTRESS))
 # Number of steps between two checks for sticks; in a run that blows up, blocks stick repeatedly.
 CHECK_INTERVAL = 100
+# Pre-stress of both measurements, by the column of the table.
 PROFILES = {
     # A stress far above the threshold releases all blocks at once, and no event follows until they
     # reverse.
-    "measured": Prestress(0.9, 0.9, 10.0 * BLOCK_COUNT, peak=100.9, steps=WALL_LEVELS),
+    "measured": Prestress(0.9, 0.9, 10.0 * BLOCK_COUNT, peak=100.9, steps=WALLS),
     # An endless crack has an event in almost every step.
     "measured_rupture": Prestress(0.5, 0.5, 8.0),
 }
 
 
+class StableFraction(NamedTuple):
+    """The largest stable step divided by the derived limit.
+
+    ``place`` is "within" if the bisection found it. It is "below" or "above" if it lies beyond the
+    smallest or the largest fraction that was tried, and the fraction is then that end.
+    """
+
+    fraction: float
+    place: str
+
+
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the derived limit and the largest steps at which nothing sticks, in units of dx."""
+    schemes = [("fixed_step", 1)]
+    schemes += [("localised", order) for order in ORDERS]
     rows = []
-    for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
-        for ratio in DAMPING_RATIOS:
-            bound = largest_step(scheme, order, ratio, 0.0)
-            row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": bound}
-            for name, profile in PROFILES.items():
-                stable = partial(nothing_sticks, profile, bound, scheme, order, ratio)
-                fraction, place = largest_stable(stable)
-                row |= {name: bound * fraction, f"{name}_ratio": fraction}
-                row |= {f"{name}_limit": place}
-            rows.append(row)
+    for (scheme, order), ratio in product(schemes, DAMPING_RATIOS):
+        derived = largest_step(scheme, order, ratio, 0.0)
+        row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": derived}
+        for name, profile in PROFILES.items():
+            stable = partial(is_stable, profile, derived, scheme, order, ratio)
+            fraction, place = largest_stable(stable)
+            row[name] = derived * fraction
+            row[f"{name}_ratio"] = fraction
+            row[f"{name}_limit"] = place
+        rows.append(row)
     return pd.DataFrame(rows)
 
 
-def largest_stable(stable: Callable[[float], bool]) -> tuple[float, str]:
-    """Return the largest stable fraction by bisection, and whether it lies between the ends.
+def largest_stable(stable: Callable[[float], bool]) -> StableFraction:
+    """Find the largest stable fraction of the derived limit by bisection of its logarithm.
 
-    If it lies beyond an end of BISECTION_RANGE, the fraction is that end.
+    stable : function that returns True if a fraction is stable
     """
-    lower, upper = BISECTION_RANGE
+    lower, upper = SMALLEST_FRACTION, LARGEST_FRACTION
     if not stable(lower):
-        return lower, BELOW
+        return StableFraction(lower, "below")
     if stable(upper):
-        return upper, ABOVE
+        return StableFraction(upper, "above")
     while upper > (1.0 + RESOLUTION) * lower:
         middle = math.sqrt(lower * upper)
-        lower, upper = (middle, upper) if stable(middle) else (lower, middle)
-    return lower, WITHIN
+        if stable(middle):
+            lower = middle
+        else:
+            upper = middle
+    return StableFraction(lower, "within")
 
 
-def nothing_sticks(
-    profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
+def is_stable(
+    profile: Prestress, derived: float, scheme: str, order: int, ratio: float, fraction: float
 ) -> bool:
-    """Return True if nothing sticks; a growing mode would make velocities negative."""
-    step = fraction * bound
-    # A chain between walls reverses when a wave has crossed it.
-    duration = min(STEP_COUNT * step, 0.8 * BLOCK_COUNT)
-    # The textbook scheme has no adjustable order.
-    order = max(order, 3)
-    scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, order)
-    # A Scene refuses a step beyond the limit.
+    """Run a lattice with a fraction of the derived limit as step; return True if nothing sticks.
+
+    The run ends at the first stick.
+    """
+    step = fraction * derived
+    scene = Scene(
+        boundary="stress",
+        prestress=profile,
+        # A chain between walls reverses when a wave has crossed it.
+        duration=min(STEP_COUNT * step, 0.8 * BLOCK_COUNT),
+        dx=1.0,
+        gamma=0.0,
+        beta=ratio,
+        release="total",
+        scheme=scheme,
+        max_step=1e-4,
+        # The textbook scheme has no adjustable order.
+        order=max(order, 3),
+    )
+    # A Scene refuses a step beyond the limit, so the step is set afterwards.
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)
     lattice.call_steps = CHECK_INTERVAL
 
-    def stop_at_the_first_stick(_progress: float) -> None:
+    def stop_at_first_stick(_progress: float) -> None:
         if lattice.tally.sticks > 0:
             raise UnstableRun
 
     try:
-        lattice.advance_to_end(stop_at_the_first_stick)
+        lattice.advance_to_end(stop_at_first_stick)
     except UnstableRun:
         return False
     return bool(lattice.tally.sticks == 0)

@@ -1,4 +1,8 @@
-"""Statistics of pulses that die, or are still alive at the end of their run."""
+"""Survival statistics of pulses, some of which die and some of which outlive their simulation.
+
+A pulse that is still alive at the end of its run has gone at least its recorded distance. Such a
+`Fate` is censored: the estimates use the distance, but count no death.
+"""
 
 import math
 import warnings
@@ -11,36 +15,51 @@ from scipy.stats import CensoredData, beta, chi2, ecdf
 
 # Two-sided confidence of all bands and intervals, and the probability beyond each of their ends.
 CONFIDENCE = 0.95
-TAIL = 0.5 * (1.0 - CONFIDENCE)
+PROBABILITY_BEYOND_END = 0.5 * (1.0 - CONFIDENCE)
 
 
 class Fate(NamedTuple):
-    """Distance that one pulse has gone, and whether it has died there."""
+    """The distance that one pulse has gone, and whether it died there."""
 
     distance: float
     died: bool
 
 
 def survival(fates: Sequence[Fate]) -> pd.DataFrame:
-    """Kaplan-Meier estimate: fraction of pulses that live beyond a distance, with its band."""
-    dead = [one.distance for one in fates if one.died]
-    alive = [one.distance for one in fates if not one.died]
-    estimate = ecdf(CensoredData(uncensored=dead, right=alive)).sf
-    columns = {"distance": np.concatenate([[0.0], estimate.quantiles])}
-    columns["survival"] = np.concatenate([[1.0], estimate.probabilities])
+    """Return the Kaplan-Meier estimate of the fraction of pulses that live beyond a distance.
+
+    There is one row for the distance 0 and one for each distance at which a pulse died or was last
+    seen. The columns are the distance, the fraction (survival), and the ends of its confidence band
+    (low and high).
+    """
+    deaths = [fate.distance for fate in fates if fate.died]
+    last_seen_alive = [fate.distance for fate in fates if not fate.died]
+    estimate = ecdf(CensoredData(uncensored=deaths, right=last_seen_alive)).sf
     with np.errstate(all="ignore"), warnings.catch_warnings():
         # The formula of the band has no value before the first death.
         warnings.simplefilter("ignore", RuntimeWarning)
         band = estimate.confidence_interval(CONFIDENCE, method="log-log")
-    for name, end in (("low", band.low), ("high", band.high)):
-        columns[name] = np.concatenate([[1.0], end.probabilities])
+    fractions = {
+        "survival": estimate.probabilities,
+        "low": band.low.probabilities,
+        "high": band.high.probabilities,
+    }
+    # At distance 0 all pulses are alive.
+    columns = {"distance": np.concatenate([[0.0], estimate.quantiles])}
+    for name, values in fractions.items():
+        columns[name] = np.concatenate([[1.0], values])
+    # Where the band has no value, the previous one still holds.
     return pd.DataFrame(columns).ffill()
 
 
 def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
-    """Deaths beyond a start over the distance gone there by all pulses, with its interval."""
-    beyond = [one for one in fates if one.distance > start]
-    deaths, distance = sum(one.died for one in beyond), sum(one.distance - start for one in beyond)
+    """Return the number of deaths per distance beyond ``start``, with its confidence interval.
+
+    The distance is the sum over all pulses of how far they went beyond ``start``.
+    """
+    passed = [fate for fate in fates if fate.distance > start]
+    deaths = sum(fate.died for fate in passed)
+    distance = sum(fate.distance - start for fate in passed)
     low, high = poisson_interval(deaths)
     return {
         "pulses": len(fates),
@@ -53,26 +72,44 @@ def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
 
 
 def survival_exponent(fates: Sequence[Fate], start: float) -> dict[str, float]:
-    """Exponent of a power law of survival beyond a start, by maximum likelihood; NaN of no death.
+    """Return the exponent a of a survival fraction that falls as distance^-a beyond ``start``.
 
-    The pulses that are alive at the end are censored.
+    This is the estimate of maximum likelihood, with its confidence interval: the number of deaths
+    divided by the sum of log(distance/start) over all pulses that passed ``start``. All are NaN if
+    no pulse died there.
     """
-    beyond = [one for one in fates if one.distance > start]
-    deaths = sum(one.died for one in beyond)
-    logs = sum(math.log(one.distance / start) for one in beyond) if deaths else math.nan
+    passed = [fate for fate in fates if fate.distance > start]
+    deaths = sum(fate.died for fate in passed)
+    sum_of_logs = math.nan
+    if deaths:
+        sum_of_logs = sum(math.log(fate.distance / start) for fate in passed)
     low, high = poisson_interval(deaths)
-    ends = {"exponent_low": low / logs, "exponent_high": high / logs}
-    return {"exponent": deaths / logs, "exponent_deaths": deaths, "exponent_start": start} | ends
+    return {
+        "exponent": deaths / sum_of_logs,
+        "exponent_deaths": deaths,
+        "exponent_start": start,
+        "exponent_low": low / sum_of_logs,
+        "exponent_high": high / sum_of_logs,
+    }
 
 
 def poisson_interval(count: int) -> tuple[float, float]:
-    """Exact interval of the mean of a Poisson distribution of which ``count`` was drawn."""
-    low = 0.5 * chi2.ppf(TAIL, 2 * count) if count else 0.0
-    return float(low), float(0.5 * chi2.ppf(1.0 - TAIL, 2 * count + 2))
+    """Return the exact confidence interval of a Poisson mean, if ``count`` events were observed."""
+    low = 0.0
+    if count > 0:
+        low = 0.5 * chi2.ppf(PROBABILITY_BEYOND_END, 2 * count)
+    high = 0.5 * chi2.ppf(1.0 - PROBABILITY_BEYOND_END, 2 * count + 2)
+    return float(low), float(high)
 
 
 def fraction_interval(count: int, total: int) -> tuple[float, float]:
-    """Exact interval (Clopper and Pearson) of a fraction; 0 to 1 without any."""
-    low = beta.ppf(TAIL, count, total - count + 1) if count else 0.0
-    high = beta.ppf(1.0 - TAIL, count + 1, total - count) if count < total else 1.0
+    """Return the exact (Clopper-Pearson) confidence interval of the fraction count/total.
+
+    It is 0 to 1 if ``total`` is 0.
+    """
+    low, high = 0.0, 1.0
+    if count > 0:
+        low = beta.ppf(PROBABILITY_BEYOND_END, count, total - count + 1)
+    if count < total:
+        high = beta.ppf(1.0 - PROBABILITY_BEYOND_END, count + 1, total - count)
     return float(low), float(high)

@@ -69,8 +69,8 @@ class Friction(ABC):
     @property
     def kernel_parameters(self) -> tuple[float, float]:
         """The first two parameters, which are passed to `friction`; 0 if there are fewer."""
-        parameter_1, parameter_2, *_ = (*astuple(self), 0.0, 0.0)
-        return parameter_1, parameter_2
+        padded = (*astuple(self), 0.0, 0.0)
+        return padded[0], padded[1]
 
     def mapping(self) -> dict[str, Any]:
         """Return the name of the law and its parameters, with the keys of the configuration."""

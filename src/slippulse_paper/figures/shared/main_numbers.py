@@ -50,9 +50,12 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
     Theory is NaN if the quantity has none.
     """
     run = at_constant_levels(run)
-    numbers = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
-    numbers["value"] = [run.get(name, np.nan) for name in numbers["quantity"]]
-    numbers["theory"] = [run.get(f"exact_{name}", np.nan) for name in numbers["quantity"]]
+    rows = []
+    for quantity, label in LABELS[run["boundary"]].items():
+        value, theory = run.get(quantity, np.nan), run.get(f"exact_{quantity}", np.nan)
+        rows.append({"quantity": quantity, "label": label, "value": value, "theory": theory})
+    numbers = pd.DataFrame(rows)
+    # A quantity that was not measured is left out.
     return numbers[np.isfinite(numbers["value"].astype(float))]
 
 
@@ -64,15 +67,22 @@ def at_constant_levels(run: pd.Series) -> pd.Series:
     """
     run = run.copy()
     for side, prefixes in PREDICTION_PREFIXES.items():
-        if f"level_ahead_{side}" in run and not np.isfinite(run[f"level_ahead_{side}"]):
-            names = [name for name in map(str, run.index) if name.startswith(prefixes)]
-            run[names] = np.nan
+        # Only pre-stress tables have this column. It is NaN if the level ahead varies.
+        level_ahead = run.get(f"level_ahead_{side}", 0.0)
+        if not np.isfinite(level_ahead):
+            predictions = [name for name in map(str, run.index) if name.startswith(prefixes)]
+            run[predictions] = np.nan
     return run
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
-    """Return `main_numbers` of a scene with the columns of its grid study: uncertainty, and
-    promised and kept if the scene has a promised accuracy.
+    """Return `main_numbers` of a scene with the columns of its grid study.
+
+    These are the uncertainty, and the columns promised and kept if the scene has a promised
+    accuracy.
+
+    run : measured and predicted numbers
+    study : one row for each quantity of the grid study
     """
     numbers = main_numbers(run)
     quantity = numbers["quantity"]
@@ -82,13 +92,15 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     if run.get("pulse_state") == "stopped":
         numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
     # The balance of the pre-stress, which defines this transition, leaves bumps out.
-    if json.loads(run["steps_and_bumps"])["bumps"] and run["boundary"] == "stress":
+    has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
+    if has_bumps and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
+    # The transition is the first stick, which is not repeated.
     if (quantity == "transition_time").any():
         numbers = numbers[quantity != "first_stick_time"]
-    promise = [name for name in ("promised", "kept") if name in study]
-    numbers = numbers.merge(study[["quantity", "uncertainty", *promise]], on="quantity")
-    return numbers[["quantity", "label", "value", "uncertainty", "theory", *promise]]
+    promise_columns = [name for name in ("promised", "kept") if name in study]
+    numbers = numbers.merge(study[["quantity", "uncertainty", *promise_columns]], on="quantity")
+    return numbers[["quantity", "label", "value", "uncertainty", "theory", *promise_columns]]
 
 
 def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:

@@ -1,7 +1,10 @@
 """Tabulate and draw simulated and exact pulses in the frame that moves with them."""
 
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -57,57 +60,92 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     divided by the width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
+    # The exact profile of each run.
     profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
     parts = []
+    # A sweep has one boundary condition.
     for name, sweep in data.items():
         runs = tables[name]
         boundary = str(runs["boundary"].iloc[0])
-        runs = runs[runs["left"].isin(spread_values(runs["left"], LEVEL_COUNT[boundary]))]
-        # A pulse that is not steady counts as flagged. Under a held stress there is no such state.
-        steady = runs["pulse_state"].isin(["steady", "none"])
-        flags = runs["run_flags"].where(steady, runs["pulse_state"])
+        drawn_levels = spread_values(runs["left"], LEVEL_COUNT[boundary])
+        runs = runs[runs["left"].isin(drawn_levels)]
+        # A pulse that is not steady counts as flagged. Under a stress boundary there is no such
+        # state.
+        is_steady = runs["pulse_state"].isin(["steady", "none"])
+        flags = runs["run_flags"].where(is_steady, runs["pulse_state"])
         rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
         for index, numbers in runs.iterrows():
             exact = profiles.get_group((name, index)).assign(role="exact")
-            if boundary == "displacement":
-                length = numbers["exact_pulse_width"]
-                extent = -(1.0 + MARGIN_BEHIND) * length, MARGIN_AHEAD * length
-                kinds = ("width", "slip", "peak_velocity", "acceleration")
-                units = [numbers[f"paper_pulse_{kind}"] for kind in kinds]
-            else:
-                length = float(np.ptp(exact["x"]))
-                extent = -length, MARGIN_AHEAD * length
-                width, peak = numbers["width"], numbers["exact_largest_velocity"]
-                units = [width, exact["slip"].max(), peak, peak / width]
-            run = point(sweep, int(index))
-            pulse = leading_pulse(run, window)
-            profile = pd.DataFrame(comoving(run, pulse))
-            inside = profile[profile["xi"].between(*extent)]
-            simulated = inside.iloc[:: int(np.ceil(len(inside) / CURVE_POINTS))]
-            x = simulated["xi"] - (pulse.peak_distance - pulse.front)
-            both = pd.concat([simulated.assign(role="simulation", x=x), exact])
-            curves = (both[["x", *FIELDS]] / units).round(VISIBLE_DECIMALS)
+            frame = frame_of_pulse(boundary, numbers, exact)
+            simulated = simulated_profile(point(sweep, int(index)), window, frame)
+            both = pd.concat([simulated.assign(role="simulation"), exact])
+            curves = (both[["x", *FIELDS]] / frame.units).round(VISIBLE_DECIMALS)
             curves.insert(0, "role", both["role"])
             rows.append(curves.assign(run=index))
         parts.append(pd.concat(rows).assign(panel=boundary))
     return pd.concat(parts, ignore_index=True)
 
 
+class PulseFrame(NamedTuple):
+    """The range in which a simulated pulse is drawn, and the units of its curves.
+
+    begin, end : range of distances from the front, which are negative behind it
+    units : units of x and of each of FIELDS
+    """
+
+    begin: float
+    end: float
+    units: list[float]
+
+
+def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> PulseFrame:
+    """Return the frame of one pulse; `pulse_table` describes the units.
+
+    numbers : measured and predicted numbers of the run
+    exact : profile of the exact pulse
+    """
+    if boundary == "displacement":
+        length = numbers["exact_pulse_width"]
+        names = ("width", "slip", "peak_velocity", "acceleration")
+        units = [numbers[f"paper_pulse_{name}"] for name in names]
+        return PulseFrame(-(1.0 + MARGIN_BEHIND) * length, MARGIN_AHEAD * length, units)
+    # This pulse has a long tail, which is drawn as far as the exact profile has it.
+    length = float(np.ptp(exact["x"]))
+    width, peak_velocity = numbers["width"], numbers["exact_largest_velocity"]
+    units = [width, exact["slip"].max(), peak_velocity, peak_velocity / width]
+    return PulseFrame(-length, MARGIN_AHEAD * length, units)
+
+
+def simulated_profile(run: xr.Dataset, window: float, frame: PulseFrame) -> pd.DataFrame:
+    """Return the FIELDS of the right pulse of a run at its end; x is 0 at the largest velocity."""
+    pulse = leading_pulse(run, window)
+    # xi is the distance from the front.
+    profile = pd.DataFrame(comoving(run, pulse))
+    inside = profile[profile["xi"].between(frame.begin, frame.end)]
+    stride = int(np.ceil(len(inside) / CURVE_POINTS))
+    drawn = inside.iloc[::stride]
+    return drawn.assign(x=drawn["xi"] - (pulse.peak_distance - pulse.front))
+
+
 def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs of one boundary condition, each with a colour and a line style."""
+    """Return the runs of one boundary condition, each with a colour and a line style (dashes)."""
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
-    styled = runs[STYLED_COLUMN[boundary]]
-    styles = dict(zip(np.sort(styled.unique()), LINE_STYLES, strict=False))
+    styled_values = runs[STYLED_COLUMN[boundary]]
+    style_of_value = dict(zip(np.sort(styled_values.unique()), LINE_STYLES, strict=False))
     colours = [*style.colour(LEVEL_COLUMNS[boundary], runs["left"])]
-    return runs.assign(colour=colours, dashes=styled.map(styles))
+    return runs.assign(colour=colours, dashes=styled_values.map(style_of_value))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
-    """Draw a field of the pulses of one boundary condition: simulations pale, exact pulses thin."""
+    """Draw a field of the pulses of one boundary condition.
+
+    Simulations are pale, and grey if the run is flagged. Exact pulses are thin lines.
+    """
     for run in styled_runs(table).itertuples():
         rows = table[table["run"] == run.run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
-        pale = SIMULATION_LOOK | {"color": "0.7" if isinstance(run.run_flags, str) else run.colour}
+        is_flagged = isinstance(run.run_flags, str)
+        pale = SIMULATION_LOOK | {"color": "0.7" if is_flagged else run.colour}
         axes.plot(simulated["x"], simulated[field], gid=f"simulation {run.run}", **pale)
         axes.plot(exact["x"], exact[field], run.dashes, color=run.colour, gid=f"exact {run.run}")
     boundary = table["panel"].iloc[0]
@@ -135,10 +173,11 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Return the legend entries of one boundary condition: colours, line styles, simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
-    level, styled = SYMBOLS[LEVEL_COLUMNS[boundary]], STYLED_COLUMN[boundary]
+    level_symbol = SYMBOLS[LEVEL_COLUMNS[boundary]]
+    styled = STYLED_COLUMN[boundary]
     entries = []
     for run in runs.drop_duplicates("left").sort_values("left").itertuples():
-        entries.append(entry(f"${level} = {run.left:g}$", color=run.colour))
+        entries.append(entry(f"${level_symbol} = {run.left:g}$", color=run.colour))
     for _, run in runs.drop_duplicates(styled).sort_values(styled).iterrows():
         name = f"exact, ${SYMBOLS[styled]} = {run[styled]:g}$"
         entries.append(entry(name, color=BLACK, linestyle=run["dashes"]))
@@ -146,22 +185,25 @@ def handles(table: pd.DataFrame) -> list[Line2D]:
 
 
 def title(table: pd.DataFrame) -> str:
-    """Return a title with the boundary condition, and with gamma or b, which no style shows."""
-    held = table["panel"].iloc[0] == "displacement"
-    column = "gamma" if held else "damping_ratio"
+    """Return a title with the boundary condition, and with gamma or b.
+
+    These are the parameters that neither colour nor line style shows.
+    """
+    has_springs = table["panel"].iloc[0] == "displacement"
+    column = "gamma" if has_springs else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
-    return rf"{style.conditions(held)}, ${SYMBOLS[column]} = {values}$"
+    return rf"{style.conditions(has_springs)}, ${SYMBOLS[column]} = {values}$"
 
 
-def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, widths: float) -> None:
-    """Draw the pre-stress of coloured runs in an inset.
+def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length: float) -> None:
+    """Draw the pre-stress of runs in an inset, each in the colour of its column colour.
 
-    ``widths`` is the half-length of its axis, in widths of the widest Gaussian.
+    ``half_length`` is that of the axis, in widths of the widest Gaussian.
     """
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     # Tables of pre-stress without a Gaussian have no width.
     runs = runs[np.isfinite(runs["width"])]
-    x = np.linspace(-widths, widths, 161) * runs["width"].max()
+    x = np.linspace(-half_length, half_length, 161) * runs["width"].max()
     for run in runs.drop_duplicates(["left", "right", "width"]).itertuples():
         tau = Prestress(run.left, run.right, run.width)(x)
         inset.plot(x, tau, color=run.colour, linewidth=0.8)
