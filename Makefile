@@ -36,8 +36,8 @@ else \
 fi
 endef
 
-# Install these packages from source, since they have no wheels. From Python 3.14 on immutables has none
-# either, and needs a compiler of C.
+# Install these packages from source, since they have no wheels. From Python 3.14 on, immutables has no
+# wheel either, and needs a C compiler.
 FROM_SOURCE = --no-binary connection-pool \
     $$("$(BIN)/python" -c 'import sys; sys.version_info < (3, 14) or print("--no-binary immutables")')
 

@@ -1,9 +1,9 @@
-"""Build the documentation as a site from what is in the repository: `make docs`.
+"""Build the documentation as a site from the files of the repository: `make docs`.
 
 python docs/build_site.py FOLDER
 
 Pages keep the place that they have in the repository, so that their links hold. A link to a file
-that is no page becomes its text.
+that is not a page becomes its text.
 """
 
 import os
@@ -11,6 +11,7 @@ import re
 import shutil
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import jupytext
 
@@ -30,48 +31,57 @@ FENCE = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
 
 def collect(sources: Path) -> None:
     """Copy all pages into a folder, with the tutorial as a notebook and one page per object."""
-    docs = [path.relative_to(PROJECT) for path in (PROJECT / "docs").rglob("*")]
-    pages = [*map(Path, PAGES), *(path for path in docs if path.suffix == ".md")]
-    notebooks = [path for path in docs if path.parent.name == "gallery" and path.suffix == ".py"]
-    names = {path.as_posix() for path in [*pages, *notebooks]}
-    for path in pages:
-        text = linked((PROJECT / path).read_text(encoding="utf-8"), path, names)
-        if path.as_posix() in NOTEBOOKS:
+    pages = [*PAGES, *files_of_docs("**/*.md")]
+    scripts = files_of_docs("gallery/*.py")
+    names = {*pages, *scripts}
+    for name in pages:
+        text = with_site_links((PROJECT / name).read_text(encoding="utf-8"), name, names)
+        if name in NOTEBOOKS:
             text = jupytext.writes(jupytext.reads(text, fmt="md"), fmt="ipynb")
-        write(sources / PLACES.get(path.as_posix(), path.as_posix()), text)
-    for path in [*notebooks, *(path for path in docs if path.suffix in (".png", ".svg"))]:
-        copy(PROJECT / path, sources / path)
+        write(sources / PLACES.get(name, name), text)
+    for name in [*scripts, *files_of_docs("**/*.png"), *files_of_docs("**/*.svg")]:
+        copy(PROJECT / name, sources / name)
     for package in (slippulse, theory):
         write(sources / f"reference/{package.__name__}.md", reference_page(package))
 
 
-def linked(text: str, page: Path, names: set[str]) -> str:
-    """Return a page in which only links to other pages are left; code stays as it is."""
+def files_of_docs(pattern: str) -> list[str]:
+    """Return the paths below the project of the files in docs that match a pattern."""
+    paths = (PROJECT / "docs").glob(pattern)
+    return [path.relative_to(PROJECT).as_posix() for path in paths]
+
+
+def with_site_links(text: str, page: str, names: set[str]) -> str:
+    """Return a page in which links to other pages lead to their place in the site.
+
+    Other links to files become their text. Code is not changed.
+    """
 
     def replaced(link: re.Match) -> str:
-        target = (PROJECT / page.parent / link[2]).resolve()
-        inside = target.is_relative_to(PROJECT) and target.relative_to(PROJECT).as_posix()
-        inside = INDEX if inside == "README.md" else inside
-        if inside not in names:
-            return link[1]
-        place = PLACES.get(inside, inside)
-        return f"[{link[1]}](/{place}{link[3] or ''})"
+        text, target, anchor = link.groups(default="")
+        path = (PROJECT / page).parent.joinpath(target).resolve()
+        name = path.relative_to(PROJECT).as_posix() if path.is_relative_to(PROJECT) else ""
+        if name == "README.md":
+            name = INDEX
+        if name not in names:
+            return text
+        return f"[{text}](/{PLACES.get(name, name)}{anchor})"
 
+    # Texts and blocks of code alternate.
     parts = FENCE.split(text)
-    return "".join(LINK.sub(replaced, part) if i % 2 == 0 else part for i, part in enumerate(parts))
+    for position in range(0, len(parts), 2):
+        parts[position] = LINK.sub(replaced, parts[position])
+    return "".join(parts)
 
 
-def reference_page(package: object) -> str:
+def reference_page(package: ModuleType) -> str:
     """Return the page that lists the public names of a package, with a page for each."""
-    names = "\n".join(sorted(set(package.__all__) - {"theory", "__version__"}))
-    title = package.__name__
-    summary = (package.__doc__ or "").strip()
-    return (
-        f"# {title}\n\n{summary}\n\n```{{eval-rst}}\n.. currentmodule:: {title}\n\n"
-        f".. autosummary::\n   :toctree: {title}\n   :nosignatures:\n\n"
-        + "".join(f"   {name}\n" for name in names.splitlines())
-        + "```\n"
-    )
+    title, summary = package.__name__, (package.__doc__ or "").strip()
+    names = sorted({*package.__all__} - {"theory", "__version__"})
+    lines = [f"# {title}", "", summary, "", "```{eval-rst}", f".. currentmodule:: {title}", ""]
+    lines += [".. autosummary::", f"   :toctree: {title}", "   :nosignatures:", ""]
+    lines += [f"   {name}" for name in names]
+    return "\n".join([*lines, "```", ""])
 
 
 def write(path: Path, text: str) -> None:

@@ -32,15 +32,18 @@ DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 def docstring_problems(text: str) -> Iterator[tuple[int, str]]:
     """Yield line and problem of each Python docstring that begins with a refused word."""
     for node in ast.walk(ast.parse(text)):
-        docstring = ast.get_docstring(node) if isinstance(node, DOCUMENTED) else None
-        if begin := FRAGMENT.match(docstring or ""):
+        if not isinstance(node, DOCUMENTED):
+            continue
+        begin = FRAGMENT.match(ast.get_docstring(node) or "")
+        if begin:
             yield node.body[0].lineno, f"a docstring begins with {begin[1]}"
 
 
 def snakemake_problems(text: str) -> Iterator[tuple[int, str]]:
     """Yield line and problem of each docstring of a Snakemake file with a refused first word."""
     for docstring in SNAKEMAKE_DOCSTRING.finditer(text):
-        if begin := FRAGMENT.match(docstring[1]):
+        begin = FRAGMENT.match(docstring[1])
+        if begin:
             line = text.count("\n", 0, docstring.start()) + 1
             yield line, f"a docstring begins with {begin[1]}"
 
@@ -53,7 +56,7 @@ def word_problems(text: str) -> Iterator[tuple[int, str]]:
 
 
 def tuple_problems(text: str) -> Iterator[tuple[int, str]]:
-    """Yield line and problem of each returned tuple whose values are written out and are many."""
+    """Yield line and problem of each tuple of three or more values that a function returns."""
     for node in ast.walk(ast.parse(text)):
         values = node.value if isinstance(node, ast.Return) else None
         if isinstance(values, ast.Tuple) and len(values.elts) >= FEWEST_NAMED_VALUES:

@@ -11,7 +11,7 @@ from slippulse import theory
 
 def main(folder: str) -> None:
     """Write HTML pages of what `slippulse` and `slippulse.theory` export into a folder."""
-    # pdoc sees loaded names only, and these packages load a name when it is first used.
+    # These packages load a name when it is first used, and pdoc only sees names that are loaded.
     for package in (slippulse, theory):
         for name in package.__all__:
             setattr(package, name, getattr(package, name))

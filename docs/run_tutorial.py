@@ -1,4 +1,6 @@
-"""Run a notebook as a script, by default the tutorial: print what each cell shows, save pictures.
+"""Run a notebook as a script, by default the tutorial.
+
+It prints the value of each cell, as a notebook shows it, and saves the pictures in a folder.
 
 python docs/run_tutorial.py results/tutorial
 """

@@ -18,7 +18,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -87,11 +87,13 @@ def processes_in(folder: Path) -> dict[int, bytes]:
     """Return the arguments of the other processes that run in a folder or name it, by their ids."""
     folder, others = folder.resolve(), {}
     for entry in Path("/proc").glob("[0-9]*"):
+        # A process may end while its files are read.
         with suppress(OSError):
             arguments = (entry / "cmdline").read_bytes()
-            working_directory = (entry / "cwd").resolve()
-            names_folder = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
-            if arguments and (names_folder or working_directory.is_relative_to(folder)):
+            environment = (entry / "environ").read_bytes()
+            is_in_folder = (entry / "cwd").resolve().is_relative_to(folder)
+            names_folder = os.fsencode(folder) in arguments + environment
+            if arguments and (is_in_folder or names_folder):
                 others[int(entry.name)] = arguments
     others.pop(os.getpid(), None)
     return others
@@ -99,14 +101,15 @@ def processes_in(folder: Path) -> dict[int, bytes]:
 
 def find_victims(run: subprocess.Popen, folder: Path, way: str) -> list[int]:
     """Return the ids of the processes of a run, of which one is killed to stop it in some way."""
-    others = {number: name for number, name in processes_in(folder).items() if number != run.pid}
+    if way not in ("a job", "the server of jobs"):
+        return [run.pid]
+    others = processes_in(folder)
+    others.pop(run.pid, None)
     if way == "a job":
         return [*others]
-    if way == "the server of jobs":
-        servers = sorted(number for number, name in others.items() if b"forkserver" in name)
-        # The first process is the server if there is a second one, which is a worker.
-        return servers[:1] if len(servers) > 1 else []
-    return [run.pid]
+    forked = sorted(number for number, arguments in others.items() if b"forkserver" in arguments)
+    # The first process is the server if there is a second one, which is a worker.
+    return forked[:1] if len(forked) > 1 else []
 
 
 def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -> bool:
@@ -121,20 +124,23 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
     # If the run has ended, there is no process to choose from.
     with suppress(ProcessLookupError, IndexError):
         kill(chance.choice(victims), getattr(signal, way, signal.SIGKILL))
-    since = time.monotonic()
+    killed_at = time.monotonic()
     run.wait(timeout=300)
-    if way in WITHOUT_MAKE:
-        return bool(victims)
-    if way not in SIGNALS:
-        since = time.monotonic()
-    longest = MAX_SECONDS_AFTER_SIGKILL if way == "SIGKILL" else MAX_SECONDS_TO_END
-    limit = since + longest
+    if way not in WITHOUT_MAKE:
+        # After the end of its server, Snakemake first waits for the jobs that are running.
+        begin = killed_at if way in SIGNALS else time.monotonic()
+        seconds = MAX_SECONDS_AFTER_SIGKILL if way == "SIGKILL" else MAX_SECONDS_TO_END
+        check_all_ended(folder, begin + seconds, way)
+        unwanted = "Traceback|Exception" if way in SIGNALS else "Traceback"
+        assert not re.search(unwanted, output_of(folder)), output_of(folder)[-4000:]
+    return bool(victims)
+
+
+def check_all_ended(folder: Path, limit: float, way: str) -> None:
+    """Wait until no process runs in a folder, which must be so before a time."""
     while others := processes_in(folder):
         assert time.monotonic() < limit, (way, others)
         time.sleep(0.02)
-    unwanted = "Traceback|Exception" if way in SIGNALS else "Traceback"
-    assert not re.search(unwanted, output_of(folder)), output_of(folder)[-4000:]
-    return bool(victims)
 
 
 def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARGETS) -> str:
@@ -142,37 +148,50 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
 
     Whenever a run ends by itself, its results are compared with those of a quiet run.
     """
-    chance, harmed = random.Random(seed), prepare(folder / "harmed")
-    stopped, compared = Counter(), 0
-    quiet, began = prepare(folder / "quiet"), time.monotonic()
+    quiet, harmed = prepare(folder / "quiet"), prepare(folder / "harmed")
+    began = time.monotonic()
     assert start(quiet, targets).wait(timeout=1200) == 0, output_of(quiet)
-    duration, expected = time.monotonic() - began, digests(quiet)
+    duration = time.monotonic() - began
+    expected = digests(quiet)
     assert len(expected) >= 3 * len(targets)
     # Every file is a target, so that each file that is removed is made again.
     targets = [f"results/{name}" for name in expected]
-    while True:
+    chance, stopped = random.Random(seed), Counter()
+    comparisons, has_finished = 0, False
+    while not has_finished:
         # The way that was used least comes next.
         way = min(WAYS_TO_STOP, key=stopped.__getitem__)
         run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
         is_last = stopped.total() >= stops
+        seconds = 1200.0 if is_last else chance.uniform(0.02, 0.7) * duration
         with suppress(subprocess.TimeoutExpired):
-            run.wait(1200 if is_last else chance.uniform(0.02, 0.7) * duration)
+            run.wait(seconds)
         if run.poll() is None:
             stopped[way] += stop(run, harmed, way, chance)
             assert run.returncode or digests(harmed) == expected
             continue
-        assert run.returncode == 0, output_of(harmed)[-4000:]
-        differing = dict(digests(harmed).items() ^ expected.items())
-        assert not differing, f"files that differ from a quiet run: {sorted(differing)}"
-        compared += 1
-        if is_last:
-            break
-        # Some of the files are removed, so that the next runs have work.
-        for name in sorted(expected)[chance.randrange(3) :: chance.choice((1, 3))]:
-            (harmed / "results" / name).unlink()
+        check_results(run, harmed, expected)
+        comparisons += 1
+        has_finished = is_last
+        if not has_finished:
+            remove_some(harmed, expected, chance)
     counts = ", ".join(f"{count} by {way}" for way, count in stopped.items())
-    same_files = f"{len(expected)} files the same, byte by byte, {compared} times"
+    same_files = f"{len(expected)} files the same, byte by byte, {comparisons} times"
     return f"{stops} stops survived ({counts}); {same_files}"
+
+
+def check_results(run: subprocess.Popen, folder: Path, expected: dict[str, str]) -> None:
+    """Assert that a run has ended well, with the expected results."""
+    assert run.returncode == 0, output_of(folder)[-4000:]
+    differing = dict(digests(folder).items() ^ expected.items())
+    assert not differing, f"files that differ from a quiet run: {sorted(differing)}"
+
+
+def remove_some(folder: Path, names: Iterable[str], chance: random.Random) -> None:
+    """Remove all results or a third of them, so that the next runs have work."""
+    first, step = chance.randrange(3), chance.choice((1, 3))
+    for name in sorted(names)[first::step]:
+        (folder / "results" / name).unlink()
 
 
 if __name__ == "__main__":

@@ -32,7 +32,9 @@ def build_wheel(folder: Path) -> Path:
     subprocess.run(command, check=True)
     [wheel] = folder.glob("*.whl")
     names = ZipFile(wheel).namelist()
-    packages = {name.partition("/")[0].partition("-")[0] for name in names}
+    folders = {name.partition("/")[0] for name in names}
+    # The metadata of the package are in a folder with its version after a dash.
+    packages = {folder.partition("-")[0] for folder in folders}
     if packages != {"slippulse"} or "slippulse/py.typed" not in names:
         raise SystemExit(f"{wheel.name}: {sorted(packages)}; allowed: slippulse alone, with types")
     return wheel
@@ -57,15 +59,8 @@ def run_tests(packages: str, wheel: Path, folder: Path, python: str) -> int:
     variables = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     variables["SLIPPULSE_CACHE"] = str(folder / f"cache-{packages}")
     # The fixtures of the other tests need the replication.
-    options = [
-        "-q",
-        "--noconftest",
-        "--disable-warnings",
-        "-p",
-        "no:cacheprovider",
-        "-c",
-        str(PROJECT / "pyproject.toml"),
-    ]
+    options = ["-q", "--noconftest", "--disable-warnings", "-p", "no:cacheprovider"]
+    options += ["-c", str(PROJECT / "pyproject.toml")]
     command = [interpreter, "-m", "pytest", *options, *tests]
     return subprocess.run(command, cwd=folder, env=variables, check=False).returncode
 
@@ -79,8 +74,9 @@ def main() -> int:
     if unknown := {*options.packages} - {*RESOLUTIONS}:
         parser.error(f"packages: {', '.join(sorted(unknown))}; allowed: {', '.join(RESOLUTIONS)}")
     with tempfile.TemporaryDirectory() as name:
-        wheel = build_wheel(Path(name))
-        codes = [run_tests(one, wheel, Path(name), options.python) for one in options.packages]
+        folder = Path(name)
+        wheel = build_wheel(folder)
+        codes = [run_tests(one, wheel, folder, options.python) for one in options.packages]
     return max(codes)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 FOLDERS = ("workflow", "profiles", "config", "src", "manuscript")
 PARTS = ("CITATION.cff", "Snakefile", "requirements.lock", *FOLDERS)
-# With the profile of the project the log is for people, and without it the log has plain lines.
+# Without the profile of the project, the log has plain lines that tests can read.
 BY_PROFILE = (sys.executable, "-m", "snakemake")
 WITHOUT_PROFILE = (*BY_PROFILE, "--workflow-profile", "none")
 SNAKEMAKE = (*WITHOUT_PROFILE, "--rerun-incomplete", "--force-use-threads")
@@ -80,42 +80,63 @@ VARIABLES_OF_MAKE = (
 
 
 def snakemake(
-    folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
+    folder: Path,
+    *arguments,
+    overlay="",
+    cores=1,
+    environment=None,
+    command=SNAKEMAKE,
+    **process_options,
 ):
-    """Run Snakemake in a folder and return the completed process."""
-    options = ["--cores", str(cores)]
+    """Run Snakemake in a folder and return the completed process.
+
+    ``overlay`` is a path or several paths, and ``environment`` has additional variables.
+    """
+    all_options = [*command, "--cores", str(cores)]
     if overlay:
-        options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
-    how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
+        overlays = [overlay] if isinstance(overlay, str | Path) else overlay
+        all_options += ["--configfile", *overlays]
     variables = {name: value for name, value in os.environ.items() if name not in VARIABLES_OF_MAKE}
-    how["env"] = variables | (environment or {})
-    return subprocess.run([*command, *options, *arguments], text=True, **how)
+    defaults = {
+        "cwd": folder,
+        "env": variables | (environment or {}),
+        "capture_output": True,
+        "text": True,
+        "timeout": 1200,
+        "check": False,
+    }
+    all_options += arguments
+    return subprocess.run(all_options, **(defaults | process_options))
 
 
-def made(folder: Path, *arguments, **how) -> subprocess.CompletedProcess:
-    """Run Snakemake, which must succeed, and return the completed process."""
-    result = snakemake(folder, *arguments, **how)
+def made(folder: Path, *arguments, **options) -> subprocess.CompletedProcess:
+    """Run `snakemake`, which must succeed, and return the completed process."""
+    result = snakemake(folder, *arguments, **options)
     assert result.returncode == 0, result.stderr
     return result
 
 
-def refused(folder: Path, *arguments, **how) -> str:
-    """Run Snakemake, which must fail with a clear message, and return what it prints."""
-    result = snakemake(folder, *arguments, **how)
+def refused(folder: Path, *arguments, **options) -> str:
+    """Run `snakemake`, which must fail without a traceback, and return what it prints."""
+    result = snakemake(folder, *arguments, **options)
     text = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in text, text
     return text
 
 
 def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
-    """Return how often each rule would run, from a dry run."""
+    """Return the number of jobs of each rule that a dry run has planned."""
     assert result.returncode == 0, result.stderr + result.stdout
     text = result.stdout + result.stderr
     table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\ntotal", text, re.S)
     if table is None:
         assert "Nothing to be done" in text
         return {}
-    return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
+    counts = {}
+    for row in table.group(1).splitlines():
+        rule, count = row.split()
+        counts[rule] = int(count)
+    return counts
 
 
 def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
@@ -131,4 +152,5 @@ def planned_by_name(result: subprocess.CompletedProcess) -> dict[str, int]:
 def edges(graph: str) -> set[tuple[str, str]]:
     """Return the edges of a mermaid graph: pairs of rules, the second of which needs the first."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
-    return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}
+    arrows = re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)
+    return {(names[start], names[end]) for start, end in arrows}

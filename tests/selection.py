@@ -4,8 +4,8 @@ import copy
 
 from slippulse_paper.configuration.resolve import resolve
 
-# A few points of each list are enough to draw.
-THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
+# Number of values of each list in a small sweep. A few points are enough to draw.
+MAX_VALUES = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
 
 # Seeds of each ensemble of rough pre-stress.
 SEEDS = 12
@@ -15,8 +15,12 @@ SMALL_STUDIES = {
     "barriers": {"RELATIVE_LENGTHS": (0.95, 1.05)},
     "friction_laws": {"LEVELS": (0.2, 0.5, 0.8), "DURATION": 28.0},
     "front_law": {"SPACING_COUNT": 5},
-    "layer": {"GAMMAS": (2.0 / 3.0, 0.06), "OTHER_LEVELS": (0.5,), "WEAKENINGS": (0.05, 0.8)}
-    | {"FRACTURE_ENERGIES": (0.05, 0.42, 0.9)},
+    "layer": {
+        "GAMMAS": (2.0 / 3.0, 0.06),
+        "OTHER_LEVELS": (0.5,),
+        "WEAKENINGS": (0.05, 0.8),
+        "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
+    },
     "layer_healing": {"THICK_PULSES": ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5))},
     "rough_checks": {"GRID_SEEDS": 1, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
     "rough_prestress": {"LONG_SEEDS": 200},
@@ -30,14 +34,18 @@ SMALL_STUDIES = {
 
 
 def small_sweep(config: dict, name: str) -> dict:
-    """Resolve a simulation at preset draft, with the ends and a few between of each long list."""
-    block = copy.deepcopy(config["simulations"][name])
-    for profile in block.get("profiles", []):
-        if isinstance(profile.get("rough", {}).get("seed"), list):
-            profile["rough"]["seed"] = profile["rough"]["seed"][:SEEDS]
-    for key, count in THIN.items():
-        values = block.get(key, [])
+    """Return a resolved simulation at preset draft, with a few values of each long list.
+
+    These are the first value, the last value and some between them.
+    """
+    simulation = copy.deepcopy(config["simulations"][name])
+    for profile in simulation.get("profiles", []):
+        seeds = profile.get("rough", {}).get("seed")
+        if isinstance(seeds, list):
+            profile["rough"]["seed"] = seeds[:SEEDS]
+    for key, count in MAX_VALUES.items():
+        values = simulation.get(key, [])
         if not name.startswith("regimes") and len(values) > count:
             step = (len(values) - 1) / (count - 1)
-            block[key] = [values[round(i * step)] for i in range(count)]
-    return resolve(block, config["model"], config["presets"]["draft"])
+            simulation[key] = [values[round(i * step)] for i in range(count)]
+    return resolve(simulation, config["model"], config["presets"]["draft"])

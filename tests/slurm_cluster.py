@@ -1,9 +1,10 @@
-"""The draft through a Slurm cluster gives the data of the draft without, bit for bit.
+"""Compare a draft that runs on a Slurm cluster with one that runs without Slurm.
 
     make slurm-test
 
-Starts a cluster of one node on the loopback, with its configuration and key in a temporary folder,
-and stops it at the end, whatever happened. The make target installs Slurm. It must be root.
+The data must be equal, bit for bit. The program starts a cluster of one node on the loopback
+interface, with its configuration and key in a temporary folder, and always stops it at the end. The
+make target installs Slurm, for which it must be root.
 """
 
 import os
@@ -54,21 +55,24 @@ PartitionName=loopback Nodes=ALL Default=YES MaxTime=60 State=UP
 
 
 def start_cluster(folder: Path) -> dict[str, str]:
-    """Start a Slurm of one node; returns the environment of its users."""
+    """Start a Slurm cluster of one node, and return the environment of its users."""
     for name in ("state", "spool", "bin"):
         (folder / name).mkdir()
-    megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
-    machine = {"cores": len(os.sched_getaffinity(0)), "megabytes": megabytes}
-    # Nobody listens at these two ports of the loopback.
-    local = ("127.0.0.1", 0)
-    with socket.create_server(local) as first, socket.create_server(local) as second:
-        machine["ports"] = [server.getsockname()[1] for server in (first, second)]
+    bytes_of_memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    # A tenth of the memory stays for the daemons.
+    megabytes = bytes_of_memory // 2**20 * 9 // 10
     conf, srun, key = folder / "slurm.conf", folder / "bin/srun", folder / "munged.key-file"
-    conf.write_text(SLURM_CONF.format(folder=folder, **machine), encoding="ascii")
+    text = SLURM_CONF.format(
+        folder=folder,
+        ports=free_ports(),
+        cores=len(os.sched_getaffinity(0)),
+        megabytes=megabytes,
+    )
+    conf.write_text(text, encoding="ascii")
     key.write_bytes(os.urandom(1024))
     key.chmod(0o400)
-    # Within a job the plugin clears the variable that names the configuration, which on a real
-    # cluster lies where srun looks by itself.
+    # Within a job the plugin clears the variable that names the configuration. On a real cluster
+    # the configuration is where srun looks by itself.
     srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {shutil.which("srun")} "$@"\n', "ascii")
     srun.chmod(0o755)
     path = f"{folder}/bin:{Path(sys.executable).parent}:{os.environ['PATH']}"
@@ -78,6 +82,13 @@ def start_cluster(folder: Path) -> dict[str, str]:
     for daemon in (munged, ["slurmctld"], ["slurmd", "-N", "localhost"]):
         subprocess.run(daemon, env=environment, check=True)
     return environment
+
+
+def free_ports() -> list[int]:
+    """Return two ports of the loopback interface at which nobody listens."""
+    address = ("127.0.0.1", 0)
+    with socket.create_server(address) as first, socket.create_server(address) as second:
+        return [server.getsockname()[1] for server in (first, second)]
 
 
 def end_all(folder: Path) -> None:
@@ -92,51 +103,54 @@ def end_all(folder: Path) -> None:
 
 
 def draft(folder: Path, environment: dict[str, str], *options: str) -> dict[str, str]:
-    """Make the draft replication in a folder; returns the digest of each file of data."""
+    """Make the draft replication in a folder, and return the digest of each file of data."""
     command = [*SNAKEMAKE, *options, "--config", "preset=draft", "--", "all"]
-    how = {"capture_output": True, "text": True, "check": False}
-    done = subprocess.run(command, cwd=folder, env=environment, **how)
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, (done.stdout + done.stderr)[-6000:]
-    made = digests(folder).items()
-    data = {name: digest for name, digest in made if name.endswith((".nc", ".csv"))}
+    data = {}
+    for name, digest in digests(folder).items():
+        if name.endswith((".nc", ".csv")):
+            data[name] = digest
     print(f"{folder.name}: {len(data)} files of data", flush=True)
     return data
 
 
 def compare(folder: Path) -> str:
-    """Run both ways, assert that no job failed and no file differs; returns the closing line."""
+    """Run with and without Slurm, assert that nothing fails or differs, and return a summary."""
     local = copy_project(PROJECT, folder / "local", link=True)
     remote = copy_project(PROJECT, folder / "remote", link=True)
     daemons = folder / "cluster"
     daemons.mkdir()
-    # munge wants everybody to reach its socket, but not its key.
+    # munge requires that everybody can reach its socket, but not its key.
     folder.chmod(0o711)
     daemons.chmod(0o755)
-    # There is no accounting here, and nobody else in the queue.
-    through = ["--slurm-status-command=squeue", "--slurm-init-seconds-before-status-checks=1"]
+    # The cluster has no accounting, and nobody else uses it.
+    slurm_options = ["--slurm-status-command=squeue", "--slurm-init-seconds-before-status-checks=1"]
     environment = start_cluster(daemons)
     expected = draft(local, dict(os.environ), f"--cores={len(os.sched_getaffinity(0))}")
-    # The daemons have had the time of a draft to find each other.
+    # The daemons have found each other while the first draft was running.
     node = subprocess.check_output(["sinfo", "--noheader", "--format=%T"], env=environment)
     assert node == b"idle\n", node
-    data = draft(remote, environment, "--profile=workflow/profiles/slurm", *through)
+    data = draft(remote, environment, "--profile=workflow/profiles/slurm", *slurm_options)
     end_all(daemons)
     states = re.findall(r"\bJobState=(\S*)", (daemons / "finished.txt").read_text(encoding="utf-8"))
-    left = processes_in(daemons)
-    assert not left, f"still running: {left}"
+    still_running = processes_in(daemons)
+    assert not still_running, f"still running: {still_running}"
     assert states and set(states) == {"COMPLETED"}, f"jobs ended as {sorted(set(states))}"
-    differing = sorted(name for name, _ in expected.items() ^ data.items())
-    assert expected and not differing, f"other than without Slurm: {differing}"
+    differing = sorted(dict(expected.items() ^ data.items()))
+    assert expected and not differing, f"files that differ: {differing}"
     counts = f"{len(states)} jobs completed, {len(data)} files identical"
     return f"slurm-test: {counts}; nothing left running"
 
 
 if __name__ == "__main__":
-    # A run that is told to stop stops its cluster too.
+    # A signal to end also stops the cluster.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
         try:
             print(compare(Path(folder)))
         finally:
-            # A run that was interrupted leaves Slurm, and jobs without it.
+            # An interrupted run leaves the daemons and jobs.
             end_all(Path(folder))

@@ -40,12 +40,20 @@ PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
 
 def options_of(given: Mapping[str, str]) -> list[str]:
     """Return the options of Snakemake that correspond to the options of make."""
-    names = [name for name in ("PRESET", "ALLOW_LARGE") if given.get(name)]
-    options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
+    values = []
+    for name in ("PRESET", "ALLOW_LARGE"):
+        if given.get(name):
+            values.append(f"{name.lower()}={given[name]}")
+    options = ["--config", *values] if values else []
     if given.get("OVERLAY"):
         check_overlay(given["OVERLAY"])
         options += ["--configfile", given["OVERLAY"]]
     return options
+
+
+def targets_of(given: Mapping[str, str]) -> list[str]:
+    """Return the targets of make, with the short names of figures completed."""
+    return [full_target(target) for target in given.get("TARGET", "").split()]
 
 
 def check_overlay(path: str) -> None:
@@ -64,8 +72,9 @@ def full_target(target: str) -> str:
     modules = PROJECT / "src/slippulse_paper/figures"
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
-        paths = modules.glob(f"fig{int(numbered[1]):02d}_*.py")
-        name = next((path.stem for path in paths), name)
+        number = int(numbered[1])
+        for path in modules.glob(f"fig{number:02d}_*.py"):
+            name = path.stem
     has_module = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
     is_figure = has_module or name.startswith("sweep_")
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
@@ -89,16 +98,19 @@ def clean_up_after_kill() -> TextIO:
     from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
 
-    started_by_make, lock = take(STATE / "slippulse-make.lock"), take(STATE / "slippulse.lock")
-    if started_by_make is None or lock is None:
+    make_lock = take(STATE / "slippulse-make.lock")
+    snakemake_lock = take(STATE / "slippulse.lock")
+    if make_lock is None or snakemake_lock is None:
         sys.exit("Another run is using this folder: wait for it, or stop it.")
-    locks = [*STATE.glob("locks/*.lock")]
-    if locks:
-        for path in [*locks, *RESULTS.rglob(f".*{UNFINISHED_MARK}*")]:
+    # Snakemake removes its own locks unless it is killed.
+    left_locks = [*STATE.glob("locks/*.lock")]
+    if left_locks:
+        unfinished = RESULTS.rglob(f".*{UNFINISHED_MARK}*")
+        for path in [*left_locks, *unfinished]:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
-    lock.close()
-    return started_by_make
+    snakemake_lock.close()
+    return make_lock
 
 
 def changed_results() -> dict[str, str]:
@@ -121,10 +133,12 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     listing = summary(options, targets, stderr=subprocess.DEVNULL)
     required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
     names = [name for name in problems if name in required_outputs]
-    if names:
-        count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
-        print(f"{count} made again: {names[0]}: {problems[names[0]]}", file=sys.stderr)
-    return ["--forcerun", *names] if names else []
+    if not names:
+        return []
+    first = names[0]
+    count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
+    print(f"{count} made again: {first}: {problems[first]}", file=sys.stderr)
+    return ["--forcerun", *names]
 
 
 def summary(
@@ -136,32 +150,43 @@ def summary(
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
 
 
-def closing_line(targets: list[str], given: Mapping[str, str]) -> str:
+def closing_text(targets: list[str], given: Mapping[str, str]) -> str:
     """Return the text that is printed after a run: the verdicts, if requested, and what to open."""
-    from slippulse_paper.claims.claim_texts import read_text
-    from slippulse_paper.claims.ledger import Ledger
     from slippulse_paper.configuration.read import read_config, read_overlay
-    from slippulse_paper.records.provenance import changes
 
     shipped = read_overlay(PROJECT / "config/config.yaml")
     overlays = [read_overlay(given["OVERLAY"])] if given.get("OVERLAY") else []
     preset = {"preset": given["PRESET"]} if given.get("PRESET") else {}
     config = read_config(shipped, overlays, preset, every_run=False)
-    is_draft = targets in ([], ["all"]) and not config.presets[config.preset].whole
-    is_whole = not is_draft and {*targets} <= {"all", "everything", "results/index.html"}
+    # By default, a draft makes only the figures of the paper.
+    if targets in ([], ["all"]) and not config.presets[config.preset].whole:
+        return "Open results/figures; TARGET=everything also makes studies, claims and report"
+    is_whole = {*targets} <= {"all", "everything", "results/index.html"}
     text = ""
     if is_whole or any(target.startswith("results/claims.") for target in targets):
-        ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        text = f"{ledger.summary()}\n"
-        if changes(shipped, {**config.given(), "preset": shipped["preset"]}):
-            line = "Differs from the shipped verdict: {key}: {shipped} -> {here}\n".format
-            verdicts = read_text(PROJECT / "manuscript/shipped_verdicts.yaml")
-            text += "".join(line(**change) for change in ledger.differences(verdicts))
-    if is_whole:
-        return f"{text}Open results/index.html"
-    if is_draft:
-        return "Open results/figures; TARGET=everything also makes studies, claims and report"
-    return f"{text}Made: {', '.join(targets)}"
+        text = verdicts_text(shipped, config.given())
+    end = "Open results/index.html" if is_whole else f"Made: {', '.join(targets)}"
+    return text + end
+
+
+def verdicts_text(shipped: Mapping, config: Mapping) -> str:
+    """Return lines with the number of claims of each verdict, and with the changed verdicts.
+
+    Verdicts are compared only if the configuration differs from the shipped one in more than the
+    preset.
+    """
+    from slippulse_paper.claims.claim_texts import read_text
+    from slippulse_paper.claims.ledger import Ledger
+    from slippulse_paper.records.provenance import changes
+
+    ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
+    text = f"{ledger.summary()}\n"
+    if changes(shipped, {**config, "preset": shipped["preset"]}):
+        shipped_verdicts = read_text(PROJECT / "manuscript/shipped_verdicts.yaml")
+        for change in ledger.differences(shipped_verdicts):
+            verdicts = f"{change['shipped']} -> {change['here']}"
+            text += f"Differs from the shipped verdict: {change['key']}: {verdicts}\n"
+    return text
 
 
 class Run:
@@ -200,25 +225,11 @@ class Run:
         return code if code >= 0 else 128 - code
 
 
-def replicate(given: Mapping[str, str]) -> int:
-    """Make the targets, print what to open, and return the exit code."""
-    began = time.monotonic()
-    targets = [*map(full_target, given.get("TARGET", "").split())]
-    options = options_of(given)
-    if (
-        given.get("OVERLAY")
-        and (RESULTS / "provenance.json").exists()
-        and not KEPT_RESULTS.exists()
-    ):
-        line = "To compare these results with the new ones, stop now, copy them, and start again: "
-        print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
-    lock = clean_up_after_kill()
-    cores = ["--cores", given.get("CORES") or "2"]
-    changed = options_for_changed_results(options, targets)
-    run = Run([*cores, *options, *changed, "--", *targets])
+def end_on_signals(run: Run) -> None:
+    """Make this process end its run with one line when it gets a signal."""
 
     def stop(number: int, _frame: object) -> None:
-        """End the run with a line on a signal, and ignore further signals."""
+        """End the run, and ignore further signals meanwhile."""
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         run.end()
@@ -229,6 +240,21 @@ def replicate(given: Mapping[str, str]) -> int:
 
     for number in SIGNALS:
         signal.signal(number, stop)
+
+
+def replicate(given: Mapping[str, str]) -> int:
+    """Make the targets, print what to open, and return the exit code."""
+    began = time.monotonic()
+    targets, options = targets_of(given), options_of(given)
+    has_results = (RESULTS / "provenance.json").exists()
+    if given.get("OVERLAY") and has_results and not KEPT_RESULTS.exists():
+        line = "To compare these results with the new ones, stop now, copy them, and start again: "
+        print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
+    lock = clean_up_after_kill()
+    cores = ["--cores", given.get("CORES") or "2"]
+    changed = options_for_changed_results(options, targets)
+    run = Run([*cores, *options, *changed, "--", *targets])
+    end_on_signals(run)
     code = run.wait()
     lock.close()
     unknown = [target for target in targets if code and is_unknown(target)]
@@ -236,23 +262,32 @@ def replicate(given: Mapping[str, str]) -> int:
         names = ", ".join(unknown)
         print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:
-        last_run = {"options": {name: given[name] for name in OPTIONS if given.get(name)}}
-        last_run["targets"] = ["everything"] if "everything" in targets else []
-        LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
+        record_run(given, targets)
         time_taken = timedelta(seconds=round(time.monotonic() - began))
-        print(f"{closing_line(targets, given)}. It took {time_taken}.")
+        print(f"{closing_text(targets, given)}. It took {time_taken}.")
         if given.get("OVERLAY") and KEPT_RESULTS.exists():
-            print(
-                f"To compare the old results with the new ones: make compare AGAINST={KEPT_RESULTS}"
-            )
+            command = f"make compare AGAINST={KEPT_RESULTS}"
+            print(f"To compare the old results with the new ones: {command}")
     return code
+
+
+def given_options(given: Mapping[str, str]) -> dict[str, str]:
+    """Return the options that the results depend on, and that have a value."""
+    return {name: given[name] for name in OPTIONS if given.get(name)}
+
+
+def record_run(given: Mapping[str, str], targets: list[str]) -> None:
+    """Record the options of a run, so that `verify` can use them."""
+    recorded_targets = ["everything"] if "everything" in targets else []
+    last_run = {"options": given_options(given), "targets": recorded_targets}
+    LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
 
 
 def verified_run(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
     """Return the options and targets to verify. Without options they are those of the last run."""
-    options = {name: given[name] for name in OPTIONS if given.get(name)}
-    targets = [*map(full_target, given.get("TARGET", "").split())]
+    options, targets = given_options(given), targets_of(given)
     if not options:
+        # Without a readable record of a run, the shipped configuration is verified.
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
             last_run = json.loads(LAST_RUN.read_text(encoding="utf-8"))
             last_targets = ["everything"] if "everything" in last_run["targets"] else []
@@ -279,8 +314,7 @@ def verify(given: Mapping[str, str]) -> int:
 
 def rulegraph(given: Mapping[str, str]) -> int:
     """Print the graph of the rules in the mermaid format, and return the exit code."""
-    targets = [*map(full_target, given.get("TARGET", "").split())]
-    targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
+    targets = targets_of(given) or ["results/figures/fig05_scaling.png", "results/claims.json"]
     quiet = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
     graph = ["--rulegraph", "mermaid-js", "--", *targets]
     command = [sys.executable, "-m", "snakemake", *quiet, *options_of(given), *graph]
@@ -290,13 +324,17 @@ def rulegraph(given: Mapping[str, str]) -> int:
 def outdated(summary: str) -> Iterable[tuple[str, str]]:
     """Yield the files that Snakemake would make again, with the reasons, from its summary."""
     for line in summary.splitlines()[1:]:
+        # The first column is the file, and the last two are its status and its plan.
         name, *_, status, plan = line.split("\t")
         if plan != "no update" or status == "missing":
-            yield name, status if status != "ok" else "made from files that are not up to date"
+            yield name, "made from files that are not up to date" if status == "ok" else status
 
 
 def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
-    """Yield the files that differ from what their jobs wrote, and the files that no job wrote."""
+    """Yield the files that differ from what their jobs wrote, and the files that no job wrote.
+
+    outdated : files whose reason is known already
+    """
     from slippulse_paper.records.job_records import RecordedFiles, made_without_step
 
     recorded = RecordedFiles(RESULTS)
@@ -304,11 +342,11 @@ def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     states = recorded.states()
     unknown = []
     for path in sorted(RESULTS.rglob("*")):
-        parts = path.relative_to(RESULTS).parts
+        name, parts = str(path), path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
         is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
-        if is_result and str(path) not in states and str(path) not in outdated:
-            unknown.append(str(path))
+        if is_result and name not in states and name not in outdated:
+            unknown.append(name)
     for name in sorted({*unknown} - made_without_step(unknown)):
         yield name, "no job has recorded it"
 

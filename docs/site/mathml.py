@@ -1,4 +1,4 @@
-"""Mathematics as MathML, which browsers show without a script and without a network."""
+"""Write mathematics as MathML, which browsers show without a script and without a network."""
 
 from docutils import nodes
 from latex2mathml.converter import convert
@@ -6,13 +6,13 @@ from sphinx.application import Sphinx
 
 
 def show_inline(translator: nodes.NodeVisitor, node: nodes.math) -> None:
-    """Write a formula in a line."""
+    """Write a formula within a line of text."""
     translator.body.append(convert(node.astext()))
     raise nodes.SkipNode
 
 
 def show_block(translator: nodes.NodeVisitor, node: nodes.math_block) -> None:
-    """Write a formula that stands by itself; a wide one scrolls by keyboard, too."""
+    """Write a formula in a paragraph of its own, which the keyboard can scroll if it is wide."""
     translator.body.append('<div class="math" tabindex="0" role="group" aria-label="equation">')
     translator.body.append(convert(node.astext(), display="block") + "</div>\n")
     raise nodes.SkipNode

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import yaml
@@ -52,46 +53,66 @@ def best(run: Callable[[], object], repeats: int) -> float:
 
 def stencil_rate(blocks: int) -> float:
     """Return the block updates per second of the stencil without branches, timed once."""
-    tau, w = np.full(blocks, 0.5), np.zeros((6, blocks))
-    run = lambda count: stencils.taylor_steps(w, tau, count, 1e-6, 1.0, 1e-6, RATIO)
+    prestress, derivatives = np.full(blocks, 0.5), np.zeros((6, blocks))
+
+    def run(steps: int) -> None:
+        stencils.taylor_steps(derivatives, prestress, steps, 1e-6, 1.0, 1e-6, RATIO)
+
+    # The first call may compile the stencil.
     run(1)
+    seconds_of_20_steps = best(lambda: run(20), 1)
     # With this number of steps it runs for about 0.05 s.
-    count = max(20, int(1.0 / max(best(lambda: run(20), 1), 1e-9)))
-    return blocks * count / best(lambda: run(count), 1)
+    steps = max(20, int(1.0 / max(seconds_of_20_steps, 1e-9)))
+    return blocks * steps / best(lambda: run(steps), 1)
 
 
-def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
-    """Return the block updates per second from the end of a scene until a later time.
+class KernelRate(NamedTuple):
+    """Speed of the kernel, and the mean number of sliding blocks while it was timed."""
 
-    The second number is the mean number of sliding blocks.
-    """
+    block_updates_per_second: float
+    sliding_blocks: float
+
+
+def kernel_rate(scene: Scene, until: float) -> KernelRate:
+    """Return the speed of the kernel from the end of a scene until a later time."""
     lattice = Lattice(scene, None, scene.beta)
     lattice.advance_to_end(None)
-    updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
+    updates_before, steps_before = int(lattice.tally.block_updates), int(lattice.tally.steps)
     lattice.scene = replace(scene, duration=until)
-    taken = best(lambda: lattice.advance_to_end(None), 1)
-    updates = int(lattice.tally.block_updates) - updates
-    return updates / taken, updates / (int(lattice.tally.steps) - steps)
+    seconds = best(lambda: lattice.advance_to_end(None), 1)
+    updates = int(lattice.tally.block_updates) - updates_before
+    steps = int(lattice.tally.steps) - steps_before
+    return KernelRate(updates / seconds, updates / steps)
 
 
 def kernel() -> dict:
     """Compare the best times of the kernel and of a stencil without branches, timed in turns."""
     step = {"max_step": 0.5, "order": 4}
     profile = Prestress(LEVEL, LEVEL, 8.0)
-    crack = Scene("displacement", profile, CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **step)
+    crack_start, crack_end = CRACK
+    crack = Scene("displacement", profile, crack_start, 1.0, gamma=1e-9, beta=RATIO, **step)
     width = pulse_at_speed(LEVEL, GAMMA, 0.0, exact_speed(LEVEL, RATIO)).width
-    pulse = _scene(PULSE[0], width / 200.0, step)
-    cases = (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1]))
-    results = {}
-    for name, scene, until in cases:
-        timed, rates = [], []
-        for _ in range(TURNS):
-            timed.append(kernel_rate(scene, until))
-            rates.append(stencil_rate(round(timed[-1][1])))
-        (rate, blocks), free = max(timed), max(rates)
-        numbers = {"sliding_blocks": blocks, "block_updates_per_second": rate}
-        results[name] = numbers | {"ratio_to_branch_free": rate / free}
-    return results
+    pulse_start, pulse_end = PULSE
+    pulse = _scene(pulse_start, width / 200.0, step)
+    return {
+        "many_blocks": compared_rates(crack, crack_end),
+        "pulse_of_200_blocks": compared_rates(pulse, pulse_end),
+    }
+
+
+def compared_rates(scene: Scene, until: float) -> dict[str, float]:
+    """Return the best speed of the kernel, also divided by the best speed of the stencil."""
+    kernel_rates, stencil_rates = [], []
+    for _ in range(TURNS):
+        rate = kernel_rate(scene, until)
+        kernel_rates.append(rate)
+        stencil_rates.append(stencil_rate(round(rate.sliding_blocks)))
+    fastest = max(kernel_rates)
+    return {
+        "sliding_blocks": fastest.sliding_blocks,
+        "block_updates_per_second": fastest.block_updates_per_second,
+        "ratio_to_branch_free": fastest.block_updates_per_second / max(stencil_rates),
+    }
 
 
 def whole_scene(accuracy: Mapping, window: float) -> dict:
@@ -101,23 +122,30 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     """
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))
-    error = abs(fit_front(simulate(scene), window)[0] / exact - 1.0)
+    measured = measured_front_speed(scene, window)
+    error = abs(measured / exact - 1.0)
     seconds = best(lambda: solve_on_lattice(scene), REPEATS)
     step = error / textbook_error(window)
+    textbook_steps = DURATION / (step * DX)
     blocks = int(2.0 * exact * DURATION / DX)
-    needed = DURATION / (step * DX)
-    a_step = textbook_step(blocks)
+    seconds_per_step = textbook_step(blocks)
     return {
         "seconds": seconds,
         "front_speed_error": error,
         "textbook_step_at_equal_error": step,
-        "textbook_steps": needed,
-        "textbook_seconds_a_step": a_step,
-        "times_faster_than_textbook": needed * a_step / seconds,
+        "textbook_steps": textbook_steps,
+        "textbook_seconds_per_step": seconds_per_step,
+        "times_faster_than_textbook": textbook_steps * seconds_per_step / seconds,
     }
 
 
+def measured_front_speed(scene: Scene, window: float) -> float:
+    """Simulate a scene and return its front speed, fitted to the last fraction of the path."""
+    return fit_front(simulate(scene), window).slope
+
+
 def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
+    """Return the scene of the benchmark with a duration, a spacing, and a step and order."""
     step = {key: accuracy[key] for key in ("max_step", "order")}
     prestress = Prestress(LEVEL, LEVEL)
     return Scene("displacement", prestress, duration, dx, gamma=GAMMA, beta=RATIO * dx, **step)
@@ -134,9 +162,10 @@ def textbook_error(window: float) -> float:
     def speed(scheme: str, step: float) -> float:
         values = {"scheme": scheme, "max_step": step, "order": 8}
         scene = Scene("stress", Prestress(LEVEL, LEVEL, 2.0), LENGTH, 1.0, beta=RATIO, **values)
-        return fit_front(simulate(scene), window)[0]
+        return measured_front_speed(scene, window)
 
     reference = speed("localised", 0.5)
+    # Each step is near a power of 1/2, so that the error does not depend on a single step.
     steps = [factor * 2.0**-power for power, factor in product(POWERS, (1.0, 0.93, 0.86))]
     errors = [abs(speed("fixed_step", step) / reference - 1.0) / step for step in steps]
     return float(np.median(errors))
@@ -149,9 +178,10 @@ def textbook_step(blocks: int) -> float:
     profile = Prestress(LEVEL, LEVEL, bumps=((end, 1e-12, DX), (-end, 1e-12, DX)))
     scene = _scene(2.0, DX, {"max_step": 0.25, "order": 4})
     scene = replace(scene, prestress=profile, scheme="fixed_step", half_lattice=False)
-    size = FixedStepLattice(scene, None, scene.beta).size
+    lattice_blocks = FixedStepLattice(scene, None, scene.beta).size
     seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).advance_to_end(None), 2)
-    return seconds / (scene.duration / (scene.max_step * DX)) * blocks / size
+    steps = scene.duration / (scene.max_step * DX)
+    return seconds / steps * blocks / lattice_blocks
 
 
 def main(folder: Path) -> None:

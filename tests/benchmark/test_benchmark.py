@@ -54,6 +54,6 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, monkeypatch, capsys
     assert results["machine"]["cores"] >= 1 and "numba" in results["machine"]["versions"]
     assert results["pulse_of_200_blocks"]["sliding_blocks"] == pytest.approx(200, rel=0.2)
     scene = results["whole_scene"]
-    textbook = scene["textbook_steps"] * scene["textbook_seconds_a_step"]
+    textbook = scene["textbook_steps"] * scene["textbook_seconds_per_step"]
     assert scene["times_faster_than_textbook"] == pytest.approx(textbook / scene["seconds"])
     assert (tmp_path / "benchmark.json").read_text(encoding="utf-8") in capsys.readouterr().out

@@ -27,12 +27,13 @@ RUN |= {"pulse_slip": 1.11, "pulse_state": "steady"}
 
 @pytest.fixture(scope="session")
 def browser():
-    path = next(filter(None, map(shutil.which, NAMES)), None)
-    if path is None:
+    """Start a browser; tests are skipped if none is installed."""
+    installed = [path for path in map(shutil.which, NAMES) if path is not None]
+    if not installed:
         pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
     with sync_playwright() as playwright:
         # A container has no rights for a sandbox, and the pages are ours.
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=installed[0], args=["--no-sandbox"])
         yield browser
         browser.close()
 
@@ -52,7 +53,8 @@ def opened(browser):
         try:
             yield page
             assert logged == []
-            assert [url for url in fetched if not url.startswith(("file:", "data:"))] == []
+            from_outside = [url for url in fetched if not url.startswith(("file:", "data:"))]
+            assert from_outside == []
         finally:
             page.close()
 
@@ -82,6 +84,7 @@ def violations():
 
 @pytest.fixture(scope="session")
 def explorer(tmp_path_factory):
+    """Return the path of an explorer with one simulated run."""
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
     page = explorer_page(explorer_law.table({}, {}, {}), [pd.DataFrame([RUN])], "viridis")
     path.write_text(page, encoding="utf-8")

@@ -101,11 +101,11 @@ def test_the_overlay_of_a_million_runs_is_accepted(shipped, tmp_path, monkeypatc
     assert config.simulations["million"].chunks == 2
 
 
-def test_links_of_the_site_lead_to_pages_only(project):
+def test_links_of_the_site_lead_to_pages_only():
     names = {"docs/cost.md", "docs/index.md", "config/README.md"}
     text = "[a](cost.md#limits) [b](../src) [c](../config/README.md) [d](#here) ![e](x.png)\n"
     text += "```\n[f](../src)\n```\n"
-    found = build_site.linked(text + "[g](../README.md)", project / "docs/x.md", names)
+    found = build_site.with_site_links(text + "[g](../README.md)", "docs/x.md", names)
     assert found.startswith("[a](/docs/cost.md#limits) b [c](/config/README.md) [d](#here) ![e]")
     assert "[f](../src)" in found and found.endswith("[g](/index.md)")
 

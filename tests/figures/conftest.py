@@ -1,4 +1,4 @@
-"""Every figure drawn from small, really simulated data, through the CSV as the pipeline does it."""
+"""Draw every figure from small simulations, through its CSV file as the workflow does."""
 
 from functools import cache
 from importlib import import_module
@@ -44,6 +44,7 @@ CLAIMS = {
 
 @pytest.fixture(scope="module", autouse=True)
 def in_house_style():
+    """Draw all figures in the style of the project."""
     with house_style():
         yield
 
@@ -55,17 +56,19 @@ class SmallSweeps:
         self.config, self.folder = config, folder
 
     def simulate(self, name: str) -> tuple[xr.Dataset, pd.DataFrame]:
-        """Data and measured table of a sweep."""
-        data, measured = (self.folder / f"{name}.{ending}" for ending in ("nc", "csv"))
-        if not measured.exists():
-            block = small_sweep(self.config, name)
-            scenes, samples = expand(block)
-            save_dataset(run_sweep(scenes, samples, block["record"], threads=2), data)
-            save_table(measured_table(load_dataset(data), self.config["measure"]), measured)
-        return load_dataset(data), load_table(measured)
+        """Return the data and the measured table of a sweep."""
+        data_path = self.folder / f"{name}.nc"
+        measured_path = self.folder / f"{name}.csv"
+        if not measured_path.exists():
+            sweep = small_sweep(self.config, name)
+            scenes, samples = expand(sweep)
+            save_dataset(run_sweep(scenes, samples, sweep["record"], threads=2), data_path)
+            measured = measured_table(load_dataset(data_path), self.config["measure"])
+            save_table(measured, measured_path)
+        return load_dataset(data_path), load_table(measured_path)
 
     def predict(self, name: str, topics: list[str]) -> pd.DataFrame:
-        """Predictions of a sweep."""
+        """Return the predictions for a sweep."""
         path = self.folder / f"{name}.{'_'.join(topics)}.csv"
         if not path.exists():
             swept = [*runs(small_sweep(self.config, name))]
@@ -73,12 +76,14 @@ class SmallSweeps:
         return load_table(path)
 
     def study_grid(self, name: str) -> pd.DataFrame:
-        """Uncertainties of a sweep, from two coarser lattices."""
+        """Return the uncertainties of a sweep, from two coarser lattices."""
         path = self.folder / f"{name}.uncertainties.csv"
         if not path.exists():
-            block, tables = small_sweep(self.config, name), [self.simulate(name)[1]]
+            sweep = small_sweep(self.config, name)
+            _, measured = self.simulate(name)
+            tables = [measured]
             for factor in FACTORS:
-                scenes, _ = expand(block | {"coarser": factor})
+                scenes, _ = expand(sweep | {"coarser": factor})
                 coarse = run_sweep(scenes, record=["fronts"], threads=2)
                 tables.append(measured_table(coarse, self.config["measure"]))
             save_table(grid_tables(tuple(tables), FACTORS, PARAMETERS), path)
@@ -87,17 +92,18 @@ class SmallSweeps:
 
 @pytest.fixture(scope="session")
 def draw(shipped, shared, tmp_path_factory, study):
-    """Function that draws a figure by its name, once, from small sweeps and studies."""
+    """Return a function that draws a figure by its name, once, from small sweeps and studies."""
     folder = tmp_path_factory.mktemp("tables")
     sweeps = SmallSweeps(shipped, shared / "sweeps")
     simulate = cache(sweeps.simulate)
 
     def inputs(needs: dict) -> tuple[dict, dict]:
-        """Data and tables, as the workflow joins them."""
-        data = {name: simulate(name)[0] for name in needs.get("data", [])}
-        tables = {}
+        """Return data and tables, as the workflow joins them."""
+        data, tables = {}, {}
+        for name in needs.get("data", []):
+            data[name], _ = simulate(name)
         for name, topics in needs.get("measured", {}).items():
-            measured = simulate(name)[1]
+            _, measured = simulate(name)
             tables[name] = measured.join(sweeps.predict(name, topics)) if topics else measured
         for name in needs.get("uncertainties", []):
             tables[f"uncertainties/{name}"] = sweeps.study_grid(name)
@@ -109,15 +115,18 @@ def draw(shipped, shared, tmp_path_factory, study):
 
     @cache
     def drawn(name: str) -> SimpleNamespace:
-        """Table and Figure, what they were drawn from, and the module."""
+        """Return the table and the Figure, what they were made from, and the module."""
         module = import_module(f"slippulse_paper.figures.{name}")
         needs = declared(f"figures.{name}", "NEEDS")
-        options = shipped["figures"].get(name, {})
         data, tables = inputs(needs)
+        options = shipped["figures"].get(name, {})
         values = selected(shipped, needs.get("settings", ()), options)
-        save_table(module.table(data, tables, values), folder / f"{name}.csv")
-        table = load_table(folder / f"{name}.csv")
-        parts = {"table": table, "data": data, "measured": tables, "module": module}
-        return SimpleNamespace(figure=module.draw(table), **parts)
+        path = folder / f"{name}.csv"
+        save_table(module.table(data, tables, values), path)
+        table = load_table(path)
+        figure = module.draw(table)
+        return SimpleNamespace(
+            figure=figure, table=table, data=data, measured=tables, module=module
+        )
 
     return drawn

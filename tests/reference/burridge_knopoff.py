@@ -1,8 +1,9 @@
-"""Blocks and springs of unit mass and stiffness, integrated independently of the lattice code.
+"""A chain of blocks and springs, integrated independently of the lattice code.
 
-Between two events the sliding blocks obey one ordinary differential equation, solved by an adaptive
-Runge-Kutta method of eighth order at a tolerance near rounding. Steps are short, so that an event
-that comes and goes is seen, too.
+Blocks have unit mass, and the springs between them unit stiffness. Between two events (a block is
+released, or sticks) the sliding blocks obey one ordinary differential equation. It is solved by an
+adaptive Runge-Kutta method of eighth order at a tolerance near rounding. Steps are so short that no
+event is missed.
 """
 
 from dataclasses import dataclass
@@ -12,71 +13,98 @@ from scipy.integrate import solve_ivp
 
 from .lattice_state import second_difference
 
-ACCURACY = {"method": "DOP853", "max_step": 0.0125, "rtol": 1e-12, "atol": 1e-13}
-# Events this close are one, as on the two sides of a symmetric chain.
-TOGETHER, ROUNDING = 1e-9, 1e-14
+SOLVER_OPTIONS = {"method": "DOP853", "max_step": 0.0125, "rtol": 1e-12, "atol": 1e-13}
+# Events within this time count as one, as on the two sides of a symmetric chain.
+SIMULTANEOUS = 1e-9
+# A released block has no velocity at first, so only a margin below this negative value is an event.
+MARGIN_ROUNDING = 1e-14
 
 
 @dataclass
 class Chain:
-    """A chain of blocks at 0, +-1, +-2, ..., at rest at first; the end blocks must never move."""
+    """A chain of blocks at the positions 0, +-1, +-2, ..., which is at rest at first.
+
+    It must be so long that the end blocks never move.
+    """
 
     # The force on each block when nothing has moved.
-    pull: np.ndarray
-    # The stiffness of each leaf spring, and the damping of the springs between neighbours.
-    leaf: float
+    initial_force: np.ndarray
+    leaf_stiffness: float
+    # The damping of the springs between neighbours.
     damping: float
     # "total": the damping force helps to release a block; "elastic": it does not.
     release: str
 
     def __post_init__(self) -> None:
-        n = self.pull.size
-        self.slip, self.slip_velocity = np.zeros(n), np.zeros(n)
-        self.release_time, self.stick_time = np.full(n, np.nan), np.full(n, np.nan)
-        self.sliding = np.zeros(n, dtype=bool)
+        """Set all blocks to rest."""
+        count = self.initial_force.size
+        self.slip, self.slip_velocity = np.zeros(count), np.zeros(count)
+        self.release_time, self.stick_time = np.full(count, np.nan), np.full(count, np.nan)
+        self.sliding = np.zeros(count, dtype=bool)
         self.releases = self.sticks = 0
 
-    def elastic(self, slip: np.ndarray) -> np.ndarray:
-        """Force of the springs and of the pull; the ends are held."""
-        return second_difference(slip, 1.0) - self.leaf * slip + self.pull
+    def elastic_force(self, slip: np.ndarray) -> np.ndarray:
+        """Return the initial force with that of the springs; the end blocks are held."""
+        leaf_force = self.leaf_stiffness * slip
+        return second_difference(slip, 1.0) - leaf_force + self.initial_force
 
-    def drag(self, velocity: np.ndarray) -> np.ndarray:
+    def damping_force(self, velocity: np.ndarray) -> np.ndarray:
+        """Return the force of the dampers between neighbours."""
         return self.damping * second_difference(velocity, 1.0)
 
     def threshold_force(self, slip: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        return self.elastic(slip) + (self.drag(velocity) if self.release == "total" else 0.0)
+        """Return the force that the release rule compares with 1."""
+        force = self.elastic_force(slip)
+        return force + self.damping_force(velocity) if self.release == "total" else force
 
     def rate(self, _time: float, state: np.ndarray) -> np.ndarray:
-        """Time derivative of slip and velocity: stuck blocks keep both."""
+        """Return the time derivative of slip and velocity, which is 0 for stuck blocks."""
         slip, velocity = np.split(state, 2)
-        acceleration = np.where(self.sliding, self.elastic(slip) + self.drag(velocity), 0.0)
-        return np.concatenate([np.where(self.sliding, velocity, 0.0), acceleration])
+        force = self.elastic_force(slip) + self.damping_force(velocity)
+        slip_rate = np.where(self.sliding, velocity, 0.0)
+        velocity_rate = np.where(self.sliding, force, 0.0)
+        return np.concatenate([slip_rate, velocity_rate])
 
     def run(self, duration: float) -> "Chain":
-        # A block just released has no velocity yet: only what is beyond rounding is an event.
-        first = lambda _time, state: self._margins(state).min() + ROUNDING
-        first.terminal, first.direction = True, -1.0
-        self._release(self.threshold_force(self.slip, self.slip_velocity) >= 1.0, 0.0)
+        """Advance the chain until a time or until all blocks are stuck, and return it."""
+
+        def next_event(_time: float, state: np.ndarray) -> float:
+            """Return a number that falls below 0 at the next event."""
+            return self._margins(state).min() + MARGIN_ROUNDING
+
+        next_event.terminal, next_event.direction = True, -1.0
+        starts = self.threshold_force(self.slip, self.slip_velocity) >= 1.0
+        self._release(starts, 0.0)
         time = 0.0
         while time < duration and self.sliding.any():
             state = np.concatenate([self.slip, self.slip_velocity])
-            path = solve_ivp(self.rate, (time, duration), state, events=first, **ACCURACY)
-            time, (self.slip, self.slip_velocity) = path.t[-1], np.split(path.y[:, -1].copy(), 2)
-            self._apply(time)
+            span = (time, duration)
+            path = solve_ivp(self.rate, span, state, events=next_event, **SOLVER_OPTIONS)
+            time, last_state = path.t[-1], path.y[:, -1].copy()
+            self.slip, self.slip_velocity = np.split(last_state, 2)
+            self._apply_events(time)
         return self
 
     def _margins(self, state: np.ndarray) -> np.ndarray:
-        """Distance of each block to its release, or its velocity: above 0 until an event."""
-        slip, velocity = np.split(state, 2)
-        return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
+        """Return a number for each block that is above 0 until its next event.
 
-    def _apply(self, time: float) -> None:
+        For a sliding block it is the velocity, and for a stuck block the force that is still
+        missing for its release.
+        """
+        slip, velocity = np.split(state, 2)
+        missing_force = 1.0 - self.threshold_force(slip, velocity)
+        return np.where(self.sliding, velocity, missing_force)
+
+    def _apply_events(self, time: float) -> None:
+        """Stick and release the blocks whose event is now."""
         state = np.concatenate([self.slip, self.slip_velocity])
         slip_rate, velocity_rate = np.split(self.rate(time, state), 2)
-        force_rate = self.threshold_force(slip_rate, velocity_rate) - self.pull
-        margin = self._margins(state)
-        stops = self.sliding & (margin <= TOGETHER * np.abs(velocity_rate)) & (velocity_rate < 0.0)
-        starts = ~self.sliding & (margin <= TOGETHER * np.abs(force_rate)) & (force_rate > 0.0)
+        force_rate = self.threshold_force(slip_rate, velocity_rate) - self.initial_force
+        margins = self._margins(state)
+        velocity_vanishes = margins <= SIMULTANEOUS * np.abs(velocity_rate)
+        stops = self.sliding & velocity_vanishes & (velocity_rate < 0.0)
+        force_suffices = margins <= SIMULTANEOUS * np.abs(force_rate)
+        starts = ~self.sliding & force_suffices & (force_rate > 0.0)
         self.sliding[stops] = False
         self.slip_velocity[stops] = 0.0
         self.stick_time[stops] = time
@@ -84,6 +112,7 @@ class Chain:
         self._release(starts, time)
 
     def _release(self, starts: np.ndarray, time: float) -> None:
+        """Let some blocks slide, and record the time of their first release."""
         self.sliding |= starts
         self.release_time[starts & np.isnan(self.release_time)] = time
         self.stick_time[starts] = np.nan

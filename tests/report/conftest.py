@@ -24,12 +24,17 @@ FRONT |= {"statement": r"fronts <outrun> the waves & keep $\gamma<1$", "figure":
 SPEEDS = {"predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4}
 SPEEDS = {name: np.array([value]) for name, value in SPEEDS.items()}
 CLAIM = written("speed", Equation(tolerance=1e-3, counts={"runs": 4}, **SPEEDS), FRONT, "III A")
-read = lambda path: yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def read(path: Path):
+    """Return the content of a YAML file."""
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
 def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0) -> list[dict]:
-    asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
-    further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
+    """Return a claim for each entry, with every number that a text uses."""
+    used = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
+    further = {name.replace("\\\\", "\\"): 0.1 for name in used}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
     shown = {"note": r"measured at $\Delta x=0$", "why": "since $x$ is so"}
     shown["figure"] = "fig05_scaling"
@@ -59,7 +64,11 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     """Return the tables of the report, with every number that its text uses."""
-    row = lambda variable: dict.fromkeys(re.findall(rf"\b{variable}\.(\w+)", texts), 1.01)
+
+    def row(variable: str) -> dict[str, float]:
+        """Return a table row with each column that the texts use of a variable."""
+        return dict.fromkeys(re.findall(rf"\b{variable}\.(\w+)", texts), 1.01)
+
     crack = row("crack")
     transition = {"transition_time": 1.0, "exact_transition_time": 1.0}
     transition |= {"transition_length": 1.0, "exact_transition_length": 1.0}
@@ -84,6 +93,7 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
 
 @pytest.fixture(scope="session")
 def manuscript(project) -> Path:
+    """Return the folder of the manuscript."""
     return project / "manuscript"
 
 
@@ -141,4 +151,5 @@ def build(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def report(make_inputs, build) -> SimpleNamespace:
+    """Return the report of an invented run of the shipped configuration."""
     return build(make_inputs())

@@ -19,11 +19,7 @@ def nudged(value, rng: np.random.Generator):
     if isinstance(value, Prestress) and value.points:
         return nudged_table(value, rng)
     if isinstance(value, Prestress):
-        names = [field.name for field in dataclasses.fields(value) if field.name != "peak"]
-        moved = {name: nudged(getattr(value, name), rng) for name in names}
-        if value.symmetric:
-            moved |= {"right": moved["left"], "steps": value.steps, "bumps": value.bumps}
-        return dataclasses.replace(value, **moved)
+        return nudged_levels(value, rng)
     if isinstance(value, tuple):
         return tuple(nudged(part, rng) for part in value)
     if not isinstance(value, float | np.ndarray):
@@ -32,6 +28,18 @@ def nudged(value, rng: np.random.Generator):
     units = rng.integers(1, 5, value.shape) * rng.choice([-1.0, 1.0], value.shape)
     moved = np.where(value == 0.0, 0.0, value + units * np.spacing(value))
     return moved if moved.ndim else float(moved)
+
+
+def nudged_levels(prestress: Prestress, rng: np.random.Generator) -> Prestress:
+    """Return a pre-stress without a table, with moved levels, steps and bumps.
+
+    A symmetric pre-stress stays symmetric.
+    """
+    names = [field.name for field in dataclasses.fields(prestress) if field.name != "peak"]
+    moved = {name: nudged(getattr(prestress, name), rng) for name in names}
+    if prestress.symmetric:
+        moved |= {"right": moved["left"], "steps": prestress.steps, "bumps": prestress.bumps}
+    return dataclasses.replace(prestress, **moved)
 
 
 def nudged_table(prestress: Prestress, rng: np.random.Generator) -> Prestress:
@@ -44,11 +52,12 @@ def nudged_table(prestress: Prestress, rng: np.random.Generator) -> Prestress:
     for x, tau in prestress.points:
         distances.setdefault(abs(x), nudged(abs(x), rng))
         values.setdefault((abs(x), tau), tau if tau >= 1.0 else nudged(tau, rng))
-    points = tuple(
-        (math.copysign(distances[abs(x)], x), values[abs(x), tau]) for x, tau in prestress.points
-    )
-    ends = {"left": points[0][1], "right": points[-1][1]}
-    return dataclasses.replace(prestress, points=points, **ends)
+    points = []
+    for x, tau in prestress.points:
+        moved_x = math.copysign(distances[abs(x)], x)
+        points.append((moved_x, values[abs(x), tau]))
+    (_, left), *_, (_, right) = points
+    return dataclasses.replace(prestress, points=tuple(points), left=left, right=right)
 
 
 @pytest.fixture(autouse=True)

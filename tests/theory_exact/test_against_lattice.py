@@ -128,14 +128,16 @@ EXTRAPOLATION_WEIGHTS = np.array([1.0, -12.0, 27.0]) / 16.0
 SHAKEN_SCENE, SHAKEN_DAMPING_RATIO = 52, 0.1
 
 
-def on_blocks(keys: hard_scenes.Keys) -> hard_scenes.Keys:
+def on_blocks(keys: hard_scenes.HardScene) -> hard_scenes.HardScene:
     """Return the scene with steps moved to the middle between two blocks of all lattices."""
     tau, dx = keys.prestress, SPACINGS[0]
     steps = tuple((dx * (np.floor(x / dx) + 0.5), level) for x, level in tau.steps)
     return replace(keys, prestress=replace(tau, steps=steps))
 
 
-def lattice_answers(keys: hard_scenes.Keys, samples: sp.Samples, dx: float) -> list[np.ndarray]:
+def lattice_answers(
+    keys: hard_scenes.HardScene, samples: sp.Samples, dx: float
+) -> list[np.ndarray]:
     """Return release times, stick times and slip [time, position] of a lattice.
 
     Times are infinite for events that do not happen.
@@ -146,7 +148,7 @@ def lattice_answers(keys: hard_scenes.Keys, samples: sp.Samples, dx: float) -> l
     return [*np.nan_to_num(times, nan=np.inf), run["sample_slip"].values]
 
 
-def check_limit(keys: hard_scenes.Keys) -> None:
+def check_limit(keys: hard_scenes.HardScene) -> None:
     """Assert that times and slip of lattices converge to those of the exact solution."""
     rupture = keys.rupture()
     ends = [end.x for pair in rupture.front_ends for end in pair]

@@ -53,7 +53,7 @@ DIFFERENT = [
     ({"pulse_state": "a"}, {"pulse_state": "b"}, "pulse_state: 'a' against 'b'"),
     ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
     ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
-    ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
+    ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one folder only: width_at_end"),
     # Numbers agree within both uncertainties, at any preset.
     *(({}, other, "1 of 1 numbers agree") for other in ({}, {"speed": 1.015}, {"config": DRAFT})),
 ]
@@ -69,10 +69,13 @@ CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
 MISSING = [
     # A run of a single figure with another gamma leaves the old study of uncertainties.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
-    (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: in one tree only"),
-    (lambda tree: (tree / "provenance.json").unlink(), "provenance.json: missing in one tree"),
-    (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
-    (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
+    (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: in one folder only"),
+    (lambda tree: (tree / "provenance.json").unlink(), "provenance.json: missing in one folder"),
+    (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one folder only"),
+    (
+        lambda tree: shutil.rmtree(tree / "measurements"),
+        "allowed: a folder of results that are finished",
+    ),
 ]
 
 
@@ -87,7 +90,7 @@ def test_what_is_missing_in_one_tree_is_said(tmp_path, capsys, change, said):
 def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
     here = tree(tmp_path / "here", uncertainty=NAN)
     result = compare(here, tree(tmp_path / "other", speed=2.0, uncertainty=NAN, dx=0.02))
-    assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
+    assert (result.compared, result.agree, result.unknown, result.disagreements) == (1, 0, 1, [])
 
 
 def table_of(tree: Path, runs: list[dict]) -> None:
@@ -103,8 +106,9 @@ def test_runs_are_joined_by_their_parameters_in_any_order(tmp_path):
     table_of(other, [{"left": left, "speed": left} for left in (0.4, 0.3, 0.2)])
     result = compare(here, other)
     runs = result.runs[0]
-    assert (runs["same"], runs["altered"], runs["new"], runs["old"]) == (2, 1, [], [])
-    assert result.apart == [] and result.compared == result.agree == 4
+    assert (runs.same_count, runs.altered_count) == (2, 1)
+    assert runs.only_new == runs.only_old == []
+    assert result.disagreements == [] and result.compared == result.agree == 4
     # What was altered is shown beside what it was, and is not judged.
     altered = result.numbers[result.numbers["outcome"] == "altered run"]
     assert {*altered["run"]} == {"left 0.1 (old: left 0.4)"}
@@ -116,10 +120,11 @@ def test_runs_of_one_side_are_listed(tmp_path, capsys):
     table_of(here, [{"left": left, "gamma": 0.3} for left in (0.1, 0.2)])
     table_of(other, [{"left": left, "gamma": 0.5} for left in (0.1, 0.2, 0.3)])
     result = compare(here, other)
-    assert result.runs[0]["altered"] == 2 and result.runs[0]["keys"] == ["gamma"]
-    assert result.runs[0]["old"] == ["left 0.3, gamma 0.5"] and result.runs[0]["new"] == []
+    runs = result.runs[0]
+    assert runs.altered_count == 2 and runs.altered_parameters == ["gamma"]
+    assert runs.only_old == ["left 0.3, gamma 0.5"] and runs.only_new == []
     assert main([str(here), str(other)]) == 1
-    assert "sweep.csv: only in the other tree: left 0.3, gamma 0.5" in capsys.readouterr().out
+    assert "sweep.csv: only in the other folder: left 0.3, gamma 0.5" in capsys.readouterr().out
 
 
 def test_spacings_of_a_convergence_study_are_not_mixed(tmp_path):
@@ -127,8 +132,8 @@ def test_spacings_of_a_convergence_study_are_not_mixed(tmp_path):
     table_of(here, [{"dx": dx, "speed": dx} for dx in (0.04, 0.02)])
     table_of(other, [{"dx": dx, "speed": dx} for dx in (0.02, 0.01, 0.04)])
     result = compare(here, other)
-    assert result.apart == [] and result.unknown == 0 and result.runs[0]["same"] == 2
-    assert result.runs[0]["old"] == ["dx 0.01"]
+    assert result.disagreements == [] and result.unknown == 0 and result.runs[0].same_count == 2
+    assert result.runs[0].only_old == ["dx 0.01"]
 
 
 def test_the_page_has_old_beside_new(tmp_path, capsys):
@@ -153,6 +158,21 @@ def test_the_page_has_old_beside_new(tmp_path, capsys):
     assert "gamma 0.3 (old: gamma 0.65)" in text and "altered run" in text
     numbers = pd.read_csv(here / "compare.csv")
     assert numbers.set_index("quantity").loc["speed", "old_uncertainty"] == 0.01
+
+
+def test_the_page_shows_a_claim_of_one_folder(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    (here / "claims.json").write_text("[]")
+    assert main([str(here), str(other), str(here / "compare.html")]) == 0
+    text = (here / "compare.html").read_text(encoding="utf-8")
+    assert "not judged" in text and "1 verdict changed" in text
+
+
+def test_a_parameter_without_a_value_in_both_folders_is_not_altered(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": 0.1, "width": NAN, "speed": 1.0}])
+    table_of(other, [{"left": 0.2, "width": NAN, "speed": 1.0}])
+    assert compare(here, other).runs[0].altered_parameters == ["left"]
 
 
 def test_a_page_without_a_folder_and_a_broken_figure_are_refused(tmp_path, capsys):

@@ -9,10 +9,10 @@ from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
 # Workers, too, run the code of this project, even if another version is installed or on PYTHONPATH.
-sys.path.insert(0, str(PROJECT / "src"))
-os.environ.update(
-    PYTHONPATH=os.pathsep.join(filter(None, [str(PROJECT / "src"), os.getenv("PYTHONPATH")]))
-)
+SOURCE_FOLDER = str(PROJECT / "src")
+sys.path.insert(0, SOURCE_FOLDER)
+PYTHON_PATH = os.pathsep.join(filter(None, [SOURCE_FOLDER, os.getenv("PYTHONPATH")]))
+os.environ.update(PYTHONPATH=PYTHON_PATH)
 
 from slippulse_paper.claims.claim_texts import read_entries
 from slippulse_paper.configuration.altered import Alterations
@@ -54,8 +54,10 @@ try:
     GIVEN = dict(config if IS_MODULE else workflow.config_settings.config)
     if not IS_MODULE:
         # Snakemake reads the name of a preset such as 01 as a number.
-        texts = dict(text.split("=", 1) for text in workflow.config_settings.config_args or ())
-        GIVEN |= {name: texts[name] for name in ("preset",) if texts.get(name)}
+        for argument in workflow.config_settings.config_args or ():
+            name, _, text = argument.partition("=")
+            if name == "preset" and text:
+                GIVEN["preset"] = text
     # Only the main process checks all scenes. A job on another node starts Snakemake again.
     CONFIG = read_config(SHIPPED, OVERLAYS, GIVEN, workflow.is_main_process)
     # Differences from the shipped configuration, or None if there is no overlay.
@@ -64,8 +66,11 @@ try:
         ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
     if ALTERED and workflow.is_main_process:
         problems = [] if CONFIG.allow_large else cost_problems(CONFIG, ALTERED)
-        draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in needs_of("figures")}
-        if problems := problems or drawing_problems(CONFIG, draws):
+        if not problems:
+            figures = needs_of("figures")
+            draws = {name: declared(f"figures.{name}", "DRAWS") or {} for name in figures}
+            problems = drawing_problems(CONFIG, draws)
+        if problems:
             raise ConfigError("\n".join(problems))
     if CONFIG.claims:
         read_entries(PROJECT / "manuscript/claims.yaml", CONFIG.given()["claims"])
@@ -99,11 +104,10 @@ CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if
 # Claims use the predicted front speeds of this simulation, which has no grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
-# The topics of predictions that claims, the report and figures read, for each simulation.
-READ_TOPICS = [
-    CLAIM_PREDICTED,
-    *(needs.get("measured", {}) for needs in (REPORT_NEEDS, *NEEDS.values())),
-]
+# For each reader (the claims, the report and every figure), the topics of predictions that it
+# reads, by simulation.
+READ_TOPICS = [CLAIM_PREDICTED, REPORT_NEEDS["measured"]]
+READ_TOPICS += [needs.get("measured", {}) for needs in NEEDS.values()]
 # Path of the file of each kind with a name.
 FILES = {
     "data": "results/data/{name}.nc",
@@ -137,56 +141,54 @@ def inputs_of(needs):
 
     They contain predictions for the simulations that have topics in its NEEDS.
     """
+    files = {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
     predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
-    files = {
-        kind: made(kind, names)
-        for kind, names in {**needs, "predicted": predicted}.items()
-        if kind in FILES
-    }
+    files["predicted"] = made("predicted", predicted)
     lists = needs.get("lists", ())
-    return files | {
-        "lists": [path if path.startswith("results/") else project(path) for path in lists]
-    }
-
-
-def sources(step, *modules, texts=()):
-    """Return the sources of a step, of modules that it imports by name, and texts that it reads."""
-    names = (f"slippulse_paper.steps.{step}", *modules)
-    return sources_of(names, tuple(texts))
+    # Lists are results, or texts of the project.
+    files["lists"] = [path if path.startswith("results/") else project(path) for path in lists]
+    return files
 
 
 SOURCES_BY_DIGEST = {}
 
 
 def code_of(step, *modules, texts=()):
-    """Return the digest of the sources of a step. A job runs again if it changes."""
-    found = sources(step, *modules, texts=texts)
-    SOURCES_BY_DIGEST[found.digest] = found.files
-    return found.digest
+    """Return the digest of the sources of a step. A job runs again if it changes.
+
+    The sources are its module, modules that it imports by name, and texts that it reads.
+    """
+    step_module = f"slippulse_paper.steps.{step}"
+    sources = sources_of((step_module, *modules), tuple(texts))
+    SOURCES_BY_DIGEST[sources.digest] = sources.files
+    return sources.digest
 
 
 def templates(*names):
     """Return the paths of templates, and of the templates that all pages use."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
-    paths = [path for name in ("base.html", "style.css", *names) for path in folder.glob(name)]
+    paths = []
+    for name in ("base.html", "style.css", *names):
+        paths += folder.glob(name)
     return [path.relative_to(PROJECT).as_posix() for path in paths]
+
+
+def plain_paths(named_files):
+    """Return Snakemake's input or output as a dictionary of paths, or of lists of paths."""
+    paths = {}
+    for name, value in named_files.items():
+        paths[name] = str(value) if isinstance(value, str) else [str(path) for path in value]
+    return paths
 
 
 def run_step(step, wildcards, input, output, params, threads, log):
     """Run a step in a worker process, or in this one if Snakemake has started it for the job."""
-    files, outputs = (
-        {
-            key: str(file) if isinstance(file, str) else [*map(str, file)]
-            for key, file in named.items()
-        }
-        for named in (input, output)
-    )
     variables = dict(wildcards.items()) | {"threads": threads}
     job = Job(
         step=step,
         name=" ".join([step, *wildcards]),
-        inputs=files,
-        outputs=outputs,
+        inputs=plain_paths(input),
+        outputs=plain_paths(output),
         settings=params.settings,
         variables=variables,
         log=str(log),
@@ -194,7 +196,10 @@ def run_step(step, wildcards, input, output, params, threads, log):
         sources=SOURCES_BY_DIGEST[params.code],
     )
     try:
-        WORKERS.run(job, workflow.cores) if workflow.is_main_process else run_here(job)
+        if workflow.is_main_process:
+            WORKERS.run(job, workflow.cores)
+        else:
+            run_here(job)
     except JobFailed as reason:
         # Snakemake reads the log of a failed job. If no process was started, there is none.
         with suppress(OSError):
@@ -210,12 +215,14 @@ def note_of(needs, *keys):
     """
     if ALTERED is None:
         return ""
-    names, settings = set(), [*keys, *needs.get("settings", ())]
-    for needed in (needs, *(STUDY_NEEDS[study] for study in needs.get("studies", ()))):
-        settings += needed.get("settings", ())
+    # A figure also depends on everything that its studies read.
+    all_needs = [needs, *(STUDY_NEEDS[study] for study in needs.get("studies", ()))]
+    simulations, settings = set(), [*keys]
+    for read in all_needs:
+        settings += read.get("settings", ())
         for kind in ("data", "measured", "uncertainties", "sweeps"):
-            names.update(needed.get(kind, ()))
-    return ALTERED.note(sorted(names), settings)
+            simulations.update(read.get(kind, ()))
+    return ALTERED.note(sorted(simulations), settings)
 
 
 # Snakemake evaluates the params of all waiting jobs whenever a job has ended.
@@ -224,8 +231,8 @@ def settings_of(job):
     """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8."""
     name, _, chunk = job.partition("/")
     simulation = SIMULATIONS[name]
-    whole = resolve(simulation, CONFIG.model, ACCURACY)
-    sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
+    whole_sweep = resolve(simulation, CONFIG.model, ACCURACY)
+    sweep = {**whole_sweep, "chunk": chunk_numbers(chunk)} if chunk else whole_sweep
     scheme = sweep["scheme"]
     # Under a displacement boundary no number depends on the fraction.
     fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
@@ -239,22 +246,42 @@ def settings_of(job):
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         # The bound is a function, since most rules do not use it and it takes time.
-        "bound": cache(lambda: bound_of_sweep(whole, simulation.chunks)),
-        "runs": run_count(whole),
+        "bound": cache(lambda: bound_of_sweep(whole_sweep, simulation.chunks)),
+        "runs": run_count(whole_sweep),
     }
 
 
-def topics_of(name):
-    """Return the topics of predictions for a simulation that something reads.
+def chunk_numbers(chunk):
+    """Return the number of a chunk and the number of all chunks from a name such as 3-of-8."""
+    return [int(number) for number in chunk.split("-of-")]
 
-    They are all topics if nothing does, which is so for the simulations of an overlay.
+
+def chunk_names(name, count):
+    """Return the names of all chunks of a simulation or study."""
+    return [f"{name}/{number}-of-{count}" for number in range(1, count + 1)]
+
+
+def with_chunks(names, chunks):
+    """Return names in which each divided simulation or study is replaced by its chunks."""
+    jobs = []
+    for name in names:
+        jobs += chunks.get(name, [name])
+    return jobs
+
+
+def topics_of(name):
+    """Return the topics of predictions that claims, report or figures read for a simulation.
+
+    They are all topics if nothing reads any, which is so for the simulations of an overlay.
     """
-    topics = set().union(*(topics.get(name, ()) for topics in READ_TOPICS))
+    topics = set()
+    for topics_by_simulation in READ_TOPICS:
+        topics.update(topics_by_simulation.get(name, ()))
     return sorted(topics or TOPICS)
 
 
 def setting(key):
-    """Return a function of the wildcards that returns one setting of their simulation."""
+    """Return a function that returns one setting of the simulation in the wildcards of a job."""
     return lambda wildcards: settings_of(wildcards.simulation)[key]
 
 
@@ -271,18 +298,22 @@ def check_packages_and_lock():
         print(line, file=sys.stderr)
 
 
+MAX_SHOWN_RESULTS = 5
+
+
 def report_changed_results():
     """Print one line if results have changed in a way that Snakemake does not notice."""
-    if problems := dict(RecordedFiles("results").problems()):
-        name, reason = next(iter(problems.items()))
-        count = "1 result is" if len(problems) == 1 else f"{len(problems)} results are"
-        more = " ..." if len(problems) > 5 else ""
-        example = reason if len(problems) == 1 else f"{name}: {reason}"
-        print(
-            f"{count} changed: {', '.join([*problems][:5])}{more} ({example})."
-            " To make them again: make replicate, or snakemake --forcerun and their names",
-            file=sys.stderr,
-        )
+    problems = dict(RecordedFiles("results").problems())
+    if not problems:
+        return
+    names = [*problems]
+    count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
+    more = " ..." if len(names) > MAX_SHOWN_RESULTS else ""
+    reason = problems[names[0]]
+    example = reason if len(names) == 1 else f"{names[0]}: {reason}"
+    shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({example})"
+    remedy = "make replicate, or snakemake --forcerun and their names"
+    print(f"{count} changed: {shown}. To make them again: {remedy}", file=sys.stderr)
 
 
 if workflow.is_main_process and not IS_MODULE:
@@ -292,26 +323,26 @@ if workflow.is_main_process and not IS_MODULE:
 # The chunks of each sweep that is divided. Their names contain the number of chunks, so that files
 # of another division are not used.
 CHUNKS = {
-    name: [f"{name}/{number}-of-{sweep.chunks}" for number in range(1, sweep.chunks + 1)]
-    for name, sweep in SIMULATIONS.items()
-    if sweep.chunks > 1
+    name: chunk_names(name, sweep.chunks) for name, sweep in SIMULATIONS.items() if sweep.chunks > 1
 }
 # The chunks of each study that is divided.
 STUDY_CHUNKS = {}
-if (count := config["figures"]["study_layer"].get("chunks", 1)) > 1:
-    STUDY_CHUNKS["layer_map"] = [f"layer_map/{number}-of-{count}" for number in range(1, count + 1)]
+LAYER_CHUNKS = config["figures"]["study_layer"].get("chunks", 1)
+if LAYER_CHUNKS > 1:
+    STUDY_CHUNKS["layer_map"] = chunk_names("layer_map", LAYER_CHUNKS)
 # A job runs a simulation without chunks, or one chunk.
-JOB_NAMES = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
+JOB_NAMES = with_chunks(SIMULATIONS, CHUNKS)
+STUDY_JOB_NAMES = with_chunks(STUDY_NEEDS, STUDY_CHUNKS)
 
 
-# Kind and simulation of each joined file, by its path below results/.
-KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
-JOINED = {
-    made(kind, [name])[0].removeprefix("results/"): (kind, name)
-    for name in CHUNKS
-    for kind in KINDS
-}
-JOINED |= {f"studies/{name}.csv": ("studies", name) for name in STUDY_CHUNKS}
+# Kind and name (of a simulation or study) of each joined file, by its path below results/.
+JOINED = {}
+for kind in ("data", "measured", "predicted", "uncertainties", "coarser"):
+    for name in CHUNKS:
+        path = FILES[kind].format(name=name).removeprefix("results/")
+        JOINED[path] = (kind, name)
+for name in STUDY_CHUNKS:
+    JOINED[f"studies/{name}.csv"] = ("studies", name)
 ALL_FIGURES = NEEDS | SWEEPS
 
 
@@ -333,8 +364,9 @@ def joined_inputs(wildcards):
     The joined uncertainties have the order of the runs in the measurements.
     """
     kind, name = JOINED[wildcards.joined]
+    chunks = STUDY_CHUNKS[name] if kind == "studies" else CHUNKS[name]
     finest = made("measured", [name] if kind == "uncertainties" else [])
-    return {"chunks": made(kind, (CHUNKS | STUDY_CHUNKS)[name]), "finest": finest}
+    return {"chunks": made(kind, chunks), "finest": finest}
 
 
 def joined_settings(wildcards):
@@ -356,9 +388,10 @@ def study_of(wildcards):
 
 def study_inputs(wildcards):
     """Return the inputs of a study, and the kernels that it runs."""
-    reached = modules_reached(f"slippulse_paper.studies.{study_of(wildcards)}")
-    schemes = [scheme for scheme, kernels in KERNELS.items() if kernels in reached]
-    return {**inputs_of(STUDY_NEEDS[study_of(wildcards)]), "kernels": made("kernels", schemes)}
+    study = study_of(wildcards)
+    modules = modules_reached(f"slippulse_paper.studies.{study}")
+    schemes = [scheme for scheme, kernel_module in KERNELS.items() if kernel_module in modules]
+    return {**inputs_of(STUDY_NEEDS[study]), "kernels": made("kernels", schemes)}
 
 
 def study_settings(wildcards):
@@ -368,7 +401,7 @@ def study_settings(wildcards):
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
     values = selected(config, needs.get("settings", ()), {"sweeps": swept})
     if chunk:
-        values["chunk"] = [int(number) for number in chunk.split("-of-")]
+        values["chunk"] = chunk_numbers(chunk)
     return {"study": study, "values": values}
 
 
@@ -417,6 +450,6 @@ wildcard_constraints:
     simulation=one_of(JOB_NAMES),
     scene=one_of(SCENES),
     scheme=one_of(KERNELS),
-    study=one_of([job for name in STUDY_NEEDS for job in STUDY_CHUNKS.get(name, [name])]),
+    study=one_of(STUDY_JOB_NAMES),
     figure=one_of([*NEEDS, *SWEEPS]),
     joined=one_of(JOINED),

@@ -4,7 +4,6 @@ Figures and pages carry a note that names the altered parameters of the simulati
 """
 
 from collections.abc import Iterable, Mapping
-from itertools import chain
 from typing import Any
 
 from ..records.provenance import changes
@@ -29,28 +28,35 @@ class Alterations:
         shipped_simulations = all_simulations(shipped)
         for name, simulation in self._altered_simulations.items():
             # A simulation that is not shipped is compared with itself under the shipped model.
-            shipped_one = shipped_simulations.get(name, simulation)
-            before = resolve(shipped_one, shipped.model, {})
+            shipped_simulation = shipped_simulations.get(name, simulation)
+            before = resolve(shipped_simulation, shipped.model, {})
             after = resolve(simulation, altered.model, {})
             # The extent of samples follows from other keys, and beta replaces the damping ratio.
-            derived = ("samples.extent", "damping_ratio" if "beta" in after else "")
-            differences = changes(before, after)
-            own_differences = [change for change in differences if change["key"] not in derived]
-            self.simulations[name] = own_differences
+            derived_keys = {"samples.extent"}
+            if "beta" in after:
+                derived_keys.add("damping_ratio")
+            all_changes = changes(before, after)
+            self.simulations[name] = [
+                change for change in all_changes if change["key"] not in derived_keys
+            ]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
         """Return one line on the differences in some simulations and below some keys.
 
         An example is 'altered: b = 0.05'. The text is empty if nothing differs.
         """
-        all_changes = changes(self.shipped.given(), self.altered.given())
+        relevant_changes: list[Mapping[str, Any]] = []
+        for name in simulations:
+            relevant_changes += self.simulations.get(name, [])
         relevant_keys = tuple(keys)
-        of_keys = [change for change in all_changes if change["key"].startswith(relevant_keys)]
-        of_simulations = chain.from_iterable(self.simulations.get(name, ()) for name in simulations)
-        differences = [*dict.fromkeys(map(_equation, [*of_simulations, *of_keys]))]
-        named = differences[:MAX_NAMED_DIFFERENCES]
-        if len(differences) > MAX_NAMED_DIFFERENCES:
-            named.append(f"{len(differences) - MAX_NAMED_DIFFERENCES} more")
+        for change in changes(self.shipped.given(), self.altered.given()):
+            if change["key"].startswith(relevant_keys):
+                relevant_changes.append(change)
+        # Several simulations may have the same change.
+        equations = [*dict.fromkeys(map(_equation, relevant_changes))]
+        named = equations[:MAX_NAMED_DIFFERENCES]
+        if len(equations) > MAX_NAMED_DIFFERENCES:
+            named.append(f"{len(equations) - MAX_NAMED_DIFFERENCES} more")
         return f"altered: {', '.join(named)}" if named else ""
 
     def overridden_defaults(self) -> list[str]:
@@ -74,9 +80,15 @@ class Alterations:
 
 def _equation(change: Mapping[str, Any]) -> str:
     """Return a change as an equation, such as 'b = 0.05'."""
-    name, value = change["key"].rpartition(".")[2], change["here"]
-    if isinstance(value, list) and value and not isinstance(value[0], list | dict):
-        value = ", ".join(map(str, value))
-    elif isinstance(value, list | dict):
-        value = "other values"
-    return f"{SYMBOLS.get(name, name)} = {'absent' if value is None else value}"
+    name = change["key"].rpartition(".")[2]
+    return f"{SYMBOLS.get(name, name)} = {_value_text(change['here'])}"
+
+
+def _value_text(value: Any) -> str:
+    """Return a value of the configuration as text, if it is short enough for a note."""
+    if value is None:
+        return "absent"
+    if not isinstance(value, list | dict):
+        return str(value)
+    is_plain_list = isinstance(value, list) and value and not isinstance(value[0], list | dict)
+    return ", ".join(map(str, value)) if is_plain_list else "other values"

@@ -16,9 +16,9 @@ def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
     ``chunks`` and ``runs`` are the numbers of all chunks and runs of the sweep. Chunks are numbered
     from 1, and runs from 0.
     """
-    for number, first_run in enumerate(range(0, runs, chunks)):
-        # Python only guarantees for `random` that every version gives the same numbers.
-        first_chunk = int(chunks * random.Random(number).random())
-        run = first_run + (chunk - 1 - first_chunk) % chunks
+    for dealing_round, first_run in enumerate(range(0, runs, chunks)):
+        # Python guarantees that this method gives the same numbers in every version.
+        first_chunk = 1 + int(chunks * random.Random(dealing_round).random())
+        run = first_run + (chunk - first_chunk) % chunks
         if run < runs:
             yield run

@@ -1,4 +1,4 @@
-"""Refusal of altered simulations of which a figure cannot draw a single run.
+"""Refuse altered simulations that have no run which a figure can draw.
 
 The module of a figure lists in DRAWS what it needs of each of its simulations. That is checked
 before anything runs.
@@ -14,17 +14,24 @@ from .schema import Configuration
 
 
 def _is_pulse(run: Run) -> bool:
+    """Return True if the displacement is held and a level is above 0."""
     highest = max(run.prestress.left, run.prestress.right)
     return run.boundary == "displacement" and highest > 0.0
 
 
 def _has_equal_levels(run: Run) -> bool:
+    """Return True for a pulse on equal levels."""
     return _is_pulse(run) and run.prestress.left == run.prestress.right
 
 
-def _is_balanced(run: Run) -> bool:
+def _has_negative_left_level(run: Run) -> bool:
+    """Return True if the stress is held, and the levels are negative on the left, 0 on the right.
+
+    Such a run has a balance position, which the paper's estimate of the transition needs.
+    """
     profile = run.prestress
-    return run.boundary == "stress" and profile.left < 0.0 == profile.right and not profile.steps
+    has_levels = profile.left < 0.0 and profile.right == 0.0 and not profile.steps
+    return run.boundary == "stress" and has_levels
 
 
 # Conditions on a run, by the words that the DRAWS of figures use for them.
@@ -33,7 +40,7 @@ CONDITIONS: dict[str, Callable[[Run], bool]] = {
     "boundary displacement and a level above 0": _is_pulse,
     "boundary displacement and equal levels above 0": _has_equal_levels,
     "boundary stress": lambda run: run.boundary == "stress",
-    "boundary stress, left level below 0, right level 0 and no steps": _is_balanced,
+    "boundary stress, left level below 0, right level 0 and no steps": _has_negative_left_level,
 }
 
 
@@ -43,12 +50,13 @@ def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str
     ``draws`` has the DRAWS of each figure: a condition for each of its simulations.
     """
     accuracy, simulations = accuracy_of(config), all_simulations(config)
-    problems: dict[str, None] = {}
-    for figure, needs in draws.items():
-        for name, condition in needs.items():
+    problems = []
+    for figure, conditions in draws.items():
+        for name, condition in conditions.items():
             sweep = resolve(simulations[name], config.model, accuracy)
-            if not any(map(CONDITIONS[condition], runs(sweep))):
+            is_drawable = CONDITIONS[condition]
+            if not any(is_drawable(run) for run in runs(sweep)):
+                problem = f"simulations.{name}: no run that {figure} can draw"
                 allowed = f"at least one run with {condition}; or another name for the simulation"
-                given = f"simulations.{name}: no run that {figure} can draw"
-                problems[f"{given}; allowed: {allowed}"] = None
-    return [*problems]
+                problems.append(f"{problem}; allowed: {allowed}")
+    return problems

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from slippulse.model.balance import prestress_balance_position
-from slippulse.model.friction import friction_from
+from slippulse.model.friction import Friction, friction_from
 from slippulse.model.prestress import Prestress
 from slippulse.model.run import Run
 from slippulse.model.samples import Samples
@@ -22,39 +22,49 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     Raises ValueError if a scene is not allowed.
     """
     scenes = [_scene(simulation, run) for run in runs(simulation)]
-    rule = simulation.get("samples")
-    if rule is None:
+    recording = simulation.get("samples")
+    if recording is None:
         return scenes, [None] * len(scenes)
-    extent, count = rule["extent"], rule["positions"]
+    extent, count = recording["extent"], recording["positions"]
     positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
-    times = [np.linspace(0.0, scene.duration, rule["times"]) for scene in scenes]
-    return scenes, [Samples(instants, positions) for instants in times]
+    samples: list[Samples | None] = []
+    for scene in scenes:
+        times = np.linspace(0.0, scene.duration, recording["times"])
+        samples.append(Samples(times, positions))
+    return scenes, samples
 
 
 def _scene(simulation: Mapping, run: Run) -> Scene:
     """Return the scene of one run."""
-    accuracy, scheme = simulation["accuracy"], simulation["scheme"]
-    # A simulation without `max_step` takes the step of the preset, or a smaller one if that would
-    # not be stable or accurate.
-    friction, largest = friction_from(run.friction), accuracy["max_step"]
-    traits = friction.traits
-    parameters = run.parameters() | {"friction": friction}
-    ratios = stability_ratios(parameters, friction)
-    step = min(largest, choose_step(scheme, accuracy["order"], *ratios))
-    step = simulation.get("max_step", min(step, STABILITY_MARGIN * traits.longest_step / run.dx))
-    if "promise" in accuracy:
-        step = min(step, largest)
-    if "fixed" in simulation["spacing"]:
-        step *= simulation["coarser"]
+    friction = friction_from(run.friction)
     return Scene(
-        **parameters,
+        **(run.parameters() | {"friction": friction}),
         duration=_duration(simulation["duration"], run.prestress, run.gamma),
-        scheme=scheme,
-        max_step=step,
-        order=accuracy["order"],
+        scheme=simulation["scheme"],
+        max_step=_time_step(simulation, run, friction),
+        order=simulation["accuracy"]["order"],
         friction_ratio=simulation["friction_ratio"],
         resolved_blocks=simulation["resolved_blocks"],
     )
+
+
+def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
+    """Return the largest time step of a run, divided by dx."""
+    accuracy = simulation["accuracy"]
+    step = simulation.get("max_step", _default_time_step(simulation, run, friction))
+    if "promise" in accuracy:
+        step = min(step, accuracy["max_step"])
+    # A grid study of a fixed spacing uses longer steps instead of larger spacings.
+    return step * simulation["coarser"] if "fixed" in simulation["spacing"] else step
+
+
+def _default_time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
+    """Return the time step of the preset, or a smaller one if that is not stable or accurate."""
+    accuracy = simulation["accuracy"]
+    ratios = stability_ratios(run.parameters(), friction)
+    stable_step = choose_step(simulation["scheme"], accuracy["order"], *ratios)
+    longest_step = STABILITY_MARGIN * friction.traits.longest_step / run.dx
+    return min(accuracy["max_step"], stable_step, longest_step)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
@@ -67,6 +77,7 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
             value *= abs(prestress_balance_position(profile))
         except ValueError as error:
             # Keys of the configuration do not begin with `prestress`.
-            reason = f"{value} times |x_minus|, but {str(error).removeprefix('prestress.')}"
-            raise ValueError(f"duration.balance_distances: {reason}") from None
+            reason = str(error).removeprefix("prestress.")
+            given = f"{value} times |x_minus|"
+            raise ValueError(f"duration.balance_distances: {given}, but {reason}") from None
     return float(value)

@@ -7,6 +7,7 @@ import numpy as np
 
 from slippulse.model.checks import check_that
 from slippulse.model.cost import Bound, bound_cost
+from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene, used_extra_terms
 from slippulse.theory.closed_pulse import pulse_at_speed
 from slippulse.theory.front_speeds import front_speed
@@ -16,7 +17,7 @@ from .expand import expand
 from .promised_spacings import promised
 from .resolve import accuracy_of, all_simulations, corners, resolve
 from .runs import run_count
-from .schema import Configuration
+from .schema import Configuration, Model, Simulation
 
 # A sweep says nothing about the continuum if every run is below this fraction of resolved_blocks.
 HARDLY_RESOLVED = 0.5
@@ -29,29 +30,36 @@ def simulation_problems(config: Configuration) -> list[str]:
     The scenes are checked on their own lattice and on the coarsest lattice of the grid study.
     """
     accuracy, problems = accuracy_of(config), []
-    coarsest = max(accuracy["coarser"])
     for name, simulation in all_simulations(config).items():
-        key, lattice = config.key_of(name), ""
         try:
-            sweep = resolve(simulation, config.model, accuracy)
-            count = run_count(sweep)
-            allowed = f"up to the number of runs, {count}"
-            check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
-            scenes, _ = expand(promised(corners(sweep)))
-            _check_profiles(scenes)
-            _check_resolution(scenes)
-            lattice = f" (on the lattice {coarsest:g} times coarser of the grid study)"
-            expand(promised(corners(sweep | {"coarser": coarsest})))
+            _check_simulation(simulation, config.model, accuracy)
         except ArithmeticError:
             problem = "a number too large or small to compute with; allowed: numbers near 1"
-            problems.append(f"{key}: {problem}")
+            problems.append(f"{config.key_of(name)}: {problem}")
         except ValueError as error:
-            problems.append(f"{key}.{error}{lattice}{_units(config, name)}")
+            problems.append(f"{config.key_of(name)}.{error}{_units(config, name)}")
     return problems
 
 
+def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -> None:
+    """Raise ValueError or ArithmeticError if a scene of a simulation cannot be run."""
+    sweep = resolve(simulation, model, accuracy)
+    count = run_count(sweep)
+    allowed = f"up to the number of runs, {count}"
+    check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
+    scenes, _ = expand(promised(corners(sweep)))
+    _check_profiles(scenes)
+    _check_resolution(scenes)
+    coarsest = max(accuracy["coarser"])
+    try:
+        expand(promised(corners(sweep | {"coarser": coarsest})))
+    except ValueError as error:
+        lattice = f"on the lattice {coarsest:g} times coarser of the grid study"
+        raise ValueError(f"{error} ({lattice})") from None
+
+
 def _units(config: Configuration, name: str) -> str:
-    """Return the units of the numbers in a refusal, or no text if the scene has no layer."""
+    """Return a text with the units of a scene in SI units, and no text for other simulations."""
     scene = config.scenes.get(name)
     if scene is None or scene.layer is None:
         return ""
@@ -59,19 +67,9 @@ def _units(config: Configuration, name: str) -> str:
 
 
 def _check_profiles(scenes: Sequence[Scene]) -> None:
-    """Refuse a pre-stress with which nothing ever moves."""
+    """Raise ValueError for a pre-stress with which nothing ever moves."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
-        if profile.bumps or profile.points or profile.width is None:
-            # The largest pre-stress is at or near a point of the table, the peak or a bump.
-            centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
-            near_gaussians = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
-            table_positions = np.array([x for x, _ in profile.points])
-            near_points = table_positions + np.array([[-dx], [0.0], [dx]])
-            candidates = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
-            blocks = np.round(candidates / dx) * dx
-            largest = float(np.max(profile(blocks)))
-        else:
-            largest = max([profile.peak, *(level for *_, level in profile.intervals)])
+        largest = _largest_prestress(profile, dx)
         if not largest >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
@@ -79,8 +77,24 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
             )
 
 
+def _largest_prestress(profile: Prestress, dx: float) -> float:
+    """Return the largest pre-stress of a block."""
+    if not (profile.bumps or profile.points or profile.width is None):
+        levels = [interval.right_value for interval in profile.intervals]
+        return max(profile.peak, *levels)
+    # The largest pre-stress is at or near a point of the table, the peak or a bump.
+    centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
+    distances = np.outer(np.linspace(-3.0, 3.0, 601), widths)
+    near_gaussians = np.add.outer(centres, distances)
+    table_positions = np.array([x for x, _ in profile.points])
+    near_points = np.add.outer([-dx, 0.0, dx], table_positions)
+    candidates = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
+    blocks = np.round(candidates / dx) * dx
+    return float(np.max(profile(blocks)))
+
+
 def _check_resolution(scenes: Sequence[Scene]) -> None:
-    """Refuse a simulation if the pulse is far from resolved in every scene."""
+    """Raise ValueError if the pulse is far from resolved in every scene."""
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Scenes with wide pulses are tried first, so that one scene is usually enough.
     ordered = sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left))
@@ -114,16 +128,18 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     """Return an upper bound on the cost of one chunk: the number of its runs times the largest."""
     scenes, samples = expand(promised(corners(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
+    most_updates = max(bound.block_updates for bound in bounds)
+    most_bytes = max(bound.bytes for bound in bounds)
     runs = run_count(simulation) / chunks
-    updates = max(bound.block_updates for bound in bounds)
-    return Bound(runs, runs * updates, runs * max(bound.bytes for bound in bounds))
+    return Bound(runs, runs * most_updates, runs * most_bytes)
 
 
 def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
     """Return a line for each simulation that the user has changed and that costs too much."""
     shipped = altered.shipped
     is_lattice_altered = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
-    shipped_simulations, accuracy, problems = all_simulations(shipped), accuracy_of(config), []
+    shipped_simulations, accuracy = all_simulations(shipped), accuracy_of(config)
+    problems = []
     for name, simulation in all_simulations(config).items():
         is_altered = altered.simulations[name] or shipped_simulations.get(name) != simulation
         if not (is_lattice_altered or is_altered):

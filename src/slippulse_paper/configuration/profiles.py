@@ -23,7 +23,7 @@ from slippulse.model.stress_file import read_dimensionless
 from .problems import ConfigError
 
 # Keys of a profile that give it a table of pre-stress instead of levels.
-TABLES = ("points", "file", "rough")
+TABLES = frozenset({"points", "file", "rough"})
 
 
 def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -34,10 +34,10 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
     """
 
     def read(profile: Any, key: str) -> Any:
-        if not isinstance(profile, Mapping) or not isinstance(profile.get("file"), str):
-            return profile
-        if "points" in profile:
-            # The points of this overlay were read before.
+        """Return a profile with its points. ``key`` is its place in the configuration."""
+        names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
+        # If there are points, this overlay was read before.
+        if not names_file or "points" in profile:
             return profile
         try:
             columns = _columns(folder / profile["file"], in_si="layer" in profile)
@@ -60,28 +60,38 @@ def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
 def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
     """Return an overlay in which each scene and each profile of a simulation is changed."""
     changed = dict(overlay)
-    scenes, sweeps = overlay.get("scenes"), overlay.get("simulations")
+    scenes, simulations = overlay.get("scenes"), overlay.get("simulations")
+    # An overlay has not been checked yet, and so any value may have any type.
     if isinstance(scenes, Mapping):
-        changed["scenes"] = {name: change(one, f"scenes.{name}") for name, one in scenes.items()}
-    if isinstance(sweeps, Mapping):
-        changed["simulations"] = {name: _sweep(one, name, change) for name, one in sweeps.items()}
+        changed["scenes"] = {
+            name: change(scene, f"scenes.{name}") for name, scene in scenes.items()
+        }
+    if isinstance(simulations, Mapping):
+        changed["simulations"] = {
+            name: _changed_simulation(simulation, f"simulations.{name}", change)
+            for name, simulation in simulations.items()
+        }
     return changed
 
 
-def _sweep(sweep: Any, name: str, change: Callable[[Any, str], Any]) -> Any:
-    if not isinstance(sweep, Mapping) or not isinstance(sweep.get("profiles"), list):
-        return sweep
-    key = f"simulations.{name}.profiles"
-    changed = [change(one, f"{key}.{number}") for number, one in enumerate(sweep["profiles"])]
-    return {**sweep, "profiles": changed}
+def _changed_simulation(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
+    """Return a simulation in which each profile is changed."""
+    if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
+        return simulation
+    profiles = [
+        change(profile, f"{key}.profiles.{number}")
+        for number, profile in enumerate(simulation["profiles"])
+    ]
+    return {**simulation, "profiles": profiles}
 
 
 def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return the profiles of runs: one for each seed, with points and without the file name."""
-    return [*chain.from_iterable(map(_one_for_each_seed, profiles))]
+    return [*chain.from_iterable(map(_profiles_of_seeds, profiles))]
 
 
-def _one_for_each_seed(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+def _profiles_of_seeds(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield one profile for each seed, or the profile itself if it has no seeds."""
     plain = {key: value for key, value in profile.items() if key != "file"}
     if "rough" not in plain:
         yield plain
@@ -131,8 +141,11 @@ def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str
 
     A profile without seeds is kept.
     """
-    indices: dict[float, list[int]] = {}
-    for index, label in enumerate(labels_of(profiles)):
-        indices.setdefault(label["profile"], []).append(index)
-    ends = {index for ensemble in indices.values() for index in (ensemble[0], ensemble[-1])}
-    return [profiles[index] for index in sorted(ends)]
+    numbers = [label["profile"] for label in labels_of(profiles)]
+    ends = []
+    for index, number in enumerate(numbers):
+        is_first = index == 0 or numbers[index - 1] != number
+        is_last = index == len(numbers) - 1 or numbers[index + 1] != number
+        if is_first or is_last:
+            ends.append(profiles[index])
+    return ends

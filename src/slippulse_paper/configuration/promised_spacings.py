@@ -16,11 +16,13 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
 
     Raises ValueError if no accuracy can be promised for its scheme or its friction.
     """
-    promise, scheme = simulation["accuracy"].get("promise"), simulation["scheme"]
+    promise = simulation["accuracy"].get("promise")
     if promise is None:
         return simulation
     # With other schemes the time step has an error that a grid study does not show.
+    scheme = simulation["scheme"]
     check_that(scheme == "localised", "scheme", scheme, "'localised' where accuracy is given")
+    # NaN means that the simulation sets its own spacing.
     if math.isnan(promise):
         return simulation
     laws = simulation.get("friction", [])
@@ -28,10 +30,17 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     # or have no width.
     coulomb = all(law["law"] == "coulomb" for law in laws)
     check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
-    common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
     for entry in entries(simulation):
         refuse_extra_terms(entry.extra_terms, "where accuracy is given, or a dx of its own")
-        common |= {"release": entry.release, "gamma": entry.gamma, "damping_ratio": entry.damping}
-        spacings.append(settings_for(promise, prestress=entry.prestress, **common)["dx"])
+        settings = settings_for(
+            promise,
+            boundary=simulation["boundary"],
+            prestress=entry.prestress,
+            gamma=entry.gamma,
+            damping_ratio=entry.damping,
+            release=entry.release,
+            fields="fields" in simulation["record"],
+        )
+        spacings.append(settings["dx"])
     return {**simulation, "spacings": spacings}

@@ -15,8 +15,8 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.composer import Composer
 from ruamel.yaml.constructor import DuplicateKeyError
-from ruamel.yaml.error import YAMLError
-from ruamel.yaml.events import ScalarEvent
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import Event, ScalarEvent
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from slippulse.model.checks import short_repr
@@ -32,6 +32,10 @@ from .schema import Configuration
 # The shipped configuration has about 20 kB, and an overlay lists only what differs from it.
 MAX_FILE_BYTES = 1_000_000
 LIKE_SHIPPED = "allowed: keys and values as in config/config.yaml"
+VALUE_ALLOWED = "allowed: a value, or null, which removes the key"
+MAPPING_ALLOWED = "allowed: a mapping of keys, as in config/config.yaml"
+# Snakemake executes the expressions of a file that has this key.
+TEMPLATE_KEY = "__use_yte__"
 
 
 def read_config(
@@ -50,32 +54,47 @@ def read_config(
         # An overlay that was read from a file already has the points of the files that it names.
         with_points = with_points_of_files(with_new_names(overlay), Path())
         merged = _merge(merged, with_points)
+    _check_shipped_simulations(merged, shipped)
+    config = _validated(merged)
+    if every_run:
+        problems = simulation_problems(config)
+        problems += _text_problems(merged["published"], shipped["published"])
+        if problems:
+            raise ConfigError(format_problems(problems))
+    return config
+
+
+def _check_shipped_simulations(merged: Mapping, shipped: Mapping) -> None:
+    """Raise ConfigError if a shipped simulation was removed."""
     sweeps = merged.get("simulations")
-    missing = {*shipped["simulations"]} - {*sweeps} if isinstance(sweeps, Mapping) else ()
-    for name in sorted(missing):
+    if not isinstance(sweeps, Mapping):
+        # The validation refuses this.
+        return
+    removed = sorted({*shipped["simulations"]} - {*sweeps})
+    if removed:
         allowed = "what is shipped stays, since figures and verdicts need it"
-        raise ConfigError(f"simulations.{name}: null; allowed: {allowed}")
+        raise ConfigError(f"simulations.{removed[0]}: null; allowed: {allowed}")
+
+
+def _validated(merged: Mapping) -> Configuration:
+    """Return the configuration, or raise ConfigError with a line for each value not allowed."""
     try:
-        config = Configuration.model_validate(merged)
+        return Configuration.model_validate(merged)
     except ValidationError as error:
         # Errors inside of an alternative, such as 'same' or a list, give the same line.
         lines = {problem_line(problem, merged) for problem in error.errors(include_url=False)}
         raise ConfigError(format_problems(sorted(lines))) from None
-    problems = simulation_problems(config) if every_run else []
-    problems += _text_problems(merged["published"], shipped["published"]) if every_run else []
-    if problems:
-        raise ConfigError(format_problems(problems))
-    return config
 
 
 def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
     """Return a line for each text of the user that cannot be shown on a page."""
-    problems, allowed = [], "text with formulas that pandoc reads"
+    problems = []
     for name, reading in given.items():
-        shipped_text, text = shipped.get(name, {}).get("statement"), reading["statement"]
-        if text != shipped_text and not is_readable(text):
-            key = f"published.{name}.statement"
-            problems.append(f"{key}: {short_repr(text)}; allowed: {allowed}")
+        text = reading["statement"]
+        is_shipped = text == shipped.get(name, {}).get("statement")
+        if not is_shipped and not is_readable(text):
+            problem = f"published.{name}.statement: {short_repr(text)}"
+            problems.append(f"{problem}; allowed: text with formulas that pandoc reads")
     return problems
 
 
@@ -88,8 +107,9 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
     merged = dict(base)
     for key, value in overlay.items():
         if isinstance(value, Mapping):
-            inner = merged.get(key)
-            merged[key] = _merge(inner if isinstance(inner, Mapping) else {}, value, (*path, key))
+            base_value = merged.get(key)
+            inner_base = base_value if isinstance(base_value, Mapping) else {}
+            merged[key] = _merge(inner_base, value, (*path, key))
         elif value is not None:
             merged[key] = value
         elif key not in merged and nearest(key, merged):
@@ -104,12 +124,12 @@ def _typed(value: Any, path: str = "") -> Any:
     """Return values of the command line with numbers instead of the texts that Snakemake leaves."""
     if isinstance(value, Mapping):
         return {key: _typed(entry, f"{path}.{key}".lstrip(".")) for key, entry in value.items()}
-    if path == "preset" and isinstance(value, str) and value.isalnum():
-        # The name of a preset, such as 01, stays text.
-        return value
     if isinstance(value, list):
         return [_typed(entry, path) for entry in value]
     if not isinstance(value, str):
+        return value
+    if path == "preset" and value.isalnum():
+        # The name of a preset, such as 01, stays text.
         return value
     try:
         scalar = _load(value)
@@ -122,23 +142,30 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
     """Read an overlay: a YAML or JSON file with a mapping. Raises ConfigError with its path."""
     path = Path(path)
     try:
-        if path.exists() and not path.is_file():
-            raise ConfigError("not a regular file; allowed: a readable YAML file")
-        with path.open("rb") as file:
-            data = file.read(MAX_FILE_BYTES + 1)
-        if len(data) > MAX_FILE_BYTES:
-            allowed = "only the differences from config/config.yaml"
-            raise ConfigError(f"more than {MAX_FILE_BYTES} bytes; allowed: {allowed}")
-        overlay = _load(data.decode("utf-8-sig"))
-        if not isinstance(overlay, dict) or "__use_yte__" in overlay:
-            given = "a template" if isinstance(overlay, dict) else short_repr(overlay)
-            given = "empty" if overlay is None else given
-            raise ConfigError(f"{given}; allowed: a mapping of keys, as in config/config.yaml")
+        overlay = _load(_read_text(path))
+        if overlay is None:
+            raise ConfigError(f"empty; {MAPPING_ALLOWED}")
+        if not isinstance(overlay, dict):
+            raise ConfigError(f"{short_repr(overlay)}; {MAPPING_ALLOWED}")
+        if TEMPLATE_KEY in overlay:
+            raise ConfigError(f"a template; {MAPPING_ALLOWED}")
         # A round trip through JSON turns keys and dates into text.
         plain = json.loads(json.dumps(overlay, default=str))
         return with_points_of_files(plain, path.parent)
     except (OSError, ValueError, RecursionError, YAMLError) as error:
         raise ConfigError(f"{path}: {_reason(error)}") from None
+
+
+def _read_text(path: Path) -> str:
+    """Return the text of an overlay. Raises ConfigError if the file is too large."""
+    if path.exists() and not path.is_file():
+        raise ConfigError("not a regular file; allowed: a readable YAML file")
+    with path.open("rb") as file:
+        data = file.read(MAX_FILE_BYTES + 1)
+    if len(data) > MAX_FILE_BYTES:
+        allowed = "only the differences from config/config.yaml"
+        raise ConfigError(f"more than {MAX_FILE_BYTES} bytes; allowed: {allowed}")
+    return data.decode("utf-8-sig")
 
 
 def _reason(error: Exception) -> str:
@@ -151,11 +178,18 @@ def _reason(error: Exception) -> str:
         return f"not text (byte {error.start}); allowed: YAML in UTF-8"
     if isinstance(error, RecursionError):
         return f"nested too deeply; {LIKE_SHIPPED}"
-    problem = " ".join(str(getattr(error, "problem", None) or error).split())
-    mark = getattr(error, "problem_mark", None)
-    if re.search("flow|quoted|simple key", str(getattr(error, "context", ""))):
+    if isinstance(error, MarkedYAMLError):
+        return _reason_of_parser(error)
+    return f"not YAML ({' '.join(str(error).split())[:120]}); {LIKE_SHIPPED}"
+
+
+def _reason_of_parser(error: MarkedYAMLError) -> str:
+    """Return the reason why the parser refuses a file, with the line."""
+    problem = " ".join((error.problem or str(error)).split())
+    mark = error.problem_mark
+    if error.context_mark and re.search("flow|quoted|simple key", error.context or ""):
         # The parser notices an unfinished value below the line where the value begins.
-        mark = getattr(error, "context_mark", None) or mark
+        mark = error.context_mark
     line = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
         return f"{line}{problem.partition(' with value')[0]}; allowed: each key once"
@@ -166,42 +200,59 @@ class _PlainComposer(Composer):
     """A composer of YAML that refuses everything except plain data while it parses."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        event, refusal = self.parser.peek_event(), ""
-        line = event.start_mark.line
+        """Compose the next node, which ``index`` (a key or a number) selects in ``parent``."""
+        event = self.parser.peek_event()
+        is_key = isinstance(parent, MappingNode) and index is None
+        line, refusal = event.start_mark.line, ""
         if event.anchor:
             refusal = "an anchor or alias; allowed: values written out"
         elif event.tag:
             refusal = f"tag {short_repr(str(event.tag))}; allowed: no tags"
-        elif not isinstance(event, ScalarEvent):
-            # The key of a mapping has no index.
-            if isinstance(parent, MappingNode) and index is None:
-                refusal = "a collection as a key; allowed: text"
-        elif event.implicit[0] and not event.value and parent is not None:
-            refusal = "no value; allowed: a value, or null, which removes the key"
+        elif is_key and not isinstance(event, ScalarEvent):
+            refusal = "a collection as a key; allowed: text"
+        elif _is_missing(event) and parent is not None:
+            refusal = _missing_value(parent, index)
             if isinstance(index, ScalarNode):
                 # The parser reports a missing value at the line of the next key.
-                line, refusal = index.start_mark.line, _missing_value(parent, index)
+                line = index.start_mark.line
         if refusal:
             raise ConfigError(f"line {line + 1}: {refusal}")
         return super().compose_node(parent, index)
 
 
-def _missing_value(mapping: MappingNode, key: ScalarNode) -> str:
-    """Return the refusal of a key without a value.
+def _is_missing(event: Event) -> bool:
+    """Return True if nothing stands where the parser expects a value."""
+    return isinstance(event, ScalarEvent) and event.implicit[0] and not event.value
 
-    In a mapping in braces this key may be the second half of a number with a decimal comma.
+
+def _missing_value(parent: Any, key: Any) -> str:
+    """Return the refusal of an entry without a value; in a list it has no key but a number."""
+    if not isinstance(key, ScalarNode):
+        return f"no value; {VALUE_ALLOWED}"
+    return _decimal_comma(parent, key) or f"{key.value}: no value; {VALUE_ALLOWED}"
+
+
+def _decimal_comma(mapping: MappingNode, key: ScalarNode) -> str:
+    """Return the refusal of a number with a decimal comma, or no text if there is none.
+
+    In a mapping in braces, the parser takes the second half of such a number for a key.
     """
     previous_entry = mapping.value[-1] if mapping.value else (None, None)
-    name, value = (getattr(node, "value", None) for node in previous_entry)
-    is_number = isinstance(value, str) and re.fullmatch(r"[-+]?\d+", value, re.ASCII)
-    if mapping.flow_style and is_number and re.match(r"\d", key.value, re.ASCII):
-        given = f"{name}: {value},{key.value}"
-        return f"{given}; allowed: numbers with a point (write {value}.{key.value})"
-    return f"{key.value}: no value; allowed: a value, or null, which removes the key"
+    previous_key, previous_value = (getattr(node, "value", None) for node in previous_entry)
+    if mapping.flow_style and _is_integer(previous_value) and re.match(r"\d", key.value, re.ASCII):
+        given = f"{previous_key}: {previous_value},{key.value}"
+        suggestion = f"{previous_value}.{key.value}"
+        return f"{given}; allowed: numbers with a point (write {suggestion})"
+    return ""
+
+
+def _is_integer(value: Any) -> bool:
+    """Return True for the text of an integer, such as -2."""
+    return isinstance(value, str) and bool(re.fullmatch(r"[-+]?\d+", value, re.ASCII))
 
 
 def _load(text: str) -> Any:
-    """Read YAML 1.2 with plain data."""
+    """Read YAML 1.2 that contains only plain data."""
     # A directive could select an older version of YAML, in which yes is a switch and 1:30 is 90.
     if directive := re.match(r"(?:\s*(?:#.*)?\n)*(%.*)", text):
         raise ConfigError(f"{short_repr(directive[1])}; allowed: YAML 1.2, without directives")

@@ -19,7 +19,9 @@ from .schema import LABEL_WORDS, NAME_WORDS, Configuration, Measure, Model, Name
 
 # Users correct a few mistakes at a time.
 MAX_LINES = 20
-SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+LIMIT_SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+# Pydantic appends this to the path of a mapping's key that is not allowed.
+PYDANTIC_KEY_MARK = "[key]"
 Path = Sequence[str | int]
 json_schema = cache(Configuration.model_json_schema)
 
@@ -34,9 +36,13 @@ def format_problems(problems: Sequence[str]) -> str:
 
 def dotted(path: Path) -> str:
     """Return the path of a key with dots, as refusals show it."""
-    plain = re.compile(r"\w{1,80}", re.ASCII).fullmatch
-    parts = [str(part) if plain(str(part)) else short_repr(part) for part in path]
-    return ".".join(parts) or "the configuration"
+    return ".".join(map(_key_text, path)) or "the configuration"
+
+
+def _key_text(part: str | int) -> str:
+    """Return a key as it is, or in quotes and shortened if it is long or has special characters."""
+    is_plain = re.fullmatch(r"\w{1,80}", str(part), re.ASCII)
+    return str(part) if is_plain else short_repr(part)
 
 
 def problem_line(problem: Mapping, config: Mapping) -> str:
@@ -47,27 +53,45 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
         return f"{dotted(path)}.{reason}" if path else reason
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
-    if path[-1] == "[key]":
-        allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
-        return f"{dotted(path[:-2])}: {short_repr(path[-2])}; allowed: {allowed}"
-    entry = _last_known_entry(path, config)
+    if path[-1] == PYDANTIC_KEY_MARK:
+        return _name_line(path)
     if kind == "extra_forbidden":
-        known_keys = [*entry.schema["properties"]]
-        allowed = ", ".join(known_keys)
-        hint = nearest(path[-1], known_keys) or _elsewhere(path[-1])
-        return f"{dotted(path)}: unknown key{hint}; allowed: {allowed}"
+        return _unknown_key_line(path, config)
+    entry = _last_known_entry(path, config)
     allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
-    value = entry.value
-    # Null, true and false are written as in YAML.
-    given = json.dumps(value) if value is None or isinstance(value, bool) else short_repr(value)
-    return f"{dotted(entry.path)}: {given}; allowed: {allowed}{_remedy(value)}"
+    given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
+    return f"{given}; allowed: {allowed}{_remedy(entry.value)}"
 
 
-def _elsewhere(key: str | int) -> str:
+def _name_line(path: Path) -> str:
+    """Return the refusal of a name, such as the name of a scene. The last part is its mark."""
+    *parents, name, _ = path
+    allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
+    return f"{dotted(parents)}: {short_repr(name)}; allowed: {allowed}"
+
+
+def _unknown_key_line(path: Path, config: Mapping) -> str:
+    """Return the refusal of an unknown key, with a hint at what was probably meant."""
+    known_keys = [*_last_known_entry(path, config).schema["properties"]]
+    hint = nearest(path[-1], known_keys) or _other_blocks(path[-1])
+    return f"{dotted(path)}: unknown key{hint}; allowed: {', '.join(known_keys)}"
+
+
+def _value_text(value: Any) -> str:
+    """Return a refused value as text. Null, true and false are written as in YAML."""
+    is_yaml_word = value is None or isinstance(value, bool)
+    return json.dumps(value) if is_yaml_word else short_repr(value)
+
+
+def _other_blocks(key: str | int) -> str:
     """Return a hint at the blocks of the configuration that have a key, such as gamma."""
-    blocks: dict[str, type[BaseModel]] = {"simulations.NAME": Simulation, "scenes.NAME": NamedScene}
-    blocks |= {"model": Model, "measure": Measure}
-    places = [f"{block}.{key}" for block, keys in blocks.items() if key in keys.model_fields]
+    blocks: dict[str, type[BaseModel]] = {
+        "simulations.NAME": Simulation,
+        "scenes.NAME": NamedScene,
+        "model": Model,
+        "measure": Measure,
+    }
+    places = [f"{name}.{key}" for name, block in blocks.items() if key in block.model_fields]
     return f" (it is set by {' and '.join(places)})" if places else ""
 
 
@@ -97,14 +121,7 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
     """Return the last entry on a path that exists and has a single schema."""
     schema, value = resolved(json_schema()), config
     for depth, part in enumerate(path):
-        if isinstance(part, int):
-            # A row of numbers is refused with its list, whose schema describes the rows.
-            items = schema.get("items")
-            inner = None if "prefixItems" in resolved(items or {}) else items
-        else:
-            patterns = [*schema.get("patternProperties", {}).values()]
-            any_name = patterns[0] if patterns else schema.get("additionalProperties")
-            inner = schema.get("properties", {}).get(part, any_name)
+        inner = _schema_of_row(schema) if isinstance(part, int) else _schema_of_key(schema, part)
         exists = isinstance(value, list) or (isinstance(value, Mapping) and part in value)
         if not isinstance(inner, dict) or not exists:
             return _Entry(path[:depth], schema, value)
@@ -112,18 +129,46 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
     return _Entry(path, schema, value)
 
 
-def resolved(schema: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema behind a reference, or the only alternative to null.
+def _schema_of_row(schema: Mapping) -> Any:
+    """Return the schema for the entries of a list, or None if there is none.
 
-    If the key has its own words for the allowed values, the result keeps them.
+    It is also None for rows of numbers: a row is refused with its list, whose schema describes the
+    rows.
     """
-    options = _not_null(schema)
+    items = schema.get("items")
+    has_rows = items is not None and "prefixItems" in resolved(items)
+    return None if has_rows else items
+
+
+def _schema_of_key(schema: Mapping, key: str) -> Any:
+    """Return the schema for the value of a key, or None if there is none.
+
+    A mapping has either fixed keys, or names of a pattern whose values all have one schema.
+    """
+    properties = schema.get("properties", {})
+    if key in properties:
+        return properties[key]
+    patterns = [*schema.get("patternProperties", {}).values()]
+    return patterns[0] if patterns else schema.get("additionalProperties")
+
+
+def resolved(schema: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema that a reference leads to, or the only alternative to null.
+
+    Other schemas are returned as they are. If the key has its own words for the allowed values, the
+    result keeps them.
+    """
+    alternatives = _not_null(schema)
     if "$ref" in schema:
-        options = [json_schema()["$defs"][schema["$ref"].rpartition("/")[2]]]
-    if len(options) != 1:
+        # A reference has the form #/$defs/NAME.
+        name = schema["$ref"].rpartition("/")[2]
+        target = json_schema()["$defs"][name]
+    elif len(alternatives) == 1:
+        target = alternatives[0]
+    else:
         return schema
-    key_words = {"allowed": schema["allowed"]} if "allowed" in schema else {}
-    return resolved(options[0]) | key_words
+    result = resolved(target)
+    return {**result, "allowed": schema["allowed"]} if "allowed" in schema else result
 
 
 def words(schema: dict[str, Any]) -> str:
@@ -134,17 +179,25 @@ def words(schema: dict[str, Any]) -> str:
         return schema["allowed"]
     if "anyOf" in schema:
         return ", or ".join(map(words, _not_null(schema)))
-    if "const" in schema or "enum" in schema:
-        return ", ".join(map(str, schema.get("enum", [schema.get("const")])))
+    if "const" in schema:
+        return str(schema["const"])
+    if "enum" in schema:
+        return ", ".join(map(str, schema["enum"]))
     if kind == "array" and "items" in schema:
-        items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words(schema["items"]))
-        different = "different " if schema.get("uniqueItems") else ""
-        least = ", at least one" if schema.get("minItems") else ""
-        return f"a list of {different}{items}{least}"
-    if kind in ("number", "integer"):
-        noun = "a number" if kind == "number" else "a whole number"
-        return f"{noun} {_range(schema)}".strip()
+        return _list_words(schema)
+    if kind == "number":
+        return f"a number {_range(schema)}".strip()
+    if kind == "integer":
+        return f"a whole number {_range(schema)}".strip()
     return {"boolean": "true or false", "string": "text"}.get(str(kind), "a mapping")
+
+
+def _list_words(schema: Mapping) -> str:
+    """Return in words which lists a schema allows, such as "a list of numbers > 0"."""
+    items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words(schema["items"]))
+    different = "different " if schema.get("uniqueItems") else ""
+    at_least = ", at least one" if schema.get("minItems") else ""
+    return f"a list of {different}{items}{at_least}"
 
 
 def _not_null(schema: Mapping) -> list[dict[str, Any]]:
@@ -154,12 +207,14 @@ def _not_null(schema: Mapping) -> list[dict[str, Any]]:
 
 def _range(schema: Mapping) -> str:
     """Return the limits of a number in words."""
-    given = {key: f"{schema[key]:g}" for key in SIGNS if key in schema}
-    # An exponent is written without leading zeros.
-    limits = {key: re.sub(r"e\+?(-?)0", r"e\1", limit) for key, limit in given.items()}
+    limits = {}
+    for key in LIMIT_SIGNS:
+        if key in schema:
+            # Exponents are written without plus signs and leading zeros.
+            limits[key] = re.sub(r"e\+?(-?)0", r"e\1", f"{schema[key]:g}")
     if {*limits} == {"minimum", "maximum"}:
         return f"from {limits['minimum']} to {limits['maximum']}"
-    return " and ".join(f"{SIGNS[key]} {limit}" for key, limit in limits.items())
+    return " and ".join(f"{LIMIT_SIGNS[key]} {limit}" for key, limit in limits.items())
 
 
 def _remedy(value: object) -> str:

@@ -25,6 +25,8 @@ SAMPLED_TIMES, SAMPLED_POSITIONS = 241, 801
 FRONT_SPEED_LEVELS = 65
 # Keys that have one value in a scene and a list of values in a simulation.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
+# Keys of the accuracy that a simulation depends on.
+NUMERICAL_KEYS = ("dx", "max_step", "order", "promise")
 # Lists of a simulation for which refusals and costs are largest at the smallest or largest value.
 ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels", *EXTRA_TERMS)
 
@@ -50,12 +52,13 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
         given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
     if "profiles" in given:
         given["profiles"] = expanded(given["profiles"])
-    kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
-    chosen = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
-    if "promise" in kept and chosen:
-        # No accuracy is promised if the simulation sets its own spacing.
-        kept["promise"] = math.nan
-    return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
+    numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
+    # With a fixed beta, the damping ratio beta/dx depends on the spacing.
+    has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
+    if "promise" in numerical and has_own_spacing:
+        # No accuracy is promised.
+        numerical["promise"] = math.nan
+    return {**defaults, **given, "accuracy": numerical, "coarser": 1.0}
 
 
 def _linear_law(alpha: float) -> Mapping:
@@ -75,8 +78,9 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
 
     It records everything, and samples all positions that the fronts may reach.
     """
-    layer = scene.layer
-    friction_ratio = layer and layer.layer(scene.boundary).friction_ratio
+    friction_ratio = None
+    if scene.layer is not None:
+        friction_ratio = scene.layer.layer(scene.boundary).friction_ratio
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
@@ -113,14 +117,17 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
         return speeds
 
     if scene.left is not None and scene.right is not None:
-        highest = max(scene.left, scene.right, *[level for _, level in scene.steps])
-        reach = float(speeds_at(np.array([highest]))[0]) * scene.duration
+        step_levels = [level for _, level in scene.steps]
+        highest = max(scene.left, scene.right, *step_levels)
+        (speed,) = speeds_at(np.array([highest]))
+        reach = float(speed) * scene.duration
     else:
         (expanded_profile,) = expanded([profile])
         table = prestress_of(expanded_profile)
         # Exact speeds at all points of a table would take seconds. The speed is a convex function
         # of the level, and so linear interpolation between a few levels gives an upper bound.
-        highest = max([0.0, *(tau for _, tau in table.points)])
+        table_levels = [tau for _, tau in table.points]
+        highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
         speeds = speeds_at(levels)
         reach = bound_front_reach(

@@ -13,6 +13,9 @@ from slippulse.model.scene import EXTRA_TERMS
 from .chunks import runs_of
 from .profiles import TABLES, labels_of, prestress_of
 
+# The value of `right` for which both levels are equal.
+SAME = "same"
+
 
 class Entry(NamedTuple):
     """The values of one run, one from each list of a simulation.
@@ -54,73 +57,117 @@ def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
 
 def entries(simulation: Mapping) -> Iterator[Entry]:
     """Yield the values of each run of a resolved simulation, or of one chunk of it."""
-    for release, *shape, gamma, dx, damping, law, extra_terms in _combinations(simulation):
-        if "profiles" in simulation:
-            profile = prestress_of(shape[0])
-        else:
-            left, right, width, steps = shape
-            profile = Prestress(left, left if right is None else right, width, steps=steps)
-        yield Entry(release, profile, gamma, dx, damping, law, extra_terms)
+    for values in _combinations(simulation):
+        yield Entry(
+            release=values["release"],
+            prestress=_prestress(values),
+            gamma=values["gamma"],
+            dx=values["dx"],
+            damping=values["damping"],
+            law=values["law"],
+            extra_terms=values["extra_terms"],
+        )
+
+
+def _prestress(values: Mapping[str, Any]) -> Prestress:
+    """Return the pre-stress of a run from its profile, or from its levels, width and steps."""
+    if "profile" in values:
+        return prestress_of(values["profile"])
+    left, right = values["left"], values["right"]
+    if right == SAME:
+        right = left
+    return Prestress(left, right, values["width"], steps=values["steps"])
 
 
 def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
     """Return number and seed of the profile of each run, or an empty list if none has a table."""
     profiles = simulation.get("profiles", [])
-    if not any(key in profile for profile in profiles for key in TABLES):
+    if not any(TABLES.intersection(profile) for profile in profiles):
         return []
-    labels = dict(zip(map(id, profiles), labels_of(profiles), strict=True))
-    return [labels[id(profile)] for _, profile, *_ in _combinations(simulation)]
+    # With labels in place of the profiles, each combination has the label of its profile.
+    labelled = {**simulation, "profiles": labels_of(profiles)}
+    return [values["profile"] for values in _combinations(labelled)]
 
 
-def _combinations(simulation: Mapping) -> Iterator[tuple]:
-    """Yield the entries of the lists for each run of a simulation, or of one chunk of it."""
+def _combinations(simulation: Mapping) -> Iterator[dict[str, Any]]:
+    """Yield the values of each run of a simulation, or of one chunk of it, by name."""
+    axes = _axes(simulation)
     chunk = simulation.get("chunk")
-    runs_in_chunk = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
-    for number, combination in enumerate(product(*_axes(simulation))):
-        if runs_in_chunk is None or number in runs_in_chunk:
-            yield combination
+    runs_in_chunk = None
+    if chunk is not None:
+        number, chunks = chunk
+        runs_in_chunk = set(runs_of(number, chunks, run_count(simulation)))
+    for run, combination in enumerate(product(*axes.values())):
+        if runs_in_chunk is None or run in runs_in_chunk:
+            yield dict(zip(axes, combination, strict=True))
 
 
 def run_count(simulation: Mapping) -> int:
     """Return the number of runs: the product of the lengths of the lists of a simulation."""
-    return math.prod(map(len, _axes(simulation)))
+    return math.prod(map(len, _axes(simulation).values()))
 
 
-def _axes(simulation: Mapping) -> list[Sequence]:
-    """Return the lists of a simulation. Its runs are all combinations of their entries."""
+def _axes(simulation: Mapping) -> dict[str, Sequence]:
+    """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
-    if "profiles" in simulation:
-        shapes = [simulation["profiles"]]
-    else:
-        right, rule = simulation["right"], simulation.get("beyond")
-        # Each level of `beyond` is a step of the pre-stress at the position where it begins.
-        steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-        rights = [None] if right == "same" else right
-        shapes = [simulation["left"], rights, simulation["width"], steps]
-    gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
-    damping = simulation.get("beta", simulation["damping_ratio"])
-    laws = simulation.get("friction", [{"law": "coulomb"}])
+    return {
+        "release": releases,
+        **_prestress_axes(simulation),
+        "gamma": simulation.get("gamma", [0.0]),
+        "dx": simulation.get("dx", [None]),
+        "damping": simulation.get("beta", simulation["damping_ratio"]),
+        "law": simulation.get("friction", [{"law": "coulomb"}]),
+        "extra_terms": _extra_terms(simulation),
+    }
+
+
+def _extra_terms(simulation: Mapping) -> list[dict[str, float]]:
+    """Return all combinations of the coefficients of extra terms, each by name."""
     coefficients = [simulation.get(name, [term.default]) for name, term in EXTRA_TERMS.items()]
-    extra_terms = [dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)]
-    return [releases, *shapes, gamma, dx, damping, laws, extra_terms]
+    return [dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)]
+
+
+def _prestress_axes(simulation: Mapping) -> dict[str, Sequence]:
+    """Return the lists of a simulation that give its pre-stress, by name."""
+    if "profiles" in simulation:
+        return {"profile": simulation["profiles"]}
+    right, replacement = simulation["right"], simulation.get("beyond")
+    steps: list[tuple] = [()]
+    if replacement is not None:
+        # Each level is a step of the pre-stress at the position where it begins.
+        steps = [((replacement["position"], level),) for level in replacement["levels"]]
+    return {
+        "left": simulation["left"],
+        "right": [SAME] if right == SAME else right,
+        "width": simulation["width"],
+        "steps": steps,
+    }
 
 
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
-    """Return the spacing of the run with a number, from 0.
+    """Return the spacing of a run, whose number from 0 is ``index``.
 
     It is fixed, promised for an accuracy, given in a list, or follows from the rule in ``spacing``.
     """
     rule = simulation["spacing"]
     if "fixed" in rule:
         return float(rule["fixed"])
-    spacing = simulation["spacings"][index] if "spacings" in simulation else entry.dx
-    if spacing is None:
-        width = entry.prestress.width
-        has_width = width is not None or rule["width_power"] == 0.0
-        allowed = "0 for a profile without a width"
-        check_that(has_width, "spacing.width_power", rule["width_power"], allowed)
-        powers = (width or 1.0) ** rule["width_power"] * entry.gamma ** rule["gamma_power"]
-        spacing = simulation["accuracy"]["dx"] * rule["scale"] * powers
+    if "spacings" in simulation:
+        spacing = simulation["spacings"][index]
+    elif entry.dx is not None:
+        spacing = entry.dx
+    else:
+        spacing = _scaled_spacing(simulation["accuracy"]["dx"], rule, entry)
     # With twelve digits, a spacing of 0.02 is exactly 0.02 in the data and in labels.
     return float(f"{simulation['coarser'] * spacing:.12g}")
+
+
+def _scaled_spacing(dx: float, rule: Mapping, entry: Entry) -> float:
+    """Return the spacing dx times scale W^width_power gamma^gamma_power by a rule."""
+    width = entry.prestress.width
+    has_width = width is not None or rule["width_power"] == 0.0
+    allowed = "0 for a profile without a width"
+    check_that(has_width, "spacing.width_power", rule["width_power"], allowed)
+    powers = (width or 1.0) ** rule["width_power"] * entry.gamma ** rule["gamma_power"]
+    return dx * rule["scale"] * powers

@@ -195,12 +195,16 @@ class Profile(Block):
     )
 
     @model_validator(mode="after")
-    def _background(self) -> Self:
-        # A profile whose file was read has `file` and also `points`.
-        tables = self._given_ones("file", "points", "rough")
+    def _check_background(self) -> Self:
+        """Raise ValueError unless a profile has either levels or one table.
+
+        A table without a width gets no Gaussian.
+        """
+        tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
+            # The points were read from the file.
             tables = ["file"]
-        levels = self._given_ones("left", "right")
+        levels = self._given_keys("left", "right")
         if not tables:
             missing = [name for name in ("left", "right") if name not in levels]
             allowed = "levels on both sides, or points, file or rough"
@@ -219,7 +223,8 @@ class Profile(Block):
             self.check_table()
         return self
 
-    def _given_ones(self, *names: str) -> list[str]:
+    def _given_keys(self, *names: str) -> list[str]:
+        """Return those of some keys that have a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
@@ -288,21 +293,24 @@ class Physics(Block):
         None,
     )
 
-    def alone(self, key: str, *others: str) -> None:
+    def refuse_together(self, key: str, *others: str) -> None:
         """Raise ValueError if a key is given together with one of the others."""
-        given = ", ".join(other for other in others if other in self.model_fields_set)
-        is_alone = key not in self.model_fields_set or not given
-        require(is_alone, f"{key}: given with {given}", "one or the other (null removes a key)")
+        given_others = [other for other in others if other in self.model_fields_set]
+        are_together = key in self.model_fields_set and bool(given_others)
+        problem = f"{key}: given with {', '.join(given_others)}"
+        require(not are_together, problem, "one or the other (null removes a key)")
 
     @model_validator(mode="after")
-    def _physics(self) -> Self:
+    def _check_physics(self) -> Self:
+        """Raise ValueError for keys that the boundary condition or another key excludes."""
         if getattr(self, "layer", None) is None:
             self._check_gamma()
-        self.alone("beta", "damping_ratio")
-        self.alone("rate_strengthening", "friction")
+        self.refuse_together("beta", "damping_ratio")
+        self.refuse_together("rate_strengthening", "friction")
         return self
 
     def _check_gamma(self) -> None:
+        """Raise ValueError if gamma is missing, or given although there are no leaf springs."""
         gamma = getattr(self, "gamma", None)
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
@@ -312,14 +320,19 @@ class Physics(Block):
 
 
 def _with_extra_terms(lists: bool) -> type[Physics]:
-    """Return `Physics` with a key for each extra term of the equation: a list, or a number."""
+    """Return `Physics` with a key for each extra term of the equation.
+
+    The value of a key is a number, or a list of numbers if ``lists`` is set.
+    """
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
         number: Any = int if "integer" in term.bounds else float
         value: Any = Annotated[number, Field(**limits)]
+        value_or_list: Any = Distinct[value] if lists else value
         meaning = f"{term.meaning}; by default {term.default:g}"
-        keys[name] = (Distinct[value] if lists else value) | None, key(meaning, None)
+        # Pydantic takes the type and the definition of each key.
+        keys[name] = (value_or_list | None, key(meaning, None))
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
 
 
@@ -366,19 +379,22 @@ class Simulation(PhysicsOfSweep):
     chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _together(self) -> Self:
-        self.alone("profiles", "left", "right", "width", "beyond")
-        self.alone("dx", "spacing")
-        rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
-        levels = self.left is not None and self.right is not None
-        require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
-        alone = rule == {"fixed"} or "fixed" not in rule
-        require(alone, "spacing.fixed: given with others", "alone")
+    def _check_together(self) -> Self:
+        """Raise ValueError for keys that are missing or exclude each other."""
+        self.refuse_together("profiles", "left", "right", "width", "beyond")
+        self.refuse_together("dx", "spacing")
+        has_levels = self.left is not None and self.right is not None
+        has_profile = has_levels or self.profiles is not None
+        require(has_profile, "left, right: missing", "lists, or profiles")
+        rule_keys = self.spacing.model_fields_set
+        is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
+        require(is_consistent, "spacing.fixed: given with others", "alone")
+        units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
-            require("gamma_power" not in rule, "spacing.gamma_power: given", only)
+            require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
         if "samples" in self.record:
             allowed = "times, positions and extent when record has 'samples'"
@@ -407,7 +423,8 @@ class LayerKeys(Block):
     )
 
     @model_validator(mode="after")
-    def _known_layer(self) -> Self:
+    def _check_layer(self) -> Self:
+        """Raise ValueError if there is no such layer."""
         self.layer("displacement")
         return self
 
@@ -445,7 +462,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return given | {"boundary": BOUNDARY_OF_TOP[top]} if is_known else given
 
     @model_validator(mode="after")
-    def _layer(self) -> Self:
+    def _check_in_model_units(self) -> Self:
+        """Raise ValueError if the scene is not allowed in the units of the model."""
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
             require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
@@ -493,7 +511,8 @@ class NamedScene(Profile, PhysicsOfScene):
         return self.model_copy(update=given)
 
     @model_validator(mode="after")
-    def _one_seed(self) -> Self:
+    def _check_one_seed(self) -> Self:
+        """Raise ValueError if a scene has several seeds, since it is one run."""
         seed = self.rough.seed if self.rough is not None else 0
         require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
         return self
@@ -507,16 +526,19 @@ class NamedScene(Profile, PhysicsOfScene):
             ]
         }
         if self.points is not None:
-            x, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x = layer.convert_from_si(x_in_metres, "length")
             tau = layer.table_from_pascal("points", stress)
-            columns = layer.convert_from_si(x, "length").tolist(), tau.tolist()
-            given["points"] = [*zip(*columns, strict=True)]
+            given["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
-            changed = {"level": layer.level_from_pascal("rough.level", self.rough.level)}
-            changed["deviation"] = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            deviation = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            converted = {
+                "level": layer.level_from_pascal("rough.level", self.rough.level),
+                "deviation": deviation,
+            }
             for name in ("correlation_length", "start", "stop", "spacing"):
-                changed[name] = layer.convert_from_si(getattr(self.rough, name), "length")
-            given["rough"] = self.rough.model_copy(update=changed)
+                converted[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+            given["rough"] = self.rough.model_copy(update=converted)
         return given
 
 
@@ -531,7 +553,8 @@ class Preset(Block):
     whole: bool = key("true if studies, claims and report are made by default", True)
 
     @model_validator(mode="after")
-    def _far_apart(self) -> Self:
+    def _check_factors(self) -> Self:
+        """Raise ValueError if the spacings of the grid study are too close to each other."""
         # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
         is_far_apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
@@ -591,7 +614,8 @@ class Steps(Block):
     count: int = key("number of values", ge=2, le=10_000)
 
     @model_validator(mode="after")
-    def _upwards(self) -> Self:
+    def _check_order(self) -> Self:
+        """Raise ValueError if the last value is not above the first one."""
         require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
         return self
 
@@ -608,7 +632,8 @@ class LayerMap(Block):
     chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
-    def _chunks(self) -> Self:
+    def _check_chunks(self) -> Self:
+        """Raise ValueError if there are more chunks than points of the map."""
         points = len(self.gamma) * len(self.fracture_energy)
         require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
         return self
@@ -667,28 +692,37 @@ class Configuration(Block):
         return f"scenes.{name}" if name in self.scenes else f"simulations.{name}"
 
     @model_validator(mode="after")
-    def _names(self) -> Self:
+    def _check_names(self) -> Self:
+        """Raise ValueError for names that are unknown or used twice."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
             allowed = "'localised' where accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
-            problem = f"scenes.{name}: also the name of a simulation"
-            require(name not in self.simulations, problem, "another name")
-            others = {*self.scenes} - {name}
-            is_taken = name == "index" or name.removesuffix("_numbers") in others
-            problem = f"scenes.{name}: a file of that name exists"
-            require(not is_taken, problem, "neither index nor SCENE_numbers")
+            self._check_scene_name(name)
+        for name, reading in self.published.items():
+            self._check_reading(f"published.{name}", reading)
+        return self
+
+    def _check_scene_name(self, name: str) -> None:
+        """Raise ValueError if a scene has the name of a simulation or of another file."""
+        problem = f"scenes.{name}: also the name of a simulation"
+        require(name not in self.simulations, problem, "another name")
+        other_names = {*self.scenes} - {name}
+        is_taken = name == "index" or name.removesuffix("_numbers") in other_names
+        problem = f"scenes.{name}: a file of that name exists"
+        require(not is_taken, problem, "neither index nor SCENE_numbers")
+
+    def _check_reading(self, key: str, reading: Reading) -> None:
+        """Raise ValueError if the number that a reading is compared with is not measured."""
+        # The kind of data that each measured column needs.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
             record_for[f"trailing_edge_{time:g}"] = "fronts"
-        for name, reading in self.published.items():
-            quantity, sweep = reading.quantity, reading.simulation
-            key = f"published.{name}"
-            check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
-            check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
-            needed, recorded = record_for[quantity], self.simulations[sweep].record
-            allowed = f"what simulations.{sweep} records; it needs record: [fronts, {needed}]"
-            require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
-        return self
+        quantity, simulation = reading.quantity, reading.simulation
+        check_name(f"{key}.simulation", simulation, self.simulations, "a name under simulations")
+        check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
+        needed, recorded = record_for[quantity], self.simulations[simulation].record
+        allowed = f"what simulations.{simulation} records; it needs record: [fronts, {needed}]"
+        require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)

@@ -66,6 +66,10 @@ def file_digest(path: str | Path) -> str:
 
 @cache
 def _digest_at(path: str, _size: int, _modified_ns: int) -> str:
+    """Return the SHA-256 of a file.
+
+    Its size and time are arguments so that the cache is not used after a change.
+    """
     return file_digest(path)
 
 
@@ -77,7 +81,7 @@ def state_of(path: str | Path) -> FileState:
 
 
 def is_unchanged(path: str | Path, state: FileState) -> bool:
-    """Return True if a file has a recorded content. It is read only if its time differs."""
+    """Return True if a file has a recorded content. The file is read only if its time differs."""
     info = os.stat(path)
     if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):
         return True
@@ -107,7 +111,8 @@ def write_record(record: Record, folder: str | Path) -> None:
     """Write the record of the outputs of a job in one folder."""
     content = record._asdict()
     content["outputs"] = {name: state._asdict() for name, state in record.outputs.items()}
-    write_json(content, record_path(Path(folder, next(iter(record.outputs)))))
+    first_output, *_ = record.outputs
+    write_json(content, record_path(Path(folder, first_output)))
 
 
 def read_record(path: str | Path) -> Record:
@@ -134,11 +139,13 @@ class _Job(NamedTuple):
     outputs: list[str]
     inputs: dict[str, str]
 
-    def replaced_inputs(self, states: Mapping[str, FileState]) -> Iterator[str]:
-        """Yield the inputs whose recorded content is no longer the one that the job read."""
+    def replaced_inputs(self, states: Mapping[str, FileState]) -> list[str]:
+        """Return the inputs whose recorded content is no longer the one that the job read."""
+        replaced = []
         for path, sha256 in self.inputs.items():
             if path in states and states[path].sha256 != sha256:
-                yield path
+                replaced.append(path)
+        return replaced
 
 
 class RecordedFiles:
@@ -159,7 +166,7 @@ class RecordedFiles:
         states = {}
         for path, record in self.records.items():
             for name, state in record.outputs.items():
-                states[str(path.parent.parent / name)] = state
+                states[str(_recorded_folder(path) / name)] = state
         return states
 
     def problems(self) -> Iterator[tuple[str, str]]:
@@ -167,21 +174,15 @@ class RecordedFiles:
 
         A missing file is not a problem, since Snakemake makes it again if it is needed.
         """
-        states, snakemake_files = self.states(), _files_recorded_by_snakemake()
         for path in self.unreadable:
-            yield str(path.parent.parent / path.stem), "its record cannot be read"
-        # Most of the time goes into digests of the files, which threads compute in parallel.
-        with ThreadPoolExecutor() as threads:
-            unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
-        for name, is_recorded in zip(states, unchanged, strict=True):
-            if not is_recorded:
-                yield name, "not what its job wrote"
-            elif name not in snakemake_files and Path(name).is_file():
-                yield name, "Snakemake's own record of it (in .snakemake) is lost"
+            yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
+        states = self.states()
+        yield from _changed_files(states)
         for job in self._jobs():
-            source = next(job.replaced_inputs(states), None)
-            if source is not None:
-                yield from ((output, f"made from another {source}") for output in job.outputs)
+            replaced_inputs = job.replaced_inputs(states)
+            if replaced_inputs:
+                for output in job.outputs:
+                    yield output, f"made from another {replaced_inputs[0]}"
 
     def older_than_inputs(self) -> set[str]:
         """Return the files that were made from files that have been made again since then.
@@ -189,24 +190,48 @@ class RecordedFiles:
         This includes files that were made from such files.
         """
         states, jobs = self.states(), self._jobs()
-        found = {
-            output for job in jobs for _ in job.replaced_inputs(states) for output in job.outputs
-        }
-        added = found
-        while added:
-            added = {output for job in jobs if found & {*job.inputs} for output in job.outputs}
-            added -= found
-            found |= added
-        return found
+        older: set[str] = set()
+        for job in jobs:
+            if job.replaced_inputs(states):
+                older.update(job.outputs)
+        # Repeat until no further file was made from an older one.
+        count = -1
+        while len(older) > count:
+            count = len(older)
+            for job in jobs:
+                if not older.isdisjoint(job.inputs):
+                    older.update(job.outputs)
+        return older
 
     def _jobs(self) -> list["_Job"]:
         """Return outputs and inputs of each record, by their paths from the working directory."""
         jobs = []
         for path, record in self.records.items():
-            folder = path.parent.parent
-            inputs = {os.path.normpath(folder / name): sha for name, sha in record.inputs.items()}
-            jobs.append(_Job([str(folder / name) for name in record.outputs], inputs))
+            folder = _recorded_folder(path)
+            outputs = [str(folder / name) for name in record.outputs]
+            inputs = {
+                os.path.normpath(folder / name): digest for name, digest in record.inputs.items()
+            }
+            jobs.append(_Job(outputs, inputs))
         return jobs
+
+
+def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]:
+    """Yield each file that has no longer its recorded content, and files unknown to Snakemake."""
+    snakemake_files = _files_recorded_by_snakemake()
+    # Most of the time goes into digests of the files, which threads compute in parallel.
+    with ThreadPoolExecutor() as threads:
+        unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
+    for name, is_recorded in zip(states, unchanged, strict=True):
+        if not is_recorded:
+            yield name, "not what its job wrote"
+        elif name not in snakemake_files and Path(name).is_file():
+            yield name, "Snakemake's own record of it (in .snakemake) is lost"
+
+
+def _recorded_folder(record: Path) -> Path:
+    """Return the folder with the files that a record is about."""
+    return record.parent.parent
 
 
 def _files_recorded_by_snakemake() -> dict[str, Path]:
@@ -277,8 +302,9 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
-    name, folder = Path(path).name, Path(path).parent / FOLDER
-    return _records_in(str(folder), _time_of(folder)).get(name)
+    folder = Path(path).parent / FOLDER
+    records = _records_in(str(folder), _time_of(folder))
+    return records.get(Path(path).name)
 
 
 def _time_of(folder: Path) -> int:

@@ -6,6 +6,7 @@ all results with a checksum can be compared by byte.
 
 import os
 import platform
+import re
 import subprocess
 import time
 from collections.abc import Mapping, Sequence
@@ -72,12 +73,14 @@ def machine_class() -> dict:
     """Describe the machine without the name of the host or of the user."""
     cpuinfo = Path("/proc/cpuinfo")
     text = cpuinfo.read_text(encoding="utf-8", errors="replace") if cpuinfo.exists() else ""
+    model = re.search(r"^model name\s*:(.*)", text, re.MULTILINE)
+    bytes_of_memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     return {
         "system": platform.system(),
         "architecture": platform.machine(),
-        "processor": text.partition("\nmodel name")[2].partition("\n")[0].strip("\t :"),
+        "processor": model[1].strip() if model else "",
         "cores": os.cpu_count(),
-        "memory_GiB": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
+        "memory_GiB": round(bytes_of_memory / 2**30),
     }
 
 
@@ -89,13 +92,14 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | 
     versions = {"python": platform.python_version()}
     versions |= {name: version(name) for name in PACKAGES}
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    source_digests = {
+        path.relative_to(root).as_posix(): file_digest(path) for path in source_files(root)
+    }
     return {
         "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
-        "source_digest": digest_of(
-            {path.relative_to(root).as_posix(): file_digest(path) for path in source_files(root)}
-        ),
+        "source_digest": digest_of(source_digests),
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
         "versions": versions,
@@ -111,12 +115,17 @@ def checksums(files: Sequence[str], base: str | Path) -> str:
 
 
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
-    """Return a CODECHECK manifest, which lists every output with a comment."""
+    """Return a CODECHECK manifest, which lists every output with a comment.
+
+    comments : titles of figures by name
+    """
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
-        comment = COMMENTS.get(path.parts[0], comments.get(path.stem, "result"))
-        if path.parts[0] in COMPARED:
-            comment += f"; {COMPARED[path.parts[0]]}"
+        # The folder of the output, or its name if it is in no folder.
+        part = path.parts[0]
+        comment = COMMENTS.get(part, comments.get(path.stem, "result"))
+        if part in COMPARISON_ADVICE:
+            comment += f"; {COMPARISON_ADVICE[part]}"
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
@@ -128,7 +137,7 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
 
 # Advice for the comparison with outputs of another machine, by the folder or the name of the
 # output.
-COMPARED = {
+COMPARISON_ADVICE = {
     "claims.json": "compare first: the verdicts must be the same",
     "claims.html": "read it",
     "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",

@@ -39,13 +39,16 @@ def _imports() -> grimp.ImportGraph:
 
 @cache
 def _digest(path: str) -> str:
+    """Return the SHA-256 of a file, given by its path below the project."""
     return file_digest(PROJECT / path)
 
 
 @cache
 def modules_reached(*modules: str) -> frozenset[str]:
     """Return the full names of modules and of everything that they import."""
-    return frozenset(modules).union(*map(_imports().find_upstream_modules, modules))
+    imports = _imports()
+    imported = [imports.find_upstream_modules(module) for module in modules]
+    return frozenset(modules).union(*imported)
 
 
 @cache
@@ -59,8 +62,9 @@ def sources_of(modules: tuple[str, ...], texts: tuple[str, ...] = ()) -> Sources
     texts : tuple of str
         paths below the project of other files that it reads, such as templates and texts
     """
-    paths = {_path(module) for module in modules_reached(*modules)} | {*texts, LOCK}
-    files = {path: _digest(path) for path in sorted(paths)}
+    module_paths = map(_path_of, modules_reached(*modules))
+    paths = sorted({*module_paths, *texts, LOCK})
+    files = {path: _digest(path) for path in paths}
     return Sources(digest_of(files), files)
 
 
@@ -68,14 +72,14 @@ def changed_sources(files: dict[str, str]) -> Iterable[str]:
     """Yield the paths of sources whose content no longer has the given SHA-256."""
     for path, digest in files.items():
         try:
-            unchanged = file_digest(PROJECT / path) == digest
+            is_unchanged = file_digest(PROJECT / path) == digest
         except OSError:
-            unchanged = False
-        if not unchanged:
+            is_unchanged = False
+        if not is_unchanged:
             yield path
 
 
-def _path(module: str) -> str:
+def _path_of(module: str) -> str:
     """Return the path of a module below the project."""
     path = SOURCES.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")

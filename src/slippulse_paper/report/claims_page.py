@@ -8,19 +8,38 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 from ..claims.ledger import Entry, Ledger
-from ..claims.rules import VERDICTS, WORST_FIRST
+from ..claims.rules import (
+    BEYOND,
+    CAVEAT,
+    DEPENDS,
+    FAILED,
+    INCONCLUSIVE,
+    NOT_TESTABLE,
+    REPRODUCED,
+    UNMET,
+    WORST_FIRST,
+)
 from ..text.numerals import rounded
 from .html import markup_of, page
 
 # Each verdict has a sign, so that the page can be read without colours.
-MARKS = "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{NOT EQUAL TO}\N{MULTIPLICATION SIGN}→?\N{EN DASH}"
-SIGNS = dict(zip(VERDICTS, MARKS, strict=True))
-# The full length of a bar, as a deviation divided by its tolerance.
-FULL_BAR = 2.0
-# What the page calls the tables of a folder, if not by the name of the folder.
-TABLE_NAMES = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
+SIGNS = {
+    REPRODUCED: "\N{CHECK MARK}",
+    CAVEAT: "~",
+    DEPENDS: "\N{UP DOWN ARROW}",
+    UNMET: "\N{NOT EQUAL TO}",
+    FAILED: "\N{MULTIPLICATION SIGN}",
+    BEYOND: "→",
+    INCONCLUSIVE: "?",
+    NOT_TESTABLE: "\N{EN DASH}",
+}
+# A bar has its full length if the deviation is this many times the tolerance, or more.
+FULL_BAR_RATIO = 2.0
+# Kinds of tables by folder. Other tables are called by the name of their folder.
+TABLE_KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
 Rows = Sequence[Mapping]
 # A claim that rests on more simulations than this is regenerated with everything else.
 MAX_NAMED_SIMULATIONS = 6
@@ -31,7 +50,8 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
 
     ``tables`` are the paths of all tables relative to the page, which links to them.
     """
-    ledger, texts = Ledger(claims), [finding["text"] for finding in findings]
+    ledger = Ledger(claims)
+    texts = [finding["text"] for finding in findings]
     groups: dict[str, list[Entry]] = {}
     for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
         texts += [claim.statement, claim.why, claim.evidence_text()]
@@ -40,7 +60,7 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
         "claims.html",
         html=markup_of(texts),
         summary=ledger.summary(),
-        following=len(ledger.claims) - ledger.count(),
+        uncounted=len(ledger.claims) - ledger.count(),
         groups=groups,
         findings=findings,
         altered=altered,
@@ -48,41 +68,58 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
         signs=SIGNS,
         tables_behind=partial(tables_behind, tables=sorted(tables)),
         command=command,
-        bar=bar,
+        bar_of=bar_of,
         figure_title=figure_title,
     )
 
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Return the files of the simulations and studies in a source, by name and by kind of table."""
-    files: dict[str, dict[str, str]] = {}
+    """Return the paths of the tables that a claim is judged by.
+
+    The keys are the name of a simulation or study, and the kind of table.
+
+    source : the text in which the claim names its simulations and studies
+    tables : paths of all tables
+    """
+    paths: dict[str, dict[str, str]] = {}
     for path in map(Path, tables):
         folder = path.parts[0]
-        files.setdefault(path.stem, {})[TABLE_NAMES.get(folder, folder)] = path.as_posix()
+        kind = TABLE_KINDS.get(folder, folder)
+        paths.setdefault(path.stem, {})[kind] = path.as_posix()
     if source.startswith("every simulation"):
-        return files
+        return paths
     names = dict.fromkeys(re.findall(r"\w+", source))
-    return {name: files[name] for name in names if name in files}
+    return {name: paths[name] for name in names if name in paths}
 
 
-def command(files: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the command that regenerates tables."""
-    if len(files) > MAX_NAMED_SIMULATIONS:
+def command(tables: Mapping[str, Mapping[str, str]]) -> str:
+    """Return the command that regenerates the tables that `tables_behind` returns."""
+    if not tables:
+        return "make test"
+    if len(tables) > MAX_NAMED_SIMULATIONS:
         return "make replicate"
-    paths = chain.from_iterable(kinds.values() for kinds in files.values())
+    paths = chain.from_iterable(paths_by_kind.values() for paths_by_kind in tables.values())
     targets = " ".join(f"results/{path}" for path in paths)
-    return f'make replicate TARGET="{targets}"' if targets else "make test"
+    return f'make replicate TARGET="{targets}"'
 
 
-def bar(claim: Entry) -> tuple[str, float] | None:
-    """Return deviation divided by tolerance in words, and the length of its bar in per cent.
+class Bar(NamedTuple):
+    """A bar that shows a deviation: its text, and its length in per cent of the full length."""
 
-    None for a kind of claim that has no bar.
+    text: str
+    length: float
+
+
+def bar_of(claim: Entry) -> Bar | None:
+    """Return the bar that shows the deviation of a claim divided by its tolerance.
+
+    Returns None for a kind of claim that has no bar.
     """
     if claim.kind not in ("exact", "approximate") or claim.deviation is None or not claim.tolerance:
         return None
     ratio = claim.deviation / claim.tolerance
-    return f"{rounded(ratio, 2)} × tolerance", round(100.0 * min(ratio, FULL_BAR) / FULL_BAR, 1)
+    length = 100.0 * min(ratio / FULL_BAR_RATIO, 1.0)
+    return Bar(f"{rounded(ratio, 2)} × tolerance", round(length, 1))
 
 
 def figure_title(name: str) -> str:

@@ -7,72 +7,70 @@ With a third argument it also writes the page of old beside new, and its numbers
 
 import json
 import sys
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
 
-import numpy as np
 import pandas as pd
-
-from slippulse.data.files import UnreadableFile
-from slippulse.data.tables import load_table
 
 from ..records.job_records import RecordedFiles
 from ..records.provenance import changes
-from .joined_runs import (
-    LATTICE_COLUMNS,
-    RUN_COLUMNS,
-    JoinedRuns,
-    describe_pair,
-    describe_run,
-    join_runs,
-    varying_parameters,
+from .compared_numbers import (
+    AGREES,
+    DIFFERS,
+    UNKNOWN,
+    compare_numbers,
+    compared_columns,
+    differing_texts,
+    list_altered_numbers,
+    named_in_errors,
+    read_runs,
+    with_uncertainties,
 )
+from .joined_runs import describe_run, join_runs, varying_parameters
 
-TEXT_COLUMNS = ("boundary", "release", "quantity")
-# Relative difference that is always allowed, since tables have nine digits.
-TABLE_PRECISION = 1e-8
-# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
-# number or to 1, whichever is larger.
-EQUAL_LATTICE_TOLERANCE = 1e-6
 MAX_SHOWN_LINES = 10
-Tables: TypeAlias = Sequence[pd.DataFrame]
-# Outcomes of comparing a number that is in both folders.
-AGREES, DIFFERS, UNKNOWN, ALTERED = "agrees", "differs", "no uncertainty", "altered run"
-# Lines about a difference between two files of one name.
-DIFFERENCE_LINES = {
+# The line about a difference between the two files of each name.
+CHANGE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
 }
 
 
+@dataclass(frozen=True)
+class TableRuns:
+    """Runs of one table: how many are in both folders, and descriptions of the others."""
+
+    table: str
+    same_count: int
+    altered_count: int
+    altered_parameters: list[str]
+    only_new: list[str]
+    only_old: list[str]
+
+
 @dataclass
 class Comparison:
-    """Joined numbers, and lines about differing numbers and about what cannot be compared.
+    """Result of comparing a new and an old folder of results.
 
-    ``numbers`` has one row per number that is in both folders, and ``runs`` one row per table.
-    ``changes`` has the differences of the configuration and of the verdicts by the file's name.
-    ``older`` has by this name the folders in which the file was not made again after a change of
-    other results, so that it does not describe them.
+    ``numbers`` has one row for each number that is in both folders, and ``runs`` one entry for each
+    table. ``changes`` has the changed values of the configuration and the changed verdicts, by the
+    name of the file. ``older`` has by this name the folders in which the file is older than other
+    results, so that it does not describe them. ``disagreements`` has lines about results of the
+    same run that differ, and ``other_differences`` lines about everything that is altered or in one
+    folder only.
     """
 
-    apart: list[str] = field(default_factory=list)
-    other: list[str] = field(default_factory=list)
     numbers: pd.DataFrame = field(default_factory=pd.DataFrame)
-    runs: list[dict[str, Any]] = field(default_factory=list)
+    runs: list[TableRuns] = field(default_factory=list)
     changes: dict[str, list[dict]] = field(default_factory=dict)
     older: dict[str, list[Path]] = field(default_factory=dict)
+    disagreements: list[str] = field(default_factory=list)
+    other_differences: list[str] = field(default_factory=list)
 
-    def count(self, *outcomes: str) -> int:
-        """Return the number of numbers with one of these outcomes."""
-        return int(self.numbers["outcome"].isin(outcomes).sum()) if len(self.numbers) else 0
-
-    @property
-    def compared(self) -> int:
-        """Number of numbers of the same runs."""
-        return self.count(AGREES, DIFFERS, UNKNOWN)
+    def count(self, outcome: str) -> int:
+        """Return how many numbers have an outcome."""
+        return int((self.numbers["outcome"] == outcome).sum()) if len(self.numbers) else 0
 
     @property
     def agree(self) -> int:
@@ -84,237 +82,186 @@ class Comparison:
         """Number of numbers that differ between lattices and have no uncertainty."""
         return self.count(UNKNOWN)
 
+    @property
+    def compared(self) -> int:
+        """Number of numbers of runs that are the same in both folders."""
+        return self.agree + self.unknown + self.count(DIFFERS)
+
     def older_files(self, name: str) -> str:
-        """List the paths of a file of this name that is older than other results."""
+        """Return the paths of a file of this name that is older than other results, as text."""
         return " and ".join(str(folder / name) for folder in self.older[name])
 
     def summary(self) -> str:
-        """Say in one sentence how many numbers agree."""
-        agree = (
-            f"{self.agree} of {self.compared} numbers agree within the sum of both uncertainties"
-        )
-        return f"{agree}; {self.unknown} differ and have no uncertainty"
+        """Return a sentence on how many numbers agree."""
+        agreement = f"{self.agree} of {self.compared} numbers agree"
+        unknown = f"{self.unknown} differ and have no uncertainty"
+        return f"{agreement} within the sum of both uncertainties; {unknown}"
 
 
-def compare(here: Path, other: Path) -> Comparison:
-    """Compare measured tables, configurations and verdicts; ValueError for a broken folder."""
-    result, trees = Comparison(), (here, other)
-    names = []
-    for tree in trees:
-        names.append({path.name for path in (tree / "measurements").glob("*.csv")})
-        if not names[-1]:
-            raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
-    result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    older = {tree: RecordedFiles(tree).older_than_inputs() for tree in trees}
-    for name, line in DIFFERENCE_LINES.items():
-        contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
-        result.older[name] = [tree for tree in trees if str(tree / name) in older[tree]]
-        if result.older[name]:
-            newer = f"other results are newer than {result.older_files(name)}"
-            result.other.append(f"{name}: not compared, since {newer}")
-        elif len(contents) < 2:
-            result.other.append(f"{name}: missing in one tree; not compared")
-        else:
-            result.changes[name] = changes(contents[1], contents[0])
-            result.other += [line.format(**change) for change in result.changes[name]]
-    numbers = [_compare_tables(result, trees, name) for name in sorted(names[0] & names[1])]
-    result.numbers = pd.concat(numbers, ignore_index=True) if numbers else pd.DataFrame()
+def compare(new: Path, old: Path) -> Comparison:
+    """Compare the measured tables, configurations and verdicts of two folders of results.
+
+    Raises ValueError if a folder is not complete or a file cannot be read.
+    """
+    result = Comparison()
+    new_tables, old_tables = _table_names(new), _table_names(old)
+    for name in sorted(new_tables ^ old_tables):
+        result.other_differences.append(f"{name}: in one folder only")
+    # In each folder, the files that were not made again after a change of what they depend on.
+    older_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
+    for name in CHANGE_LINES:
+        result.older[name] = [
+            folder for folder, files in older_files.items() if str(folder / name) in files
+        ]
+        _compare_contents(result, new, old, name)
+    numbers = [_compare_tables(result, new, old, name) for name in sorted(new_tables & old_tables)]
+    if numbers:
+        result.numbers = pd.concat(numbers, ignore_index=True)
     return result
 
 
-def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> pd.DataFrame:
-    """Compare one table of measured numbers, with the grid studies of both folders."""
-    tables = [_table(tree / "measurements" / name, RUN_COLUMNS) for tree in trees]
-    joined, varying = join_runs(*tables), varying_parameters(*tables)
-    _list_runs(result, name, tables, joined, varying)
-    for column in sorted({*tables[0]} ^ {*tables[1]}):
-        result.other.append(f"{name}: columns in one tree only: {column}")
-    studies = [tree / "uncertainties" / name for tree in trees]
-    if len({path.exists() for path in studies}) > 1:
-        result.other.append(f"{name}: uncertainties in one tree only")
-    common = tables[0].columns.intersection(tables[1].columns, sort=False)
-    common = common.difference(RUN_COLUMNS, sort=False)
-    plain = ["number", "bool"]
-    with_text = {column for table in tables for column in table.select_dtypes(exclude=plain)}
-    numbers = common.difference([*with_text, *LATTICE_COLUMNS], sort=False)
-    sides = []
-    for table, path in zip(tables, studies, strict=True):
-        values = table[numbers].astype(float)
-        sides.append(_Side(table, values, _uncertainties(path, values)))
-    same, altered = (
-        [side.take(pairs[:, column]) for column, side in enumerate(sides)]
-        for pairs in (joined.same, joined.altered)
-    )
-    _compare_texts(result, name, same, [column for column in common if column in with_text])
-    compared = [_compare_numbers(same, varying), _compare_numbers(altered, varying, altered=True)]
-    long = pd.concat([rows for rows in compared if len(rows)] or compared[:1], ignore_index=True)
-    long.insert(0, "table", Path(name).stem)
-    for row in long[long["outcome"] == DIFFERS].itertuples():
-        pair = f"{row.new:.6g} against {row.old:.6g}"
-        limit = f"allowed: a difference of {row.allowed:.2g}"
-        result.apart.append(f"{name}: point {row.point}, {row.quantity}: {pair}; {limit}")
-    return long
+def _table_names(results: Path) -> set[str]:
+    """Return the file names of the tables of measured numbers in a folder of results."""
+    names = {path.name for path in (results / "measurements").glob("*.csv")}
+    if not names:
+        allowed = "a folder of results that are finished"
+        raise ValueError(f"{results}/measurements: no tables; allowed: {allowed}")
+    return names
 
 
-def _list_runs(
-    result: Comparison, name: str, tables: Tables, joined: JoinedRuns, varying: list[str]
-) -> None:
-    """Record in the result how many runs were joined, and which runs are in one folder only.
-
-    name : file name of the table
-    tables : the table of the new folder and the table of the old folder
-    varying : parameters that describe a run
-    """
-    unmatched: dict[str, list[str]] = {}
-    for side, tree, table, rows in (
-        ("new", "this", tables[0], joined.only_new),
-        ("old", "the other", tables[1], joined.only_old),
-    ):
-        unmatched[side] = [describe_run(table.loc[row].to_dict(), varying) for row in rows]
-        result.other += [f"{name}: only in {tree} tree: {run}" for run in unmatched[side]]
-    counts = {"same": len(joined.same), "altered": len(joined.altered)}
-    result.runs.append({"table": Path(name).stem, **counts, "keys": joined.keys, **unmatched})
-    altered = counts["altered"]
-    if altered:
-        pairs = "1 pair of runs differs" if altered == 1 else f"{altered} pairs of runs differ"
-        result.other.append(f"{name}: {pairs} in {', '.join(joined.keys)}")
+def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
+    """Record the values that differ between the configurations or between the verdicts."""
+    if result.older[name]:
+        newer = f"other results are newer than {result.older_files(name)}"
+        result.other_differences.append(f"{name}: not compared, since {newer}")
+        return
+    new_path, old_path = new / name, old / name
+    if not (new_path.exists() and old_path.exists()):
+        result.other_differences.append(f"{name}: missing in one folder; not compared")
+        return
+    result.changes[name] = changes(shipped=_read_content(old_path), config=_read_content(new_path))
+    line = CHANGE_LINES[name]
+    result.other_differences += [line.format(**change) for change in result.changes[name]]
 
 
-@dataclass
-class _Side:
-    """Runs of one folder: their parameters, numbers, and uncertainties of these."""
-
-    table: pd.DataFrame
-    values: pd.DataFrame
-    errors: pd.DataFrame
-
-    def take(self, rows: np.ndarray) -> "_Side":
-        """Return these rows, in this order."""
-        return _Side(self.table.loc[rows], self.values.loc[rows], self.errors.loc[rows])
-
-
-def _same_lattice(new: _Side, old: _Side) -> np.ndarray:
-    """Return whether the two runs of each pair have the same lattice, as a column."""
-    lattice = new.table.columns.intersection(old.table.columns).intersection(LATTICE_COLUMNS)
-    return (new.table[lattice].to_numpy() == old.table[lattice].to_numpy()).all(axis=1)[:, None]
-
-
-def _compare_texts(result: Comparison, name: str, sides: Sequence[_Side], texts: list[str]) -> None:
-    """Add a line for each text that differs between runs with the same lattice."""
-    ours, theirs = (side.table[texts].astype(object).fillna("") for side in sides)
-    differs = (ours.to_numpy() != theirs.to_numpy()) & _same_lattice(*sides)
-    for row, column in np.argwhere(differs):
-        pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
-        result.apart.append(f"{name}: point {ours.index[row]}, {texts[column]}: {pair}")
-
-
-def _compare_numbers(
-    sides: Sequence[_Side], varying: list[str], altered: bool = False
-) -> pd.DataFrame:
-    """Return one row per number; it is unknown where lattices differ and no study was made."""
-    new, old = (side.values.to_numpy() for side in sides)
-    new_error, old_error = (side.errors.to_numpy() for side in sides)
-    no_study, size = np.isnan(new_error) & np.isnan(old_error), np.abs(new)
-    same_lattice = _same_lattice(*sides)
-    allowed = np.nan_to_num(new_error) + np.nan_to_num(old_error) + TABLE_PRECISION * size
-    allowed = np.where(
-        no_study & same_lattice, EQUAL_LATTICE_TOLERANCE * np.maximum(size, 1.0), allowed
-    )
-    known = ~np.isnan([new, old])
-    compared = known.all(axis=0) | (known.any(axis=0) & same_lattice & (not altered))
-    differs = ~(np.abs(new - old) <= allowed)
-    outcome = np.where(differs, np.where(no_study & ~same_lattice, UNKNOWN, DIFFERS), AGREES)
-    records = [side.table.to_dict("records") for side in sides]
-    runs = [describe_pair(ours, theirs, varying) for ours, theirs in zip(*records, strict=True)]
-    row, column = np.nonzero(compared)
-    columns = {
-        "point": sides[0].table.index.to_numpy()[row],
-        "run": np.array(runs, object)[row],
-        "quantity": sides[0].values.columns.to_numpy()[column],
-        "old": old[row, column],
-        "old_uncertainty": old_error[row, column],
-        "new": new[row, column],
-        "new_uncertainty": new_error[row, column],
-        "allowed": allowed[row, column],
-        "outcome": ALTERED if altered else outcome[row, column],
-    }
-    return pd.DataFrame(columns)
-
-
-def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
-    """Read a table; ValueError if a needed column is missing or a column of numbers has text."""
-    with _readable(path):
-        table = load_table(path)
-        for column in needed:
-            if column not in table:
-                raise ValueError(f"no column {column}")
-            if table[column].dtype.kind not in "biuf" and column not in TEXT_COLUMNS:
-                raise ValueError(f"text in column {column}")
-    return table
-
-
-def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
-    """Return the uncertainty of every number; NaN without a study of exactly this number."""
-    if not path.exists():
-        return values * np.nan
-    table = _table(path, ["point", "quantity", "value", "uncertainty"])
-    parts = ["value", "uncertainty"]
-    with _readable(path):
-        study = table.pivot(index="point", columns="quantity", values=parts).astype(float)
-        studied, uncertainty = (study[part].reindex_like(values) for part in parts)
-    return uncertainty.mask((values - studied).abs() > TABLE_PRECISION * values.abs())
-
-
-def _content(path: Path) -> dict:
-    """Return what a file has to compare: the configuration, or the verdicts by claim.
+def _read_content(path: Path) -> dict:
+    """Return what is compared of a file: the configuration, or the verdict of each claim.
 
     The preset is left out, because the uncertainties cover its lattices.
     """
-    with _readable(path):
+    with named_in_errors(path):
         content = json.loads(path.read_text(encoding="utf-8"))
-        if path.stem == "provenance":
+        if path.name == "provenance.json":
             return dict(content["config"]) | {"preset": None}
         return {str(claim["id"]): claim["verdict"] for claim in content}
 
 
-@contextmanager
-def _readable(path: Path) -> Iterator[None]:
-    """Turn an error inside the block into one that names the unreadable file."""
-    try:
-        yield
-    except UnreadableFile:
-        raise
-    except LookupError as error:
-        raise UnreadableFile(path, f"no {error}") from None
-    except (OSError, ValueError, TypeError, RecursionError) as error:
-        raise UnreadableFile(path, getattr(error, "strerror", None) or error) from None
+def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.DataFrame:
+    """Compare one table of both folders, record what differs, and return its compared numbers."""
+    new_table = read_runs(new / "measurements" / name)
+    old_table = read_runs(old / "measurements" / name)
+    parameters = varying_parameters(new_table, old_table)
+    joined = join_runs(new_table, old_table)
+    runs = TableRuns(
+        table=Path(name).stem,
+        same_count=len(joined.same_runs),
+        altered_count=len(joined.altered_runs),
+        altered_parameters=joined.altered_parameters,
+        only_new=_describe_rows(new_table, joined.only_new, parameters),
+        only_old=_describe_rows(old_table, joined.only_old, parameters),
+    )
+    result.runs.append(runs)
+    differences = _differences_of_runs(runs)
+    for column in sorted(new_table.columns.symmetric_difference(old_table.columns)):
+        differences.append(f"columns in one folder only: {column}")
+    new_study, old_study = new / "uncertainties" / name, old / "uncertainties" / name
+    if new_study.exists() != old_study.exists():
+        differences.append("uncertainties in one folder only")
+    result.other_differences += [f"{name}: {difference}" for difference in differences]
+
+    columns = compared_columns(new_table, old_table)
+    new_runs = with_uncertainties(new_table, columns.numbers, new_study)
+    old_runs = with_uncertainties(old_table, columns.numbers, old_study)
+    new_same = new_runs.select(joined.same_runs["new"])
+    old_same = old_runs.select(joined.same_runs["old"])
+    compared = compare_numbers(new_same, old_same, parameters)
+    altered = list_altered_numbers(
+        new_runs.select(joined.altered_runs["new"]),
+        old_runs.select(joined.altered_runs["old"]),
+        parameters,
+    )
+    disagreements = [*differing_texts(new_same, old_same, columns.texts)]
+    disagreements += _differing_numbers(compared)
+    result.disagreements += [f"{name}: {disagreement}" for disagreement in disagreements]
+    numbers = pd.concat([compared, altered])
+    return numbers.assign(table=runs.table)[["table", *numbers.columns]]
+
+
+def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str]) -> list[str]:
+    """Return a description of each of some runs."""
+    return [describe_run(run, parameters) for run in table.loc[rows].to_dict("records")]
+
+
+def _differences_of_runs(runs: TableRuns) -> list[str]:
+    """Return lines on the runs that are in one folder only, and on altered runs."""
+    lines = [f"only in this folder: {run}" for run in runs.only_new]
+    lines += [f"only in the other folder: {run}" for run in runs.only_old]
+    if runs.altered_count:
+        one_pair = runs.altered_count == 1
+        pairs = (
+            "1 pair of runs differs" if one_pair else f"{runs.altered_count} pairs of runs differ"
+        )
+        lines.append(f"{pairs} in {', '.join(runs.altered_parameters)}")
+    return lines
+
+
+def _differing_numbers(numbers: pd.DataFrame) -> list[str]:
+    """Return a line for each number that differs by more than its uncertainty allows."""
+    lines = []
+    for row in numbers[numbers["outcome"] == DIFFERS].itertuples():
+        pair = f"{row.new:.6g} against {row.old:.6g}"
+        allowed = f"allowed: a difference of {row.allowed:.2g}"
+        lines.append(f"point {row.point}, {row.quantity}: {pair}; {allowed}")
+    return lines
+
+
+def _print_lines(title: str, lines: Sequence[str]) -> None:
+    """Print a title and the first lines, or nothing if there are no lines."""
+    if not lines:
+        return
+    print(f"{title}:")
+    for line in lines[:MAX_SHOWN_LINES]:
+        print(f"  {line}")
+    if len(lines) > MAX_SHOWN_LINES:
+        print(f"  ... and {len(lines) - MAX_SHOWN_LINES} more")
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Compare two folders, and write the page if its path is given; returns the exit code."""
-    here, other, *pages = map(Path, arguments)
+    """Compare two folders, write the page if its path is given, and return the exit code.
+
+    With a page the exit code is 0. Otherwise it is 0 only if everything is in both folders and
+    agrees.
+    """
+    paths = [Path(argument) for argument in arguments]
+    new, old = paths[:2]
+    page = paths[2] if len(paths) > 2 else None
     try:
-        result = compare(here, other)
-        if pages:
+        result = compare(new, old)
+        if page is not None:
             from .compare_page import write_comparison
 
-            write_comparison(result, here, other, pages[0])
+            write_comparison(result, new, old, page)
     except ValueError as error:
         print(error)
         return 1
     print(result.summary())
-    for title, lines in (("Apart", result.apart), ("Not in both, or altered", result.other)):
-        if lines:
-            rest = (
-                [f"... and {len(lines) - MAX_SHOWN_LINES} more"]
-                if len(lines) > MAX_SHOWN_LINES
-                else []
-            )
-            print("\n  ".join([f"{title}:", *lines[:MAX_SHOWN_LINES], *rest]))
-    if pages:
-        print(f"Open {pages[0]}")
+    _print_lines("Results that disagree", result.disagreements)
+    _print_lines("Other differences", result.other_differences)
+    if page is not None:
+        print(f"Open {page}")
         return 0
-    return 0 if result.compared and not (result.apart or result.other) else 1
+    has_differences = bool(result.disagreements or result.other_differences)
+    return 0 if result.compared and not has_differences else 1
 
 
 if __name__ == "__main__":

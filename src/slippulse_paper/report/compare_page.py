@@ -1,9 +1,13 @@
-"""results/compare.html: old beside new, with every figure inside; its numbers are in a CSV."""
+"""Write results/compare.html: the old results beside the new ones, with every figure inside.
+
+All compared numbers are in a CSV file beside the page.
+"""
 
 import base64
 import io
-from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from PIL import Image
@@ -13,13 +17,54 @@ from slippulse.data.tables import save_table
 
 from ..claims.claim_texts import read_text
 from .claims_page import SIGNS, figure_title
-from .compare import ALTERED, DIFFERS, UNKNOWN, Comparison
+from .compare import Comparison, TableRuns
+from .compared_numbers import ALTERED, DIFFERS, UNKNOWN
 from .html import markup_of, page
 
-# Numbers of one table that the page shows; all are in the CSV.
+# The page shows this many numbers of one table. All of them are in the CSV file.
 SHOWN_NUMBERS = 40
-# Each figure is on the page twice, so that it is drawn with this many pixels at most.
-PICTURE_WIDTH = 1000
+# Largest width of a picture in pixels. The page contains each figure twice.
+MAX_PICTURE_WIDTH = 1000
+PICTURE_COLOURS = 128
+
+
+@dataclass(frozen=True)
+class ChangedVerdict:
+    """A claim whose verdict changed, with its entries in both claims.json (None if missing)."""
+
+    id: str
+    statement: str
+    old: dict[str, Any] | None
+    new: dict[str, Any] | None
+
+
+@dataclass(frozen=True)
+class ShownTable:
+    """Rows of the page for one table: its runs, its counts by outcome, and some differences."""
+
+    runs: TableRuns
+    counts: dict[str, int]
+    differing_count: int
+    rows: pd.DataFrame
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture as a data URI, with its size in pixels."""
+
+    uri: str
+    width: int
+    height: int
+
+
+@dataclass(frozen=True)
+class FigurePair:
+    """A figure of both folders (None if missing), and whether its drawn numbers are equal."""
+
+    name: str
+    is_equal: bool
+    old: Picture | None
+    new: Picture | None
 
 
 def write_comparison(result: Comparison, new: Path, old: Path, path: Path) -> None:
@@ -32,16 +77,9 @@ def write_comparison(result: Comparison, new: Path, old: Path, path: Path) -> No
 
 
 def comparison_page(result: Comparison, new: Path, old: Path, numbers: str) -> str:
-    """Return the page, whose link to all numbers leads to the file of that name."""
+    """Return the page as HTML. ``numbers`` is the name of the CSV file that it links to."""
     verdicts = changed_verdicts(result, new, old)
-    tables = []
-    for runs in result.runs:
-        rows = result.numbers[result.numbers["table"] == runs["table"]]
-        counts = rows["outcome"].value_counts()
-        differing = differing_numbers(rows)
-        shown = {"rows": differing[:SHOWN_NUMBERS], "differing": len(differing)}
-        tables.append(runs | {"counts": counts} | shown)
-    figures = [figure_pair(name, new, old) for name in figure_names(new, old)]
+    pairs = [figure_pair(name, new, old) for name in figure_names(new, old)]
     return page(
         "compare.html",
         old=old,
@@ -49,74 +87,100 @@ def comparison_page(result: Comparison, new: Path, old: Path, numbers: str) -> s
         result=result,
         settings=result.changes.get("provenance.json", []),
         verdicts=verdicts,
-        html=markup_of(verdict["statement"] for verdict in verdicts),
-        tables=tables,
-        # What changed comes first.
-        figures=sorted(figures, key=lambda figure: figure["equal"]),
+        html=markup_of(verdict.statement for verdict in verdicts),
+        tables=[shown_table(runs, result.numbers) for runs in result.runs],
+        # Figures whose numbers differ come first.
+        figures=sorted(pairs, key=lambda pair: pair.is_equal),
         numbers=numbers,
         signs=SIGNS,
         figure_title=figure_title,
     )
 
 
-def changed_verdicts(result: Comparison, new: Path, old: Path) -> list[dict]:
-    """Return the claims whose verdicts differ, with both verdicts and measured numbers."""
-    changed = result.changes.get("claims.json", [])
-    claims = [
-        {claim["id"]: claim for claim in read_text(tree / "claims.json")} if changed else {}
-        for tree in (new, old)
-    ]
-    found = []
-    for change in changed:
-        ours, theirs = (tree.get(change["key"], {}) for tree in claims)
-        statement = (ours or theirs).get("statement", change["key"])
-        found.append(change | {"statement": statement, "new": ours, "old": theirs})
-    return found
+def changed_verdicts(result: Comparison, new: Path, old: Path) -> list[ChangedVerdict]:
+    """Return the claims whose verdicts differ, with everything that both folders record of them."""
+    changes = result.changes.get("claims.json", [])
+    if not changes:
+        return []
+    new_claims = {claim["id"]: claim for claim in read_text(new / "claims.json")}
+    old_claims = {claim["id"]: claim for claim in read_text(old / "claims.json")}
+    changed = []
+    for change in changes:
+        id = change["key"]
+        new_claim, old_claim = new_claims.get(id), old_claims.get(id)
+        # Only one of the two folders may have the claim.
+        claim = new_claim or old_claim or {}
+        statement = claim.get("statement", id)
+        changed.append(ChangedVerdict(id, statement, old=old_claim, new=new_claim))
+    return changed
 
 
-def differing_numbers(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers that differ, first those with an uncertainty that differ most."""
-    rows = rows[rows["outcome"].isin([DIFFERS, UNKNOWN, ALTERED]) & (rows["new"] != rows["old"])]
-    studied = rows[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
-    excess = (rows["new"] - rows["old"]).abs() / rows["allowed"].clip(lower=1e-300)
-    # An undefined difference, of a number and a missing one, is the largest.
-    ranks = pd.DataFrame({"studied": studied, "excess": excess.fillna(float("inf"))})
-    order = ranks.sort_values(["studied", "excess"], ascending=False, kind="stable").index
-    return rows.loc[order]
+def shown_table(runs: TableRuns, numbers: pd.DataFrame) -> ShownTable:
+    """Return what the page shows of one table. ``numbers`` are the compared ones of all tables."""
+    table_numbers = numbers[numbers["table"] == runs.table]
+    differing = differing_numbers(table_numbers)
+    counts = table_numbers["outcome"].value_counts().to_dict()
+    return ShownTable(runs, counts, len(differing), rows=differing[:SHOWN_NUMBERS])
 
 
-def figure_names(*trees: Path) -> list[str]:
-    """Return the names of the figures of all folders, in order."""
-    return sorted({path.stem for tree in trees for path in (tree / "figures").glob("*.png")})
+def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
+    """Return the numbers that differ, the largest differences first.
+
+    Differences are relative to the allowed one. Numbers without an uncertainty come last.
+    """
+    is_shown = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
+    differing = numbers[is_shown & (numbers["new"] != numbers["old"])]
+    has_study = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
+    difference = (differing["new"] - differing["old"]).abs()
+    excess = difference / differing["allowed"].clip(lower=1e-300)
+    # The difference of a number and a missing one is NaN. It counts as the largest.
+    ranks = pd.DataFrame({"has_study": has_study, "excess": excess.fillna(float("inf"))})
+    ranks = ranks.sort_values(["has_study", "excess"], ascending=False, kind="stable")
+    return differing.loc[ranks.index]
 
 
-def figure_pair(name: str, new: Path, old: Path) -> dict:
+def figure_names(new: Path, old: Path) -> list[str]:
+    """Return the names of the figures in either folder, in order."""
+    paths = [*new.glob("figures/*.png"), *old.glob("figures/*.png")]
+    return sorted({path.stem for path in paths})
+
+
+def figure_pair(name: str, new: Path, old: Path) -> FigurePair:
     """Return both pictures of a figure, and whether the numbers drawn are equal."""
-    pictures = {}
-    for side, tree in (("old", old), ("new", new)):
-        path = tree / f"figures/{name}.png"
-        pictures[side] = embedded_picture(path) if path.exists() else None
-    drawn = [_drawn_numbers(tree / f"figures/{name}.csv") for tree in (new, old)]
-    return {"name": name, "equal": drawn[0] is not None and drawn[0] == drawn[1], **pictures}
+    new_numbers, old_numbers = _drawn_numbers(name, new), _drawn_numbers(name, old)
+    return FigurePair(
+        name,
+        is_equal=new_numbers is not None and new_numbers == old_numbers,
+        old=embedded_picture(old / f"figures/{name}.png"),
+        new=embedded_picture(new / f"figures/{name}.png"),
+    )
 
 
-def embedded_picture(path: Path) -> dict:
-    """Return a picture as a data URI with its size; ValueError names a file that is no picture."""
+def embedded_picture(path: Path) -> Picture | None:
+    """Return a reduced picture, or None if there is no such file.
+
+    Raises ValueError with the path if the file is not a picture.
+    """
+    if not path.exists():
+        return None
     try:
         with Image.open(path) as picture:
             picture.load()
-            # Few colours stay few, so that a diagram does not grow.
-            reduced = picture if picture.width <= PICTURE_WIDTH else picture.convert("RGB")
-            reduced.thumbnail((PICTURE_WIDTH, 10 * PICTURE_WIDTH))
-            colours = reduced.convert("RGB").quantize(128, dither=Image.Dither.NONE)
+            # A picture with a palette stays small only if it is not converted to full colour.
+            reduced = picture if picture.width <= MAX_PICTURE_WIDTH else picture.convert("RGB")
+            reduced.thumbnail((MAX_PICTURE_WIDTH, 10 * MAX_PICTURE_WIDTH))
+            with_palette = reduced.convert("RGB").quantize(
+                PICTURE_COLOURS, dither=Image.Dither.NONE
+            )
             content = io.BytesIO()
-            colours.save(content, "PNG", optimize=True)
+            with_palette.save(content, "PNG", optimize=True)
     except OSError as error:
         raise UnreadableFile(path, error) from None
-    uri = f"data:image/png;base64,{base64.b64encode(content.getvalue()).decode()}"
-    return {"uri": uri, "width": reduced.width, "height": reduced.height}
+    encoded = base64.b64encode(content.getvalue()).decode()
+    return Picture(f"data:image/png;base64,{encoded}", reduced.width, reduced.height)
 
 
-def _drawn_numbers(path: Path) -> Iterable[str] | None:
-    """Return the lines of a figure's CSV; None if there is no such file."""
+def _drawn_numbers(name: str, results: Path) -> list[str] | None:
+    """Return the lines of a figure's CSV file, or None if there is no such file."""
+    path = results / f"figures/{name}.csv"
     return path.read_text(encoding="utf-8").splitlines() if path.exists() else None

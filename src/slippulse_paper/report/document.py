@@ -25,9 +25,11 @@ from .html import TEMPLATES, page
 FONT_FOLDER = Path(matplotlib.get_data_path()) / "fonts/ttf"
 # The creation date of every PDF. With a fixed date, equal inputs give equal bytes.
 TIMESTAMP = 0
-HTML_FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"([^>]*>)')
+HTML_FIGURE = re.compile(
+    r'(?P<start><figure id="(?P<name>\w+)">\s*)<img\s+src="(?P<path>[^"]+)"(?P<attributes>[^>]*>)'
+)
 # Name and alternative text of a figure in Markdown. Pandoc does not pass the latter on to Typst.
-ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
+ALTERNATIVE_TEXT = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def write_html(text: str, manuscript: Path, output: str | Path) -> None:
@@ -38,42 +40,55 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
         options = ["--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
         html = _pandoc(text, manuscript, template, "html5", options)
     head, opening, body = html.partition('<main id="content">')
-    # The title is the only heading of level 1.
-    body = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", body)
-    # Formulas, code and tables scroll sideways on a phone, so the keyboard must reach them.
-    body = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', body)
+    body = _make_scrollable(_lower_headings(body))
+    write_text(head + opening + HTML_FIGURE.sub(_embedded_figure, body), output)
+
+
+def _lower_headings(html: str) -> str:
+    """Return HTML with each heading one level lower, since only the title has level 1."""
+    return re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", html)
+
+
+def _make_scrollable(html: str) -> str:
+    """Return HTML in which wide formulas, code and tables scroll sideways, by the keyboard too."""
+    html = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', html)
     numbers = count(1)
-    region = '<div class="scroll" tabindex="0" role="region" aria-label="Table {}"><table'
-    body = re.sub("<table", lambda _: region.format(next(numbers)), body)
-    body = body.replace("</table>", "</table></div>")
-    # A click on a figure opens its picture, at its own size.
-    write_text(head + opening + HTML_FIGURE.sub(_enlarging, body), output)
+
+    def open_region(table: re.Match) -> str:
+        label = f"Table {next(numbers)}"
+        return f'<div class="scroll" tabindex="0" role="region" aria-label="{label}">{table[0]}'
+
+    html = re.sub("<table", open_region, html)
+    return html.replace("</table>", "</table></div>")
 
 
-def _enlarging(figure: re.Match) -> str:
-    """Return the figure with its picture embedded, its size given, and a link to the file."""
-    start, name, path, rest = figure.groups()
-    content = b64encode(Path(path).read_bytes()).decode()
-    with Image.open(path) as picture:
-        size = 'width="{}" height="{}"'.format(*picture.size)
-    image = f'<img src="data:image/png;base64,{content}" {size}'
-    return f'{start}<a href="../figures/{name}.png">{image}{rest}</a>'
+def _embedded_figure(figure: re.Match) -> str:
+    """Return a figure of `HTML_FIGURE` with its picture embedded and its size given.
+
+    A click on it opens the picture file at its own size.
+    """
+    content = b64encode(Path(figure["path"]).read_bytes()).decode()
+    with Image.open(figure["path"]) as picture:
+        size = f'width="{picture.width}" height="{picture.height}"'
+    image = f'<img src="data:image/png;base64,{content}" {size}{figure["attributes"]}'
+    return f'{figure["start"]}<a href="../figures/{figure["name"]}.png">{image}</a>'
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write Markdown as a PDF with vector figures; a ValueError has the message of Typst."""
+    """Write Markdown as a PDF with vector figures. Raises ValueError with the message of Typst."""
     # In a PDF, a link to another document leads to the PDF of that document.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     options = ["--default-image-extension=pdf"]
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
-    alternatives = dict(ALTERNATIVE.findall(text))
+    alternatives = dict(ALTERNATIVE_TEXT.findall(text))
 
-    def with_alternative(image: re.Match) -> str:
+    def with_alternative_text(image: re.Match) -> str:
+        """Return the beginning of a call of image() in Typst, with the alternative text."""
         alternative = alternatives[Path(image[1]).stem]
         # JSON and Typst write a string in the same way.
         return f"{image[0]}, alt: {json.dumps(alternative, ensure_ascii=False)}"
 
-    source = re.sub(r'image\("([^"]+)"', with_alternative, source)
+    source = re.sub(r'image\("([^"]+)"', with_alternative_text, source)
     compiled = partial(
         typst.compile, ignore_system_fonts=True, font_paths=[FONT_FOLDER], timestamp=TIMESTAMP
     )

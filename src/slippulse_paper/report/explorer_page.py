@@ -6,7 +6,7 @@ solution. Its scripts compute everything else.
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import chain
 
 import matplotlib
@@ -19,6 +19,7 @@ from slippulse.model.recorded_law import read_recorded_law
 
 from .html import page
 
+SETTING_COLUMNS = ("left", "gamma", "width", "beta", "damping_ratio", "release")
 # Measured numbers of a run that the page shows if they are finite.
 MEASURED_COLUMNS = ("front_speed_right", "transition_time", "transition_length", "pulse_slip")
 # Significant digits of measured numbers, and shades of the colour map.
@@ -36,8 +37,13 @@ def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: 
     shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, SHADE_COUNT))
     largest = float(law["damping_ratio"].max())
     runs = chain.from_iterable(simulated_runs(table, largest) for table in measured)
-    data = {"law": front_law(law), "largest_ratio": largest, "runs": [*runs]}
-    data["colours"] = np.rint(255.0 * shades[:, :3]).astype(int).tolist()
+    red_green_blue = shades[:, :3]
+    data = {
+        "law": front_law(law),
+        "largest_ratio": largest,
+        "runs": [*runs],
+        "colours": np.rint(255.0 * red_green_blue).astype(int).tolist(),
+    }
     # A "<" in the data could end the script element that contains them.
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     return page("explorer.html", data=Markup(text), largest_ratio=largest)
@@ -46,42 +52,55 @@ def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: 
 def front_law(law: pd.DataFrame) -> dict:
     """Return the logit of the pre-stress for each release rule, as rows of a grid.
 
-    Rows belong to damping ratios and columns to ln(v - 1), both evenly spaced in the variables
-    that the entries `ratio` and `excess` describe.
+    The rows of a grid belong to damping ratios b = scale sinh(i step), and its columns to
+    ln(v - 1) = first + j step. The entries `ratio` and `excess` have these constants.
     """
     # The browser does not compute this law itself, since that takes the Wiener-Hopf factor.
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
-    first, last = float(excesses[0]), float(excesses[-1])
-    scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)
-    out: dict = {"ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)}}
-    out["excess"] = {"first": first, "step": (last - first) / (len(excesses) - 1)}
+    last_ratio = float(ratios[-1])
+    first_excess, last_excess = float(excesses[0]), float(excesses[-1])
+    scale = float(law["damping_ratio"].max() / np.sinh(last_ratio))
+    grids: dict = {
+        "ratio": {"scale": round(scale, 6), "step": last_ratio / (len(ratios) - 1)},
+        "excess": {
+            "first": first_excess,
+            "step": (last_excess - first_excess) / (len(excesses) - 1),
+        },
+    }
     for release, rows in law.groupby("release", sort=False):
         grid = rows.pivot(index="damping_ratio", columns="excess_log", values="logit")
-        out[release] = grid.values.tolist()
-    return out
+        grids[release] = grid.values.tolist()
+    return grids
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
-    """Return the settings and `MEASURED_COLUMNS` of each run that the page can compute.
+    """Return `SETTING_COLUMNS` and `MEASURED_COLUMNS` of each run that the page can compute.
 
     These are runs with the displacement held, Coulomb friction, and a Gaussian on equal positive
-    levels. The settings are tau_0, gamma, W, beta, b and the release rule.
+    levels.
     """
-    names = ("left", "gamma", "width", "beta", "damping_ratio", "release")
-    kept = []
-    shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
-    for run in table[shown & (table["boundary"] == "displacement")].to_dict("records"):
-        if json.loads(run["steps_and_bumps"]).get("points"):
-            continue
-        plain = Prestress(run["left"], run["left"], run["width"])
-        if prestress_from(run) != plain or read_recorded_law(run)["law"] != "coulomb":
+    is_shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
+    is_shown &= table["boundary"] == "displacement"
+    rows = []
+    for run in table[is_shown].to_dict("records"):
+        if not _is_plain(run):
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
-        settings = [run[name] for name in names]
-        for number in (run.get(name, math.nan) for name in MEASURED_COLUMNS):
-            settings.append(
-                float(f"{number:.{MEASURED_DIGITS}g}") if math.isfinite(number) else None
-            )
-        kept.append(settings)
-    return kept
+        settings = [run[name] for name in SETTING_COLUMNS]
+        measured = [_rounded(run.get(name, math.nan)) for name in MEASURED_COLUMNS]
+        rows.append([*settings, *measured])
+    return rows
+
+
+def _is_plain(run: Mapping) -> bool:
+    """Return True if a run has Coulomb friction and a Gaussian on equal levels."""
+    if json.loads(run["steps_and_bumps"]).get("points"):
+        return False
+    plain = Prestress(run["left"], run["left"], run["width"])
+    return prestress_from(run) == plain and read_recorded_law(run)["law"] == "coulomb"
+
+
+def _rounded(number: float) -> float | None:
+    """Return a number with `MEASURED_DIGITS` significant digits, or None if it is not finite."""
+    return float(f"{number:.{MEASURED_DIGITS}g}") if math.isfinite(number) else None

@@ -31,23 +31,31 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     galleries : names of figures by heading
     scenes : title of each scene by name
     """
-    facts = _read_json(results / "provenance.json")
+    provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
-    config = facts["config"]
-    names = {"claim": ledger, "found": ledger.found, "config": config}
-    names["misprints"] = read_errata(texts["errata"])
-    filled = partial(fill, names=names | {"runs": partial(parameters, config)})
-    captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
+    config = provenance["config"]
+    names = {
+        "claim": ledger,
+        "found": ledger.found,
+        "config": config,
+        "misprints": read_errata(texts["errata"]),
+        "runs": partial(parameters, config),
+    }
+    filled = partial(fill, names=names)
+    captions = read_captions(texts["captions"], filled)
+    summary = read_text(texts["summary"])
     rows = statement_rows(summary, ledger, filled)
     shown = {key: filled(summary[key]) for key in ("question", "accuracy")}
     shown["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
     words = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
-    figures = {
-        # A user-defined sweep has the general caption, and its name as the title.
-        name: captions.get(name)
-        or captions["user_defined_sweep"]._replace(title=name.removeprefix("sweep_"))
-        for name in chain.from_iterable(galleries.values())
-    }
+    figures = {}
+    for name in chain.from_iterable(galleries.values()):
+        if name in captions:
+            figures[name] = captions[name]
+        else:
+            # A user-defined sweep has the general caption, and its name as the title.
+            title = name.removeprefix("sweep_")
+            figures[name] = captions["user_defined_sweep"]._replace(title=title)
     markdown = [*shown.values(), *chain.from_iterable(words)]
     for row in rows:
         markdown += [row.statement, row.number]
@@ -55,7 +63,7 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
         markdown += [caption.finding, caption.caption]
     return page(
         "index.html",
-        altered=facts["overlay"],
+        altered=provenance["overlay"],
         texts=shown,
         rows=rows,
         words=words,
@@ -64,7 +72,7 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
         galleries=galleries,
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
-        facts=facts,
+        facts=provenance,
         html=markup_of(markdown),
         summary=ledger.summary(),
         signs=SIGNS,

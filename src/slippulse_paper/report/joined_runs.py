@@ -1,12 +1,15 @@
-"""Runs of two tables, joined by their parameters."""
+"""Join the runs of two tables by their parameters.
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
+`compare` uses this to find, for each measured run of one results folder, the same run in another
+folder. The runs may have another order, another lattice, or one altered parameter.
+"""
 
-import numpy as np
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
 import pandas as pd
 
-# These columns make a run the same run in another tree, whatever its lattice.
+# Runs with equal values in these columns are the same run, even on different lattices.
 RUN_COLUMNS = [
     "boundary",
     "left",
@@ -17,85 +20,124 @@ RUN_COLUMNS = [
     "duration",
     "release",
 ]
-# Tables of today have these parameters too.
-FURTHER_COLUMNS = ["peak", "steps_and_bumps", "friction"]
-# A number without uncertainty depends on these as well. Among runs with equal parameters, those
-# with the same lattice belong together.
+# Parameters that tables of older versions do not have.
+NEWER_RUN_COLUMNS = ["peak", "steps_and_bumps", "friction"]
+# Numerical parameters. If a table has the same run on several lattices, runs with equal lattices
+# are joined.
 LATTICE_COLUMNS = ["scheme", "dx", "order", "max_step"]
-# A parameter that follows from altered ones is no alteration of its own.
+# These parameters follow from others, so that the description of an alteration omits them.
 DERIVED_COLUMNS = ["beta", "duration"]
+# Number of parameters that describe a run if all runs have the same parameters.
+DEFAULT_PARAMETER_COUNT = 4
 
 
-class JoinedRuns(NamedTuple):
-    """Row numbers of runs in two tables, and what differs between the runs of a pair."""
+@dataclass(frozen=True)
+class JoinedRuns:
+    """Pairs of runs of a new and an old table, and the runs without a counterpart.
 
-    same: np.ndarray  # pairs of the same run: (number, 2), row in the new and in the old table
-    altered: np.ndarray  # pairs of runs that differ in `keys` alone
-    keys: list[str]
-    only_new: np.ndarray
-    only_old: np.ndarray
+    A table of pairs has the columns ``new`` and ``old``, which contain row labels of both tables.
+    """
+
+    same_runs: pd.DataFrame
+    # Pairs of runs that differ only in the parameters `altered_parameters`.
+    altered_runs: pd.DataFrame
+    altered_parameters: list[str]
+    # Row labels of the runs that are in one table only.
+    only_new: pd.Index
+    only_old: pd.Index
 
 
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
-    """Join the same runs, then the runs that differ only in parameters whose one value changed."""
-    parameters = RUN_COLUMNS + [name for name in FURTHER_COLUMNS if name in new and name in old]
-    lattice = [name for name in LATTICE_COLUMNS if name in new and name in old]
-    left = [new[[*parameters, *lattice]], old[[*parameters, *lattice]]]
-    found = []
-    for keys in ([*parameters, *lattice], parameters):
-        pairs = _pairs(left, keys)
-        found.append(pairs)
-        left = [
-            rows.drop(rows.index[rows.index.isin(taken)])
-            for rows, taken in zip(left, pairs.T, strict=True)
-        ]
-    same = np.concatenate(found)
-    same = same[np.argsort(same[:, 0], kind="stable")]
-    changed = [name for name in parameters if not {*left[0][name]} & {*left[1][name]}]
-    keys = [name for name in changed if name not in DERIVED_COLUMNS]
-    altered = np.empty((0, 2), int)
-    # Only one value in place of one other says which runs belong together.
-    if keys and all(rows[name].nunique(dropna=False) == 1 for rows in left for name in keys):
-        altered = _pairs(left, [name for name in parameters if name not in changed])
-    only = [rows.index.difference(taken) for rows, taken in zip(left, altered.T, strict=True)]
-    return JoinedRuns(same, altered, keys, *(rows.to_numpy() for rows in only))
+    """Join the same runs, and then the runs that differ only in altered parameters."""
+    parameters = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS])
+    lattice = columns_in_both(new, old, LATTICE_COLUMNS)
+
+    on_equal_lattices = pair_rows(new, old, [*parameters, *lattice])
+    new_rest = new.drop(on_equal_lattices["new"])
+    old_rest = old.drop(on_equal_lattices["old"])
+
+    on_other_lattices = pair_rows(new_rest, old_rest, parameters)
+    new_rest = new_rest.drop(on_other_lattices["new"])
+    old_rest = old_rest.drop(on_other_lattices["old"])
+
+    changed = [name for name in parameters if not new_rest[name].isin(old_rest[name]).any()]
+    altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
+    if is_one_alteration(new_rest, old_rest, altered_parameters):
+        unchanged = [name for name in parameters if name not in changed]
+        altered_runs = pair_rows(new_rest, old_rest, unchanged)
+    else:
+        altered_runs = pd.DataFrame({"new": [], "old": []}, dtype=int)
+
+    same_runs = pd.concat([on_equal_lattices, on_other_lattices])
+    return JoinedRuns(
+        same_runs=same_runs.sort_values("new", kind="stable"),
+        altered_runs=altered_runs,
+        altered_parameters=altered_parameters,
+        only_new=new_rest.index.difference(altered_runs["new"]),
+        only_old=old_rest.index.difference(altered_runs["old"]),
+    )
 
 
-def describe_run(run: Mapping, keys: Iterable[str]) -> str:
-    """Write the parameters of a run as text, such as "left 0.5, gamma 0.3"."""
-    known = {key: run[key] for key in keys if not pd.isna(run[key])}
-    texts = {key: f"{value:g}" if isinstance(value, float) else f"{value}"
-             for key, value in known.items()}  # fmt: skip
-    return ", ".join(f"{key} {text}" for key, text in texts.items())
+def columns_in_both(new: pd.DataFrame, old: pd.DataFrame, names: Iterable[str]) -> list[str]:
+    """Return the names that are columns of both tables."""
+    return [name for name in names if name in new and name in old]
 
 
-def describe_pair(new: Mapping, old: Mapping, keys: Iterable[str]) -> str:
-    """Write the parameters of the new run, and those that are others in the old run."""
-    keys = list(keys)
-    other = [key for key in keys if str(new[key]) != str(old[key])]
-    text = describe_run(new, keys)
-    return f"{text} (old: {describe_run(old, other)})" if other else text
+def is_one_alteration(new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]) -> bool:
+    """Return True if each parameter has one value in the new runs and one in the old runs.
+
+    With several values it would be unclear which altered runs belong together.
+    """
+    if not parameters:
+        return False
+    new_counts = new[parameters].nunique(dropna=False)
+    old_counts = old[parameters].nunique(dropna=False)
+    return bool((new_counts == 1).all() and (old_counts == 1).all())
 
 
-def varying_parameters(*tables: pd.DataFrame) -> list[str]:
-    """Return the parameters that tell the runs of these tables apart."""
-    names = [
-        name
-        for name in [*RUN_COLUMNS, *FURTHER_COLUMNS, "dx"]
-        if all(name in table for table in tables)
-    ]
-    joined = pd.concat([table[names] for table in tables])
-    varying = [name for name in names if joined[name].nunique(dropna=False) > 1]
+def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """Return the labels of rows that have equal values in some columns, as columns new and old.
+
+    Several equal rows of one table are paired in their order.
+    """
+    new_keys = _row_keys(new, columns).assign(new=new.index)
+    old_keys = _row_keys(old, columns).assign(old=old.index)
+    return new_keys.merge(old_keys, on=[*columns, "occurrence"])[["new", "old"]]
+
+
+def _row_keys(table: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """Return the columns as text, and the number of equal rows above each row."""
+    # Numbers are compared as text, since the files of both tables have nine digits.
+    keys = table[columns].astype(str)
+    return keys.assign(occurrence=keys.groupby(columns).cumcount())
+
+
+def describe_run(run: Mapping, names: Iterable[str]) -> str:
+    """Return some parameters of a run as text, such as "left 0.5, gamma 0.3"."""
+    texts = []
+    for name in names:
+        value = run[name]
+        if not pd.isna(value):
+            text = f"{value:g}" if isinstance(value, float) else str(value)
+            texts.append(f"{name} {text}")
+    return ", ".join(texts)
+
+
+def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
+    """Return the parameters of a new run as text, with those that the old run has differently.
+
+    An example is "left 0.5, gamma 0.3 (old: gamma 0.65)".
+    """
+    names = list(names)
+    text = describe_run(new, names)
+    differing = [name for name in names if str(new[name]) != str(old[name])]
+    return f"{text} (old: {describe_run(old, differing)})" if differing else text
+
+
+def varying_parameters(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
+    """Return the parameters that have several values in two tables, and so describe a run."""
+    names = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS, "dx"])
+    value_counts = pd.concat([new[names], old[names]]).nunique(dropna=False)
+    varying = [name for name in names if value_counts[name] > 1]
     independent = [name for name in varying if name not in DERIVED_COLUMNS]
-    return independent or varying or names[:4]
-
-
-def _pairs(tables: Sequence[pd.DataFrame], keys: list[str]) -> np.ndarray:
-    """Return the index pairs of rows with equal keys; equal rows are paired in their order."""
-    sides = []
-    for rows, name in zip(tables, ("new", "old"), strict=True):
-        # Equal text is an equal number: tables are read back from files of nine digits.
-        texts = rows[keys].astype(str)
-        sides.append(texts.assign(copy=texts.groupby(keys).cumcount(), **{name: rows.index}))
-    joined = sides[0].merge(sides[1], on=[*keys, "copy"])
-    return joined[["new", "old"]].to_numpy(int)
+    return independent or varying or names[:DEFAULT_PARAMETER_COUNT]

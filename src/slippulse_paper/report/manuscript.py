@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 import jupytext
 import pandas as pd
@@ -25,6 +26,8 @@ from .texts import Caption, answer, judged_lines, parameters, read_captions, rea
 
 # The report and its supplement, each from manuscript/NAME.md.
 DOCUMENTS = ("replication", "supplement")
+# The letters before the numbers of figures: none in the report, and S in the supplement.
+NUMBER_LETTERS = ("", "S")
 # Tag of a cell that defines the names in a notebook opened by hand. It is skipped here.
 BY_HAND = "by-hand"
 # The name of a figure of the paper, with its number.
@@ -50,71 +53,112 @@ class Inputs:
     citation: Mapping
 
 
-class Gallery:
-    """The figures with their numbers, which follow the order of the texts.
+class FigureNumber(NamedTuple):
+    """The document that shows a figure, and the number of the figure there, such as S3."""
 
-    Numbers of the supplement begin with S. Figures that no text includes come last. ``current`` is
-    the document that is being written.
+    document: str
+    number: str
+
+
+class Gallery:
+    """The figures with their numbers, which follow the order in which the texts show them.
+
+    Figures that no text shows are appended to the last document. ``current`` is the document that
+    is being written.
     """
 
     def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, current: str) -> None:
         self.captions, self.current = captions, current
         self.folder = inputs.figures_folder
-        named = {document: FIGURE_CALL.findall(text) for document, text in texts.items()}
-        everywhere = {*chain.from_iterable(named.values())}
-        self.unnamed = [name for name in inputs.figures if name not in everywhere]
-        named[[*texts][-1]] += self.unnamed
-        # Document and number of each figure.
-        self.numbers: dict[str, tuple[str, str]] = {}
-        for letter, (document, names) in zip(("", "S"), named.items(), strict=True):
+        names_by_document = {
+            document: FIGURE_CALL.findall(text) for document, text in texts.items()
+        }
+        shown = {*chain.from_iterable(names_by_document.values())}
+        self.further_names = [name for name in inputs.figures if name not in shown]
+        last_document = [*texts][-1]
+        names_by_document[last_document] += self.further_names
+        self.numbers: dict[str, FigureNumber] = {}
+        for letter, document in zip(NUMBER_LETTERS, texts, strict=True):
+            names = names_by_document[document]
             drawn = [name for name in names if name in inputs.figures]
             for i, name in enumerate(drawn, start=1):
-                self.numbers[name] = document, f"{letter}{i}"
+                self.numbers[name] = FigureNumber(document, f"{letter}{i}")
 
     def figure(self, name: str) -> str:
-        """Return a figure with number and caption as Markdown; empty if it was not drawn."""
+        """Return a figure with number and caption as Markdown, or no text if it was not drawn."""
         if name not in self.numbers:
             return ""
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
-        head, paper = f"Figure {self.numbers[name][1]}", PAPER_FIGURE.match(name)
-        if paper and head != f"Figure {int(paper[1])}":
-            head += f" (paper, figure {int(paper[1])})"
-        text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
+        label = self._label(name)
+        text = f"**{label}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
-        with Image.open(self.folder / f"{name}.png") as picture:
-            inches = picture.width / picture.info["dpi"][0]
-        # A figure that is one column wide in the journal is equally wide here.
-        width = min(100.0, 100.0 * inches / PAGE_WIDTH)
         # Without an extension the PDF takes the vector file, and the page the picture.
-        return f"![{text}]({self.folder / name}){{#{name} width={width:.0f}% alt='{alt}'}}"
+        path = self.folder / name
+        return f"![{text}]({path}){{#{name} width={self._width(name):.0f}% alt='{alt}'}}"
+
+    def _label(self, name: str) -> str:
+        """Return "Figure" and the number, with the number in the paper if that is another one."""
+        label = f"Figure {self.numbers[name].number}"
+        in_paper = PAPER_FIGURE.match(name)
+        if in_paper is None:
+            return label
+        number = int(in_paper[1])
+        return label if label == f"Figure {number}" else f"{label} (paper, figure {number})"
+
+    def _width(self, name: str) -> float:
+        """Return the width of a figure in per cent of the page.
+
+        A figure that is one column wide in the journal is equally wide here.
+        """
+        with Image.open(self.folder / f"{name}.png") as picture:
+            dots_per_inch = picture.info["dpi"][0]
+            inches = picture.width / dots_per_inch
+        return min(100.0, 100.0 * inches / PAGE_WIDTH)
 
     def further(self) -> str:
-        """Return all figures that no text includes, as Markdown."""
-        return "\n\n".join(self.figure(name) for name in self.unnamed)
+        """Return all figures that no text shows, as Markdown."""
+        return "\n\n".join(self.figure(name) for name in self.further_names)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """Return a link to a figure between two texts; empty if the figure was not drawn."""
+        """Return a link to a figure between two texts, or no text if the figure was not drawn.
+
+        The word "figure" or "figures" at the end of ``before`` becomes a part of the link.
+        """
         if name not in self.numbers:
             return ""
-        word = next((word for word in ("figure ", "figures ") if before.endswith(word)), "")
-        start = before.removesuffix(word)
+        start, word = before, ""
+        for ending in ("figure ", "figures "):
+            if before.endswith(ending):
+                start, word = before.removesuffix(ending), ending
         document, number = self.numbers[name]
         file = "" if document == self.current else f"{document}.html"
         return f"{start}[{word}{number}]({file}#{name}){after}"
 
 
 def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
-    """Return the names that cells and prose of a document may use.
+    """Return the values and functions that cells and prose of a document may use, by name.
 
     ``show`` puts Markdown into the document.
     """
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
-    altered, misprints = changes(inputs.shipped, config), read_errata(folder / "errata.yaml")
-    # A number links to its claim or finding, where its tables are.
-    cite = "[{1}](../claims.html#{0})".format
+    altered = changes(inputs.shipped, config)
+    misprints = read_errata(folder / "errata.yaml")
+
+    def cite(id: str, text: str) -> str:
+        """Return a text that links to a claim or a finding, where its tables are."""
+        return f"[{text}](../claims.html#{id})"
+
+    def deviation_of(id: str) -> str:
+        """Return the deviation of a claim as a percentage, with a link to the claim."""
+        return cite(id, percent(ledger(id).deviation))
+
+    def measured_of(id: str) -> str:
+        """Return the measured number of a claim, with a link to the claim."""
+        return cite(id, ledger(id).measured_text())
+
     names: dict[str, object] = {
         "config": config,
         "citation": inputs.citation,
@@ -123,8 +167,8 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "claim": ledger,
         "found": ledger.found,
         "cite": cite,
-        "off": lambda id: cite(id, percent(ledger(id).deviation)),
-        "measured": lambda id: cite(id, ledger(id).measured_text()),
+        "off": deviation_of,
+        "measured": measured_of,
         "runs": partial(parameters, config),
         "entries": read_text(folder / "claims.yaml"),
         "statements": statements,
@@ -171,8 +215,10 @@ def execute(source: Path, inputs: Inputs) -> str:
             else:
                 shown.append(fill(cell.source, names))
         except Exception as error:
-            start, reason = cell.source.strip().splitlines()[0][:70], " ".join(str(error).split())
-            problem = f"{type(error).__name__}: {reason} (cell {start!r})"
+            first_line = cell.source.strip().splitlines()[0][:70]
+            reason = " ".join(str(error).split())
+            problem = f"{type(error).__name__}: {reason} (cell {first_line!r})"
             raise ValueError(f"{source.name}: {problem}") from error
+    text = "\n\n".join(filter(None, shown))
     # A no-break space keeps a number and its per cent sign on one line.
-    return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(filter(None, shown))) + "\n"
+    return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", text) + "\n"

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple, Self
 
 import pandas as pd
 
@@ -36,19 +37,34 @@ FLUSH = "`````{=typst}\n#place.flush()\n`````"
 BELOW = "`````{=typst}\n#show figure.where(kind: image): set figure(placement: bottom)\n`````"
 
 
+class _Column(NamedTuple):
+    """Head of a column: its title, its alignment (l or r) and its relative width."""
+
+    title: str
+    alignment: str
+    width: int
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """Read the head from a text such as "claim l34"."""
+        title, _, layout = text.strip().rpartition(" ")
+        return cls(title, alignment=layout[0], width=int(layout[1:]))
+
+
 def table(head: str, rows: Iterable[Sequence[object]]) -> str:
     """Return a pipe table in Markdown.
 
-    head : title, alignment (l or r) and relative width of each column: "claim l34 | runs r10"
+    head : the heads of all columns as `_Column` reads them, such as "claim l34 | runs r10"
     """
-    columns = [column.strip().rpartition(" ") for column in head.split("|")]
-    total = sum(int(form[1:]) for _, _, form in columns)
+    columns = [_Column.read(text) for text in head.split("|")]
+    total_width = sum(column.width for column in columns)
     rules = []
-    for _, _, form in columns:
-        dashes = "-" * max(3, round(LINE_LENGTH * int(form[1:]) / total))
-        rules.append(f":{dashes}" if form[0] == "l" else f"{dashes}:")
+    for column in columns:
+        dashes = "-" * max(3, round(LINE_LENGTH * column.width / total_width))
+        rules.append(f":{dashes}" if column.alignment == "l" else f"{dashes}:")
+    titles = [column.title for column in columns]
     lines = []
-    for row in ([title for title, _, _ in columns], rules, *rows):
+    for row in (titles, rules, *rows):
         # A cell of several lines becomes one line.
         cells = [" ".join(str(cell).split()) for cell in row]
         lines.append(f"| {' | '.join(cells)} |")
@@ -67,10 +83,12 @@ def code(names: Iterable[str]) -> str:
 
 def verdicts(lines: Iterable[Line]) -> str:
     """Return the lines of the answer as a table, in which each verdict links to its claim."""
-    link = "[{0.verdict}](../claims.html#{0.id})".format
     rows = []
     for line in lines:
-        links = [f"{link(claim)} {subjects}".strip() for claim, subjects in line.verdicts]
+        links = []
+        for claim, subjects in line.verdicts:
+            link = f"[{claim.verdict}](../claims.html#{claim.id})"
+            links.append(f"{link} {subjects}".strip())
         rows.append((line.topic, "; ".join(links), line.text))
     return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 
@@ -87,10 +105,15 @@ def whole_ledger(ledger: Ledger) -> str:
     """Return a table of all claims: place in the paper, numbers, tolerance, verdict and note."""
     rows = []
     for claim in ledger:
-        name = f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`"
-        numbers = claim.predicted_text(), claim.measured_text()
-        evidence = claim.compared_text(), claim.verdict, claim.evidence_text()
-        rows.append((name, *numbers, *evidence))
+        row = (
+            f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`",
+            claim.predicted_text(),
+            claim.measured_text(),
+            claim.compared_text(),
+            claim.verdict,
+            claim.evidence_text(),
+        )
+        rows.append(row)
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
     return table(f"{head} | verdict l9 | evidence l29", rows)
 
@@ -100,35 +123,38 @@ def tolerances(ledger: Ledger) -> str:
 
     Claims of the same kind with the same tolerance and reason share a row.
     """
-    groups: dict[tuple[str, ...], list[str]] = {}
+    ids_by_cells: dict[tuple[str, str, str], list[str]] = {}
     for claim in ledger:
-        exponent = getattr(claim, "tolerance_exponent", None)
         tolerance = setting(claim.tolerance)
+        exponent = getattr(claim, "tolerance_exponent", None)
         if exponent:
             tolerance += f"; exponent {setting(exponent)}"
-        groups.setdefault((claim.kind, tolerance, plain(claim.reason)), []).append(claim.id)
-    rows = [(*key, code(ids)) for key, ids in groups.items()]
+        cells = (claim.kind, tolerance, plain(claim.reason))
+        ids_by_cells.setdefault(cells, []).append(claim.id)
+    rows = [(*cells, code(ids)) for cells, ids in ids_by_cells.items()]
     return table("kind l11 | tolerance r11 | reason l42 | claims l36", rows)
 
 
 def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     """Return a table of statements that tests check, with their places in the paper and tests."""
-    where = places_of(entries, sentences)
-    rows = [
-        (entry["statement"], where[id], entry.get("checked", f"`test_algebra[{id}]`"), code([id]))
-        for id, entry in entries.items()
-    ]
+    places = places_of(entries, sentences)
+    rows = []
+    for id, entry in entries.items():
+        test = entry.get("checked", f"`test_algebra[{id}]`")
+        rows.append((entry["statement"], places[id], test, code([id])))
     return table("what the paper says l44 | section l16 | checked l22 | id l18", rows)
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     """Return a table of numbers read off the published figure, with reading errors, beside ours."""
-    left = ledger("published_space_time_figure").further
-    ours = left | ledger("published_space_time_figure_right").further
+    left_panel = ledger("published_space_time_figure").further
+    right_panel = ledger("published_space_time_figure_right").further
+    ours = left_panel | right_panel
     rows = []
-    for read in readings.values():
-        drawn = with_uncertainty(read["value"], read["reading_error"])
-        rows.append((read["statement"], drawn, number(ours.get(read["statement"]), 5)))
+    for reading in readings.values():
+        statement = reading["statement"]
+        drawn = with_uncertainty(reading["value"], reading["reading_error"])
+        rows.append((statement, drawn, number(ours.get(statement), 5)))
     return table("quantity l50 | published r20 | this run r20", rows)
 
 
@@ -140,8 +166,8 @@ def found_list(ledger: Ledger) -> str:
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
     """Return a table of how many sentences are tested, and how many are not for which reason."""
-    words = REASONS | {"all": "all"}
-    rows = [(words[reason], count) for reason, count in coverage(sentences).items()]
+    titles = REASONS | {"all": "all"}
+    rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
     return table("sentences l60 | how many r15", rows)
 
 
@@ -179,15 +205,15 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
             continue
         orders = study["observed_order"]
         order = number(orders.median(), 2) if orders.notna().any() else DASH
-        errors = percent(relative.median()), percent(relative.max())
-        rows.append((name, len(relative), order, *errors))
+        median, largest = percent(relative.median()), percent(relative.max())
+        rows.append((name, len(relative), order, median, largest))
     return table("quantity l40 | runs r10 | order r12 | median uncertainty r20 | largest r18", rows)
 
 
 def sticking(examples: pd.DataFrame) -> str:
     """Return a table of release time, stick time and slip of an exact rupture at some positions.
 
-    Empty if the study has no exact rupture.
+    Returns no text if the study has no exact rupture.
     """
     columns = ["release_time", "stick_time", "final_slip"]
     examples = examples[examples["quantity"].isin(columns)]
@@ -206,32 +232,40 @@ def edges(study: pd.DataFrame) -> str:
     for row in study.to_dict("records"):
         outcome = str(row["verdict"])
         if outcome == "flagged":
-            # The name of the flag is the first word of the message.
-            outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
+            # The message begins with the name of the flag and a comma.
+            flag, _, _ = str(row["message"]).partition(",")
+            outcome += f": {flag.replace('_', ' ')}"
         error = "" if pd.isna(row["error"]) else number(row["error"], 2)
         tolerance = "" if pd.isna(row["tolerance"]) else number(row["tolerance"], 2)
-        edge = row["family"], plain(row["value"]), plain(row["quantity"])
-        rows.append((*edge, error, tolerance, outcome))
+        value, quantity = plain(row["value"]), plain(row["quantity"])
+        rows.append((row["family"], value, quantity, error, tolerance, outcome))
     head = "edge l16 | value l28 | compared l18 | error r12 | tolerance r12 | outcome l24"
     return table(head, rows)
 
 
 def stability_limits(study: pd.DataFrame) -> str:
-    """Derived largest steps by scheme, order and damping ratio, with measured ones in brackets."""
+    """Return a table of derived largest steps, with the measured ones in brackets.
+
+    The rows are schemes and orders, and the columns damping ratios.
+    """
     ratios = sorted(study["damping_ratio"].unique())
     rows = []
     for (scheme, order), group in study.groupby(["scheme", "order"], sort=False):
         cells = [f"{str(scheme).replace('_', ' ')}, order {order}"]
         for row in group.sort_values("damping_ratio").to_dict("records"):
-            chain, rupture = (_limit(row, name) for name in ("measured", "measured_rupture"))
-            cells.append(f"{number(row['derived'], 3)} ({chain}, {rupture})")
+            in_chain = _measured_limit(row, "measured")
+            in_rupture = _measured_limit(row, "measured_rupture")
+            cells.append(f"{number(row['derived'], 3)} ({in_chain}, {in_rupture})")
         rows.append(cells)
     head = " | ".join(f"$b$ = {setting(ratio)} l16" for ratio in ratios)
     return table(f"scheme l16 | {head}", rows)
 
 
-def _limit(row: Mapping, name: str) -> str:
-    """A measured limit divided by the derived one, marked where it lies beyond the bisection."""
+def _measured_limit(row: Mapping, name: str) -> str:
+    """Return a measured limit divided by the derived one.
+
+    A sign marks a limit that lies outside the interval of the bisection.
+    """
     sign = {"within": "", "below": "<", "above": ">"}[row[f"{name}_limit"]]
     return f"{sign}{number(row[f'{name}_ratio'], 3)}"
 
@@ -239,26 +273,31 @@ def _limit(row: Mapping, name: str) -> str:
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
     """Return a quotation that lists differences from the shipped configuration and verdicts.
 
-    Empty if there are none.
+    Returns no text if there are none.
     """
-    pair = "`{}`: {} (shipped: {})".format
-    keys, judged = [], []
+    altered_values = []
     for change in altered:
-        keys.append(pair(change["key"], _literal(change["here"]), _literal(change["shipped"])))
+        here, shipped = _literal(change["here"]), _literal(change["shipped"])
+        altered_values.append(f"`{change['key']}`: {here} (shipped: {shipped})")
+    altered_verdicts = []
     for change in ledger.differences(verdicts):
         here, shipped = change["here"] or "absent", change["shipped"] or "absent"
-        judged.append(pair(change["key"], here, shipped))
+        altered_verdicts.append(f"`{change['key']}`: {here} (shipped: {shipped})")
     lines = []
-    if keys:
-        differs = f"This run differs from the shipped configuration in {'; '.join(keys)}."
+    if altered_values:
+        differs = f"This run differs from the shipped configuration in {'; '.join(altered_values)}."
         lines.append(f"> **Altered configuration.** {differs}")
-    if judged:
-        lines.append(f"> **Verdicts that differ from the shipped report:** {'; '.join(judged)}.")
-    elif keys:
+    if altered_verdicts:
+        differing = "; ".join(altered_verdicts)
+        lines.append(f"> **Verdicts that differ from the shipped report:** {differing}.")
+    elif altered_values:
         lines.append("> No verdict differs from the shipped report.")
     return "\n>\n".join(lines)
 
 
 def _literal(value: object) -> str:
     """Return a value of the configuration formatted as code, or "absent" for None."""
-    return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
+    if value is None:
+        return "absent"
+    text = short(value).replace("`", "'")
+    return f"`{text}`"

@@ -19,10 +19,10 @@ from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
 from .html import page
 
 # Attributes of a run that the page shows, in this order.
-PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
-LATTICE = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
-WORK = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
-SHOWN = (*PHYSICS, *EXTRA_TERMS, "friction", *LATTICE, *WORK, "pulse_state", "run_flags")
+PHYSICAL = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
+NUMERICAL = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
+OUTCOMES = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
+SHOWN = (*PHYSICAL, *EXTRA_TERMS, "friction", *NUMERICAL, *OUTCOMES, "pulse_state", "run_flags")
 NO_NUMBER = "\N{EN DASH}"
 
 
@@ -50,7 +50,7 @@ def scene_page(
         picture=base64.b64encode(Path(png).read_bytes()).decode("ascii"),
         pulse_state=attributes.get("pulse_state", "none"),
         promised="promised" in numbers,
-        numbers=[_number(row) for row in numbers.itertuples()],
+        numbers=[_number_cells(row) for row in numbers.itertuples()],
         parameters={key.replace("_", " "): value for key, value in shown.items()},
         layer=layer and _layer_rows(layer),
         scales=layer and _scale_rows(layer),
@@ -70,24 +70,32 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
         shown["width"] = "no Gaussian at x = 0"
         shown.pop("peak", None)
     if "friction" in shown:
-        law = read_recorded_law(attributes)
-        words = [law.pop("law").replace("_", " ")]
-        words += [f"{key} = {setting(value)}" for key, value in law.items()]
-        shown["friction"] = ", ".join(words)
+        shown["friction"] = _friction_text(attributes)
     return shown
+
+
+def _friction_text(attributes: Mapping) -> str:
+    """Return the friction law with its parameters, such as "linear rate, alpha = 0.3"."""
+    law = read_recorded_law(attributes)
+    parts = [law.pop("law").replace("_", " ")]
+    parts += [f"{name} = {setting(value)}" for name, value in law.items()]
+    return ", ".join(parts)
 
 
 def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
     """Describe steps, bumps and points of the pre-stress in words."""
 
     def write(value: float, quantity: str) -> str:
+        """Return a number as text, with its unit if there is a layer."""
         if layer is None:
             return setting(value)
         return _with_unit(layer.convert_to_si(value, quantity), quantity)
 
-    profile, parts = prestress_from(attributes), []
+    profile = prestress_from(attributes)
+    parts = []
     if profile.points:
-        first, last = (write(profile.points[row][0], "length") for row in (0, -1))
+        (first_x, _), *_, (last_x, _) = profile.points
+        first, last = write(first_x, "length"), write(last_x, "length")
         parts.append(f"linear between {len(profile.points)} points from x = {first} to {last}")
     for x, level in profile.steps:
         parts.append(f"step to {write(level, 'stress')} at x = {write(x, 'length')}")
@@ -132,19 +140,28 @@ def _scale_rows(layer: Layer) -> dict[str, str]:
     return {name.replace("_", " "): _with_unit(value, name) for name, value in scales.items()}
 
 
-def _number(row) -> dict[str, str]:
+def _number_cells(row) -> dict[str, str]:
     """Return the cells of the table row of one measured number."""
-    cells = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
-    cells["unit"] = getattr(row, "unit", "")
-    cells["paper"] = number(getattr(row, "paper", math.nan), 5).replace(MISSING, NO_NUMBER)
-    cells |= {"theory": NO_NUMBER, "difference": NO_NUMBER, "promise": "not covered"}
-    if math.isfinite(row.theory):
-        cells["theory"] = number(row.theory, 5)
-        difference = row.value / row.theory - 1.0 if row.theory != 0.0 else math.nan
-        if math.isfinite(difference):
-            sign = "+" if difference > 0.0 else ""
-            cells["difference"] = f"{sign}{rounded(100.0 * difference, 2)} %"
-    if math.isfinite(getattr(row, "promised", math.nan)):
+    promised = getattr(row, "promised", math.nan)
+    promise = "not covered"
+    if math.isfinite(promised):
         outcome = "kept" if str(row.kept).lower() == "true" else "missed"
-        cells["promise"] = f"{row.promised:g}, {outcome}"
-    return cells
+        promise = f"{promised:g}, {outcome}"
+    return {
+        "label": row.label,
+        "measured": with_uncertainty(row.value, row.uncertainty, "(?)"),
+        "unit": getattr(row, "unit", ""),
+        "paper": number(getattr(row, "paper", math.nan), 5).replace(MISSING, NO_NUMBER),
+        "theory": number(row.theory, 5) if math.isfinite(row.theory) else NO_NUMBER,
+        "difference": _difference_text(row.value, row.theory),
+        "promise": promise,
+    }
+
+
+def _difference_text(measured: float, theory: float) -> str:
+    """Return the relative difference of a measured number from theory, as a percentage."""
+    if theory == 0.0 or not (math.isfinite(theory) and math.isfinite(measured)):
+        return NO_NUMBER
+    difference = measured / theory - 1.0
+    sign = "+" if difference > 0.0 else ""
+    return f"{sign}{rounded(100.0 * difference, 2)} %"

@@ -5,6 +5,7 @@ The texts are templates. Each reader fills in the numbers of one run, and `judge
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,24 +18,35 @@ from ..text.numerals import setting
 
 # The parts of an erratum. `alters` names what the error changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
+BOUNDARY_SYMBOLS = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}
 # A list of more values than this is shortened to its smallest and largest value.
 MAX_LISTED_VALUES = 3
-# Each group of verdicts gets one sentence of the answer. A verdict has its words in the singular
-# and in the plural.
+
+
+class VerdictWords(NamedTuple):
+    """The words for a verdict in the answer, after one subject and after several."""
+
+    verdict: str
+    singular: str
+    plural: str
+
+
+# Each group of verdicts gets one sentence of the answer.
 SENTENCES = (
-    {
-        "depends on an open choice": (
+    (
+        VerdictWords(
+            "depends on an open choice",
             "depends on choices that the paper leaves open",
             "depend on choices that the paper leaves open",
-        )
-    },
-    {
-        "not reproduced": ("is not reproduced", "are not reproduced"),
-        "premise not met": ("is not met", "are not met"),
-        "different beyond the paper": ("is different", "are different"),
-    },
-    {"inconclusive": ("stays open", "stay open")},
-    {"not testable": ("is not tested in this run", "are not tested in this run")},
+        ),
+    ),
+    (
+        VerdictWords("not reproduced", "is not reproduced", "are not reproduced"),
+        VerdictWords("premise not met", "is not met", "are not met"),
+        VerdictWords("different beyond the paper", "is different", "are different"),
+    ),
+    (VerdictWords("inconclusive", "stays open", "stay open"),),
+    (VerdictWords("not testable", "is not tested in this run", "are not tested in this run"),),
 )
 
 
@@ -84,15 +96,16 @@ def listed(words: Sequence[str]) -> str:
 
 
 def parameters(config: Mapping, name: str) -> str:
-    """Describe the runs of a simulation in Markdown: top of the layer, moduli, pre-stress, damping.
+    """Return the parameters of a simulation in Markdown, such as "$\\Gamma=1$, $W$ = 1 and 2".
 
     Raises ValueError for a simulation that the configuration does not have.
     """
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
-    left, right = _profile_values(simulation, "left"), _profile_values(simulation, "right")
-    boundary = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}[simulation["boundary"]]
+    left = _profile_values(simulation, "left")
+    right = _profile_values(simulation, "right")
+    boundary = BOUNDARY_SYMBOLS[simulation["boundary"]]
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
     values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
     if right == ["same"]:
@@ -111,8 +124,9 @@ def parameters(config: Mapping, name: str) -> str:
 def _profile_values(simulation: Mapping, key: str) -> list:
     """Return the distinct values of one key of the pre-stress over the profiles of a simulation."""
     values: list = []
-    for part in simulation.get("profiles") or [simulation]:
-        given = part.get(key, [])
+    # A simulation without profiles has the keys of a profile itself.
+    for profile in simulation.get("profiles") or [simulation]:
+        given = profile.get(key, [])
         values += given if isinstance(given, list) else [given]
     return [*dict.fromkeys(values)]
 
@@ -198,22 +212,27 @@ def _opening(line: Line) -> str:
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
     start = "No" if verdict == "not reproduced" else "Not decided"
-    singular = next(words[verdict][0] for words in SENTENCES if verdict in words)
-    return f"**{start}**: that {line.named}, {singular}."
+    singular = {words.verdict: words.singular for words in chain.from_iterable(SENTENCES)}
+    return f"**{start}**: that {line.named}, {singular[verdict]}."
 
 
 def answer(lines: Sequence[Line]) -> str:
-    """Return Markdown that says whether the first line is reproduced, and which others are not."""
+    """Return the answer to the question of the summary as Markdown.
+
+    Its first sentence reports the verdict on the first line. One sentence for each group of
+    verdicts in `SENTENCES` names the other lines that are not simply reproduced.
+    """
     first, *rest = lines
     sentences = [_opening(first)]
-    for words_by_verdict in SENTENCES:
+    for group in SENTENCES:
         clauses = []
-        for verdict, (singular, plural) in words_by_verdict.items():
-            judged = [line for line in rest if line.claim.verdict == verdict]
+        for words in group:
+            judged = [line for line in rest if line.claim.verdict == words.verdict]
             clauses += [line.clause for line in judged if line.clause]
-            named = [line.named for line in judged if not line.clause]
-            if named:
-                clauses.append(f"{listed(named)} {plural if len(named) > 1 else singular}")
+            subjects = [line.named for line in judged if not line.clause]
+            if subjects:
+                predicate = words.plural if len(subjects) > 1 else words.singular
+                clauses.append(f"{listed(subjects)} {predicate}")
         if clauses:
             sentence = ", and ".join(clauses)
             sentences.append(f"{sentence[0].upper()}{sentence[1:]}.")

@@ -9,7 +9,10 @@ from ..figures.scene_animation import save_animation
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data. Outputs: gif. Settings: title, layer (or None)."""
+    """Write the animation ``gif`` of a scene from its ``data``.
+
+    The settings have its title, and its layer in SI units or None.
+    """
     layer = Layer(**settings["layer"]) if settings.get("layer") else None
     data = point(load_dataset(files["data"]), 0)
     with house_style():

@@ -6,6 +6,6 @@ from slippulse.solver.jit import source_digest
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: kernels. Settings: scheme."""
+    """Compile the kernels of the scheme in the settings, and write the file ``kernels``."""
     compile_all([settings["scheme"]])
     write_text(f"{source_digest()}\n", outputs["kernels"])

@@ -9,9 +9,10 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: the kinds of `load_inputs`. Outputs: csv, png, pdf.
+    """Write ``csv``, ``png`` and ``pdf`` of a figure from files of the kinds of `load_inputs`.
 
-    Settings: figure (its module), values, altered.
+    The settings have the figure (the name of its module), the values of the configuration that it
+    reads, and the note ``altered``.
     """
     module = import_module(f"slippulse_paper.figures.{settings['figure']}")
     note = settings["altered"]

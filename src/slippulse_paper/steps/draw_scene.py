@@ -13,9 +13,10 @@ from ..report.scene_page import scene_page
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
+    """Write ``numbers``, ``csv``, ``png``, ``pdf`` and ``html`` of a scene.
 
-    Settings: title, altered, layer (parameters of a scene in SI units, or None).
+    The files are its ``data`` and its tables ``measured``, ``predicted`` and ``uncertainties``. The
+    settings have its title, the note ``altered``, and its layer in SI units or None.
     """
     title, note = settings["title"], settings["altered"]
     layer = Layer(**settings["layer"]) if settings.get("layer") else None

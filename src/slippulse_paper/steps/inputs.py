@@ -27,12 +27,16 @@ def load_inputs(files: Mapping) -> LoadedInputs:
     coarser lattices have their kind in the name, such as ``coarser/arrest``.
     """
     tables: dict[str, pd.DataFrame] = {}
-    for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):
+    for kind in ("measured", "studies"):
         for path in map(Path, files.get(kind, [])):
-            name = f"{kind}/{path.stem}" if kind in ("uncertainties", "coarser") else path.stem
-            table = load_table(path)
-            is_joined = kind == "predicted" and name in tables
-            tables[name] = tables[name].join(table) if is_joined else table
+            tables[path.stem] = load_table(path)
+    for path in map(Path, files.get("predicted", [])):
+        predicted = load_table(path)
+        measured = tables.get(path.stem)
+        tables[path.stem] = predicted if measured is None else measured.join(predicted)
+    for kind in ("uncertainties", "coarser"):
+        for path in map(Path, files.get(kind, [])):
+            tables[f"{kind}/{path.stem}"] = load_table(path)
     for path in map(Path, files.get("lists", [])):
         read = json.loads if path.suffix == ".json" else yaml.safe_load
         tables[path.stem] = pd.DataFrame(read(path.read_text(encoding="utf-8")))

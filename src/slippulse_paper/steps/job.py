@@ -30,6 +30,7 @@ from ..records.job_records import (
 from ..records.sources import changed_sources
 
 SECONDS_BETWEEN_LINES = 2.0
+DISK_FULL_ERRORS = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT)
 
 
 class JobFailed(Exception):
@@ -56,20 +57,20 @@ class Job(NamedTuple):
 
 
 def run_job(job: Job) -> None:
-    """Run the step of a job and write its record. Raises JobFailed if that is impossible."""
+    """Run the step of a job and write its record. Raises JobFailed with the reason if it fails."""
     began = time.monotonic()
-    with logged(job.log) as progress:
+    with logged(job.log) as progress_stream:
         states, records = check_inputs(_paths(job.inputs))
         # Data, figures and pages contain the digest of all settings that they depend on, which are
         # those of this job and of the jobs that made its inputs.
-        input_digests = sorted({record.configuration for record in records.values()})
-        configuration = digest_of([dict(job.settings), *input_digests])
+        input_digests = {record.configuration for record in records.values()}
+        configuration = digest_of([dict(job.settings), *sorted(input_digests)])
         os.environ[CONFIGURATION_VARIABLE] = configuration
         step = import_module(f"slippulse_paper.steps.{job.step}")
         # Settings replace wildcards of the same name: the figure of a user-defined sweep is drawn
         # by a module with another name than the wildcard.
-        progress_function = write_progress_to(progress, job.name)
-        settings = {**job.variables, **job.settings, "progress": progress_function}
+        report_progress = progress_writer(progress_stream, job.name)
+        settings = {**job.variables, **job.settings, "progress": report_progress}
         step.run(job.inputs, job.outputs, settings)
         check_unchanged(states)
         for path in changed_sources(dict(job.sources)):
@@ -77,7 +78,8 @@ def run_job(job: Job) -> None:
         seconds = round(time.monotonic() - began, 2)
         _write_records(job, configuration, states, seconds)
     if not sys.stderr.isatty():
-        sys.stderr.write(f"{Path(job.log).read_text(encoding='utf-8')}  {job.name}: {seconds} s\n")
+        log = Path(job.log).read_text(encoding="utf-8")
+        sys.stderr.write(f"{log}  {job.name}: {seconds} s\n")
 
 
 def _write_records(
@@ -87,42 +89,53 @@ def _write_records(
 
     Only the first record has the computing time, so that a sum over all records counts it once.
     """
-    folders: dict[Path, list[str]] = {}
+    names_by_folder: dict[Path, list[str]] = {}
     for output in map(Path, _paths(job.outputs)):
-        folders.setdefault(output.parent, []).append(output.name)
-    for folder, names in folders.items():
+        names_by_folder.setdefault(output.parent, []).append(output.name)
+    for folder, names in names_by_folder.items():
         outputs = {name: state_of(folder / name) for name in names}
         inputs = {
             os.path.relpath(path, folder): state.sha256 for path, state in input_states.items()
         }
-        record = Record(job.step, job.code, configuration, outputs, inputs, seconds)
+        record = Record(
+            step=job.step,
+            code=job.code,
+            configuration=configuration,
+            outputs=outputs,
+            inputs=inputs,
+            seconds=seconds,
+        )
         write_record(record, folder)
         seconds = 0.0
 
 
 def _paths(files: Mapping[str, str | list[str]]) -> list[str]:
-    """List all paths of named files, each of which is a path or a list of paths."""
-    lists = ([value] if isinstance(value, str) else value for value in files.values())
-    return [path for paths in lists for path in paths]
+    """Return the paths of all files, of which each name may have one or several."""
+    paths = []
+    for value in files.values():
+        paths += [value] if isinstance(value, str) else value
+    return paths
 
 
-def write_progress_to(stream: TextIO, name: str) -> Callable[[float, int], None]:
+def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
     """Return a function that writes how much of a job is done and how long the rest will take.
 
     Its arguments are the number of finished runs and the number of all runs.
     """
     began = last_written = time.monotonic()
 
-    def show(done: float, total: int) -> None:
+    def write(done: float, total: int) -> None:
         nonlocal last_written
         now = time.monotonic()
-        if 0 < done < total and now - last_written > SECONDS_BETWEEN_LINES:
-            last_written = now
-            part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
-            left = (now - began) * (total / done - 1.0)
-            print(f"  {name}: {part}, about {left:.0f} s left", file=stream, flush=True)
+        is_underway = 0 < done < total
+        if not is_underway or now - last_written <= SECONDS_BETWEEN_LINES:
+            return
+        last_written = now
+        part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
+        seconds_left = (now - began) * (total / done - 1.0)
+        print(f"  {name}: {part}, about {seconds_left:.0f} s left", file=stream, flush=True)
 
-    return show
+    return write
 
 
 @contextmanager
@@ -152,13 +165,17 @@ def logged(path: str | Path) -> Iterator[TextIO]:
         # If the disk is full, the traceback cannot be written either.
         with suppress(OSError):
             details.write_text(traceback.format_exc(), encoding="utf-8")
-        # Messages of HDF5 have several lines.
-        reason = f"{type(error).__name__}: {' '.join(str(error).split())}"
-        if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
-            remedy = "the unfinished file is removed; make room and run again"
-            reason = f"{os.strerror(error.errno)}: {remedy}"
-        raise JobFailed(f"{reason} (details: {details})") from None
+        raise JobFailed(f"{_reason(error)} (details: {details})") from None
     finally:
         sys.stderr = terminal
         with suppress(OSError):
             log.close()
+
+
+def _reason(error: Exception) -> str:
+    """Return in one line why a step has failed."""
+    if isinstance(error, OSError) and error.errno in DISK_FULL_ERRORS:
+        remedy = "the unfinished file is removed; make room and run again"
+        return f"{os.strerror(error.errno)}: {remedy}"
+    # Messages of HDF5 have several lines.
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"

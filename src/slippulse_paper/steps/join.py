@@ -9,7 +9,11 @@ from .joined_files import join_datasets, join_grid_studies, join_tables
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: chunks, finest (joined measurements). Outputs: joined. Settings: kind, record."""
+    """Write the file ``joined`` from the files ``chunks``.
+
+    The settings have the kind of the file, and the kinds of data that the runs record. For
+    uncertainties, the file ``finest`` has the joined measurements.
+    """
     kind = settings["kind"]
     chunks, joined = files["chunks"], outputs["joined"]
     if kind == "data":

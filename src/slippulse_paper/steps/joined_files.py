@@ -23,29 +23,40 @@ NOT_ONE_SWEEP = "this chunk and the others do not have the runs of one sweep"
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
-    """Join the data of chunks, which are given in order, to one Dataset of the sweep."""
+    """Return one Dataset of the sweep, joined from the files of all chunks in their order.
+
+    record : kinds of data that the runs have
+    """
     chunks = [load_dataset(path) for path in paths]
-    numbers = _run_numbers(paths, [chunk.sizes["point"] for chunk in chunks])
+    run_numbers = _run_numbers(paths, [chunk.sizes["point"] for chunk in chunks])
     runs: dict[int, Recorded] = {}
-    for chunk, chunk_numbers in zip(chunks, numbers, strict=True):
-        runs.update(zip(chunk_numbers, runs_in(chunk), strict=True))
-    return described(combine([runs[number] for number in sorted(runs)], record))
+    for chunk, numbers in zip(chunks, run_numbers, strict=True):
+        runs.update(zip(numbers, runs_in(chunk), strict=True))
+    in_order = [runs[number] for number in sorted(runs)]
+    return described(combine(in_order, record))
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
-    """Join tables with one row for each run, or with such a block for each value of ``factor``."""
+    """Join tables with one row for each run.
+
+    A table of coarser lattices has such a block of rows for each value of ``factor``. This column
+    stays the last one.
+    """
     chunks = _read_as_text(paths)
-    last_column = ["factor"] if "factor" in chunks[0] else []
-    blocks = len(chunks[0][last_column].drop_duplicates()) if last_column else 1
-    runs = _run_numbers(paths, [len(chunk) // blocks for chunk in chunks])
-    for path, chunk, numbers in zip(paths, chunks, runs, strict=True):
+    has_factor = "factor" in chunks[0]
+    blocks = chunks[0]["factor"].nunique() if has_factor else 1
+    run_numbers = _run_numbers(paths, [len(chunk) // blocks for chunk in chunks])
+    for path, chunk, numbers in zip(paths, chunks, run_numbers, strict=True):
         if len(chunk) != blocks * len(numbers):
             raise UnreadableFile(path, NOT_ONE_SWEEP)
         chunk.index = pd.MultiIndex.from_product([range(blocks), numbers])
     # The chunk with the first run determines the order of the columns.
-    ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])
-    table = pd.concat([chunk for _, chunk in ordered]).sort_index().fillna("")
-    save_table(table[[*table.columns.drop(last_column), *last_column]], joined)
+    first_runs = [numbers[0] for numbers in run_numbers]
+    in_order = [chunks[position] for position in np.argsort(first_runs)]
+    table = pd.concat(in_order).sort_index().fillna("")
+    if has_factor:
+        table["factor"] = table.pop("factor")
+    save_table(table, joined)
 
 
 def join_grid_studies(
@@ -59,10 +70,12 @@ def join_grid_studies(
     """
     (measured,) = _read_as_text([finest])
     chunks = _read_as_text(paths)
-    runs = _run_numbers(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
-    if sum(map(len, runs)) != len(measured):
+    # A study has several rows for each run, whose numbers in the column `point` begin with 0.
+    counts = [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks]
+    run_numbers = _run_numbers(paths, counts)
+    if sum(counts) != len(measured):
         raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
-    for chunk, numbers in zip(chunks, runs, strict=True):
+    for chunk, numbers in zip(chunks, run_numbers, strict=True):
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
     # A chunk has no row for a number that none of its runs has. The joined study has the rows that
@@ -70,8 +83,8 @@ def join_grid_studies(
     names = quantities(load_table(finest), keys)
     rows = pd.MultiIndex.from_product([range(len(measured)), names], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
-    run_names = measured[list(keys)].iloc[table["point"]].reset_index(drop=True)
-    columns = [table[["point"]], run_names, table.drop(columns="point")]
+    key_columns = measured[list(keys)].iloc[table["point"]].reset_index(drop=True)
+    columns = [table[["point"]], key_columns, table.drop(columns="point")]
     save_table(pd.concat(columns, axis=1), joined)
 
 
@@ -85,7 +98,11 @@ def _run_numbers(paths: Sequence[str | Path], counts: Sequence[int]) -> list[lis
 
     Raises UnreadableFile if the counts are not those of the chunks of one sweep.
     """
-    runs = [[*runs_of(chunk, len(counts), sum(counts))] for chunk in range(1, len(counts) + 1)]
-    if [len(numbers) for numbers in runs] != [*counts]:
-        raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
-    return runs
+    chunk_count, run_count = len(counts), sum(counts)
+    run_numbers = []
+    for chunk, count in enumerate(counts, start=1):
+        numbers = [*runs_of(chunk, chunk_count, run_count)]
+        if len(numbers) != count:
+            raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
+        run_numbers.append(numbers)
+    return run_numbers

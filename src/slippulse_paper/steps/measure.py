@@ -6,6 +6,6 @@ from slippulse.prediction.comparison import measured_table
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data. Outputs: measured. Settings: measure."""
+    """Write the table ``measured`` from ``data``, by the settings ``measure``."""
     table = measured_table(load_dataset(files["data"]), settings["measure"])
     save_table(table, outputs["measured"])

@@ -17,9 +17,12 @@ def declared(module: str, name: str):
     Snakemake needs these constants at every start, and importing the modules would take seconds.
     Returns None if the module does not have the constant.
     """
-    text = PACKAGE.joinpath(*module.split(".")).with_suffix(".py").read_text(encoding="utf-8")
-    # Parsing is slow, and so only modules that contain the constant are parsed.
-    for node in ast.parse(text).body if f"\n{name} = " in text else ():
+    path = PACKAGE.joinpath(*module.split(".")).with_suffix(".py")
+    text = path.read_text(encoding="utf-8")
+    # Parsing is slow, and so modules without the constant are not parsed.
+    if f"\n{name} = " not in text:
+        return None
+    for node in ast.parse(text).body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
             return ast.literal_eval(node.value)
     return None
@@ -27,6 +30,9 @@ def declared(module: str, name: str):
 
 def needs_of(folder: str) -> dict[str, dict]:
     """Read the NEEDS of all modules in a folder that have this constant, by module name."""
-    names = sorted(path.stem for path in (PACKAGE / folder).glob("*.py"))
-    needs = {name: declared(f"{folder}.{name}", "NEEDS") for name in names}
-    return {name: value for name, value in needs.items() if value is not None}
+    needs = {}
+    for path in sorted((PACKAGE / folder).glob("*.py")):
+        value = declared(f"{folder}.{path.stem}", "NEEDS")
+        if value is not None:
+            needs[path.stem] = value
+    return needs

@@ -1,6 +1,6 @@
 """Write the predictions of theory for every run of one simulation, or of one chunk of it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from importlib import import_module
 
 import pandas as pd
@@ -12,6 +12,7 @@ from slippulse.model.scene import used_extra_terms
 from ..configuration.runs import runs
 
 TOPICS = ("final_regime", "front", "pulse", "transition")
+# The module in slippulse.prediction for each topic.
 MODULES = {
     "final_regime": "predicted_regime",
     "front": "predicted_front",
@@ -23,7 +24,10 @@ DIGITS = 15
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), topics, fraction and still (of `measure`)."""
+    """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
+
+    The settings also have the topics, and the values ``fraction`` and ``still`` of `measure`.
+    """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)
     save_table(table, outputs["predicted"], DIGITS)
@@ -40,10 +44,14 @@ def predictions(
     for topic in topics:
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
         table = module.predictions(swept_runs, settings)
-        # A number that ignores the friction or an extra term of a run would be misleading.
-        is_covered = [
-            swept_run.friction["law"] in module.LAWS and not used_extra_terms(swept_run.extra_terms)
-            for swept_run in swept_runs
-        ]
+        is_covered = [_is_covered(swept_run, module.LAWS) for swept_run in swept_runs]
         tables.append(table[is_covered].reindex(table.index))
     return pd.concat(tables, axis=1)
+
+
+def _is_covered(swept_run: Run, laws: Container[str]) -> bool:
+    """Return True if a prediction for some friction laws holds for a run.
+
+    A number that ignores the friction or an extra term of a run would be misleading.
+    """
+    return swept_run.friction["law"] in laws and not used_extra_terms(swept_run.extra_terms)

@@ -8,7 +8,11 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: the kinds of `load_inputs`. Outputs: table. Settings: study (its module), values."""
+    """Write the ``table`` of a study from files of the kinds of `load_inputs`.
+
+    The settings have the study (the name of its module) and the values of the configuration that
+    it reads.
+    """
     study = import_module(f"slippulse_paper.studies.{settings['study']}")
     inputs = load_inputs(files)
     table = study.table(inputs.data, inputs.tables, settings["values"])

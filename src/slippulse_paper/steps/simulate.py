@@ -22,7 +22,11 @@ SOLVERS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data. Settings: simulation, solver (from SOLVERS), sweep, threads, progress."""
+    """Write the ``data`` of the resolved simulation ``sweep`` in the settings.
+
+    The settings also have the name of the simulation, the solver (one of SOLVERS), the number of
+    threads, and a function that reports the progress.
+    """
     solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)
     data = solve_sweep(
@@ -34,8 +38,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         progress=settings.get("progress"),
     )
     data = labelled(data, profile_labels(sweep), sweep["record"])
-    flags = Counter(filter(None, data["run_flags"].values))
-    for kind in sorted(flags):
-        flagged = f"{flags[kind]} of {len(scenes)} runs have the flag {kind} (in run_flags)"
+    flags = [flag for flag in data["run_flags"].values if flag]
+    for flag, count in sorted(Counter(flags).items()):
+        flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
     save_dataset(described(data), outputs["data"])

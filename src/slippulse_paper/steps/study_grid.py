@@ -18,31 +18,42 @@ from ..configuration.runs import profile_labels
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: finest. Outputs: uncertainties, coarser. Settings: solver, sweeps, measure."""
+    """Write the tables ``uncertainties`` and ``coarser`` of a simulation.
+
+    The file ``finest`` has its measurements. The settings have the solver, the settings
+    ``measure``, and the resolved simulation for each factor of the spacing (``sweeps``).
+    """
     name, sweeps = settings["simulation"], settings["sweeps"]
     solve = resolve_name(settings["solver"])
-    tables = {}
-    for factor in sorted(sweeps):
+    coarser_tables = {}
+    for factor, sweep in sorted(sweeps.items()):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
-        sweep = sweeps[factor]
         scenes, samples = expand(sweep)
         data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
         data = labelled(data, profile_labels(sweep), sweep["record"])
-        tables[factor] = measured_table(data, settings["measure"])
-    measured = load_table(files["finest"])
-    if any("chunk" in sweep for sweep in sweeps.values()):
-        # In one chunk a column of fractions may contain only integers. Read as integers, -0 would
-        # lose its sign.
-        fractions = measured.select_dtypes("integer").columns.difference([*PARAMETERS, *LABELS])
-        measured = load_table(files["finest"], dict.fromkeys(fractions, float))
+        coarser_tables[factor] = measured_table(data, settings["measure"])
+    is_chunk = any("chunk" in sweep for sweep in sweeps.values())
+    measured = _load_measured(files["finest"], is_chunk)
     keys = [*PARAMETERS, *(name for name in LABELS if name in measured)]
-    uncertainties = grid_tables((measured, *tables.values()), tuple(tables), keys)
+    tables = (measured, *coarser_tables.values())
+    uncertainties = grid_tables(tables, tuple(coarser_tables), keys)
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
     if promise is not None:
-        uncertainties = judge_promises(
-            uncertainties, measured, promise, settings["measure"]["fraction"]
-        )
+        fraction = settings["measure"]["fraction"]
+        uncertainties = judge_promises(uncertainties, measured, promise, fraction)
         sys.stderr.write(f"  {name}: {summarise_promises(uncertainties, promise)}\n")
     save_table(uncertainties, outputs["uncertainties"])
-    coarser = [table.assign(factor=factor) for factor, table in tables.items()]
+    coarser = [table.assign(factor=factor) for factor, table in coarser_tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
+
+
+def _load_measured(path: str, is_chunk: bool) -> pd.DataFrame:
+    """Load the measurements of a simulation, or of one chunk of it."""
+    measured = load_table(path)
+    if not is_chunk:
+        return measured
+    # In one chunk a column of fractions may contain only integers. Read as integers, -0 would lose
+    # its sign.
+    integer_columns = measured.select_dtypes("integer").columns
+    fractions = integer_columns.difference([*PARAMETERS, *LABELS])
+    return load_table(path, dict.fromkeys(fractions, float))

@@ -53,6 +53,7 @@ class WorkerPool:
             raise JobFailed("stopped") from None
 
     def _submit(self, workers: int, function, *arguments) -> Future:
+        """Let a worker call a function. The first call starts the processes."""
         with self._executor_lock:
             if self._executor is None:
                 self._executor = _new_executor(workers)
@@ -67,13 +68,13 @@ def run_here(job: Job) -> None:
 
 
 def _new_executor(workers: int) -> ProcessPoolExecutor:
+    """Return an executor whose processes are forked from one that has loaded the libraries."""
     # Otherwise each worker would load the main program, Snakemake, which it does not need.
     vars(sys.modules["__main__"]).update(__spec__=None, __file__=None)
-    is_short = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
+    path_is_short = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
     # On other systems some libraries fail after a fork.
-    context = multiprocessing.get_context(
-        "forkserver" if is_short and sys.platform == "linux" else "spawn"
-    )
+    can_fork = path_is_short and sys.platform == "linux"
+    context = multiprocessing.get_context("forkserver" if can_fork else "spawn")
     context.set_forkserver_preload([LIBRARIES])
     return ProcessPoolExecutor(workers, context, initializer=_prepare_worker)
 

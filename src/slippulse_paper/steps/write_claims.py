@@ -14,15 +14,18 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: the kinds of `load_inputs`, texts, statements. Outputs: json, findings, html.
+    """Write ``json`` with the claims, ``findings``, and the page ``html``.
 
-    Settings: claims, published, measure, damping_ratio, altered.
+    The files are tables of the kinds of `load_inputs`, and ``texts`` and ``statements`` of the
+    manuscript. The settings have the keys ``claims``, ``published`` and ``measure`` of the
+    configuration, the damping ratio, and the list of altered values.
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]
     tables = load_inputs(files).tables
     steady_tolerance = settings["measure"]["steady_tolerance"]
-    evidence = Evidence(tables, texts["claims"], steady_tolerance, settings["published"])
+    readings = settings["published"]
+    evidence = Evidence(tables, texts["claims"], steady_tolerance, readings)
     claims = all_claims(evidence, texts["over_choices"], sentences)
     further_findings = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])

@@ -16,6 +16,6 @@ SIMULATIONS = [
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: law, measured. Outputs: html."""
+    """Write the page ``html`` from the table ``law`` and the tables ``measured``."""
     measured = [load_table(path) for path in files["measured"]]
     write_text(explorer_page(load_table(files["law"]), measured, VELOCITY_MAP), outputs["html"])

@@ -19,13 +19,17 @@ HEADINGS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: results and texts. Settings: config, shipped, figures, scenes (titles)."""
+    """Write ``html``, ``provenance``, ``checksums`` and ``manifest``.
+
+    The files are all results, and texts of the manuscript. The settings have the configuration
+    ``config``, the ``shipped`` one, the names of the figures, and the titles of the scenes.
+    """
     base = Path(outputs["html"]).parent
     titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, titles), outputs["manifest"])
-    origin = provenance(PROJECT, settings["config"], settings["shipped"], base)
-    write_json(origin, outputs["provenance"])
+    facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
+    write_json(facts, outputs["provenance"])
     galleries = {}
     for prefix, heading in HEADINGS.items():
         names = [name for name in settings["figures"] if name.startswith(prefix)]

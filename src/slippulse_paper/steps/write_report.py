@@ -14,6 +14,8 @@ from ..report.document import write_html, write_pdf
 from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
 from .inputs import load_inputs
 
+# Folders of results whose name is not the kind of their tables.
+FOLDERS = {"measured": "measurements", "predicted": "predictions"}
 NEEDS = {
     "measured": {
         "scaling_displacement": ["transition"],
@@ -23,27 +25,33 @@ NEEDS = {
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["arrest_path", "derivations", "extremes", "stability"],
 }
-HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
-HEAD += "from the run of the shipped one."
+VERDICTS_COMMENT = (
+    "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
+    "from the run of the shipped one."
+)
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: see `inputs_of`. Outputs: html and pdf (a file for each document), verdicts.
+    """Write ``html`` and ``pdf`` of each document, and the file ``verdicts``.
 
-    Settings: figures, config.
+    The files are those that `inputs_of` reads. The settings have the names of the figures and the
+    configuration ``config``.
     """
     inputs = inputs_of(files, settings)
+    folder = inputs.manuscript
     # Each writer waits for a separate process, and so threads are enough to run them at once.
     with ThreadPoolExecutor() as pool:
         pending = []
-        for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
-            text = execute(inputs.manuscript / f"{document}.md", inputs)
-            for write, path in zip((write_html, write_pdf), paths, strict=True):
-                pending.append(pool.submit(write, text, inputs.manuscript, path))
+        for document, html, pdf in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
+            text = execute(folder / f"{document}.md", inputs)
+            pending.append(pool.submit(write_html, text, folder, html))
+            pending.append(pool.submit(write_pdf, text, folder, pdf))
     for future in pending:
+        # This raises the error of a writer that has failed.
         future.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
-    write_text(f"{HEAD}\n" + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
+    table = yaml.safe_dump(verdicts, sort_keys=False)
+    write_text(f"{VERDICTS_COMMENT}\n{table}", outputs["verdicts"])
 
 
 def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
@@ -72,18 +80,31 @@ def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[st
         def show(markdown: str) -> None:
             display(Markdown(markdown))
 
-    folder = Path.cwd()
-    ancestors = (folder, *folder.parents)
-    project = next(path for path in ancestors if (path / "config/config.yaml").exists())
+    project = _project_folder()
     results = project / "results"
-    folders = {"measured": "measurements", "predicted": "predictions"}
-    needed = NEEDS | {"predicted": NEEDS["measured"]}
     figures = sorted((results / "figures").glob("*.pdf"))
-    files: dict[str, object] = {name: results / f"{name}.json" for name in ("claims", "findings")}
-    for kind, names in needed.items():
-        files[kind] = [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
-    files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
-    files |= {"figures": figures, "sources": [project / f"manuscript/{document}.md"]}
+    files: dict[str, object] = {
+        "claims": results / "claims.json",
+        "findings": results / "findings.json",
+        "figures": figures,
+        "sources": [project / f"manuscript/{document}.md"],
+        "shipped": project / "config/config.yaml",
+        "citation": project / "CITATION.cff",
+    }
+    names_by_kind = NEEDS | {"predicted": NEEDS["measured"]}
+    for kind, names in names_by_kind.items():
+        folder = results / FOLDERS.get(kind, kind)
+        files[kind] = [folder / f"{name}.csv" for name in names]
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
     settings = {"config": config, "figures": [figure.stem for figure in figures]}
     return names_for(inputs_of(files, settings), show, document)
+
+
+def _project_folder() -> Path:
+    """Return the folder of the project that contains the working directory."""
+    folder = Path.cwd()
+    while not (folder / "config/config.yaml").exists():
+        if folder == folder.parent:
+            raise FileNotFoundError("config/config.yaml: not in this folder or above it")
+        folder = folder.parent
+    return folder

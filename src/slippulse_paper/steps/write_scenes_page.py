@@ -6,5 +6,5 @@ from ..report.html import page
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: html. Settings: scenes (titles by name)."""
+    """Write the page ``html``; the settings have the title of each scene by name."""
     write_text(page("scenes.html", scenes=settings["scenes"]), outputs["html"])

@@ -8,7 +8,6 @@ import subprocess
 from collections.abc import Iterable, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 from markupsafe import Markup
 
@@ -24,20 +23,26 @@ DISABLED_EXTENSIONS = """
     fancy_lists latex_macros inline_notes footnotes citations
 """
 PAGE_TEXT = "-".join(["markdown", *DISABLED_EXTENSIONS.split()])
+NOT_ONE_PARAGRAPH = "a text for a page is not one paragraph of Markdown"
 LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
 IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
 # Formulas and links to the web are kept in a user's text. Elsewhere special signs are escaped.
 FORMULA = re.compile(r"(?<!\\)\$(?=\S)((?:[^$\\]|\\.)*?)(?<=\S)\$(?!\d)")
 KEPT = re.compile(rf"({FORMULA.pattern}|(?<!!)\[[\w ,.:;()-]+\]\(https?://[\w./?=&%:~-]+\))")
-SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
+SPECIAL_SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
 
 
 def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
-    """Convert a text; a ValueError has the message of pandoc if it fails or warns."""
+    """Convert a text from the format ``source`` to the format ``to``.
+
+    Raises ValueError with the message of pandoc if it fails or warns.
+    """
     command = [str(PANDOC), f"--data-dir={DATA_FOLDER}", f"--from={source}", f"--to={to}"]
     command += ["--fail-if-warnings", *options]
-    pipes: dict[str, Any] = {"input": text.encode(), "capture_output": True}
-    done = subprocess.run(command, check=False, env={"LC_ALL": "C.UTF-8"}, **pipes)
+    environment = {"LC_ALL": "C.UTF-8"}
+    done = subprocess.run(
+        command, input=text.encode(), capture_output=True, check=False, env=environment
+    )
     if done.returncode:
         message = " ".join(done.stderr.decode(errors="replace").split())
         raise ValueError(f"pandoc: {message}")
@@ -53,22 +58,35 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
         return {"": Markup()}
-    # One call of pandoc converts all texts.
+    # One call of pandoc converts all texts, with a horizontal rule between them.
     joined = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
     html = pandoc(joined, PAGE_TEXT, "html5", ["--sandbox", "--mathml", "--wrap=none"])
-    html = IMAGE.sub(lambda image: image[1] or "", LINK.sub(_web_link, html))
+    html = LINK.sub(_web_link, html)
+    html = IMAGE.sub(_alternative_text, html)
     parts = [part.strip() for part in html.split("<hr />")]
-    paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
-    if not len(texts) == len(parts) == len(paragraphs):
-        raise ValueError("a text for a page is not one paragraph of Markdown")
-    return {"": Markup(), **dict(zip(texts, map(Markup, paragraphs), strict=True))}
+    if len(parts) != len(texts):
+        raise ValueError(NOT_ONE_PARAGRAPH)
+    paragraphs = [Markup(_paragraph_content(part)) for part in parts]
+    return {"": Markup(), **dict(zip(texts, paragraphs, strict=True))}
+
+
+def _paragraph_content(html: str) -> str:
+    """Return the content of a paragraph, or raise ValueError if the HTML is something else."""
+    if not (html.startswith("<p>") and html.endswith("</p>")):
+        raise ValueError(NOT_ONE_PARAGRAPH)
+    return html.removeprefix("<p>").removesuffix("</p>")
 
 
 def _web_link(link: re.Match) -> str:
     """Return a link to the web without its attributes, and of any other link only the text."""
     address, text = link.groups()
-    web = address.lower().startswith(("http://", "https://"))
-    return f'<a href="{address}">{text}</a>' if web else text
+    is_web_link = address.lower().startswith(("http://", "https://"))
+    return f'<a href="{address}">{text}</a>' if is_web_link else text
+
+
+def _alternative_text(image: re.Match) -> str:
+    """Return the alternative text of a picture, which may be empty."""
+    return image[1] or ""
 
 
 def harmless(text: str) -> str:
@@ -76,18 +94,25 @@ def harmless(text: str) -> str:
 
     The result is safe in a page, in the report and in a cell of a table.
     """
-    kept = (found.span() for found in KEPT.finditer(text))
     parts, end = [], 0
-    for start, stop in kept:
-        parts += [SIGNS.sub(r"\\\1", text[end:start]), text[start:stop]]
-        end = stop
-    escaped = "".join([*parts, SIGNS.sub(r"\\\1", text[end:])])
-    return " ".join(escaped.split())
+    for kept in KEPT.finditer(text):
+        parts += [_escaped(text[end : kept.start()]), kept[0]]
+        end = kept.end()
+    parts.append(_escaped(text[end:]))
+    return " ".join("".join(parts).split())
+
+
+def _escaped(text: str) -> str:
+    """Return a text in which special signs of Markdown have no effect."""
+    return SPECIAL_SIGNS.sub(r"\\\1", text)
 
 
 def is_readable(text: str) -> bool:
     """Return True if pandoc can read all formulas of a user's text."""
+    if "$" not in text:
+        return True
     try:
-        return "$" not in text or bool(markup_of([harmless(text)]))
+        markup_of([harmless(text)])
     except ValueError:
         return False
+    return True

@@ -25,7 +25,8 @@ def number(value: float | None, digits: int = 3) -> str:
         return _minus(f"{value:.0f}")
     # Use the magnitude of the rounded value: 0.9996 with three digits is 1.00.
     magnitude = int(f"{value:.{digits - 1}e}".partition("e")[2])
-    return _minus(f"{value:.{max(0, digits - 1 - magnitude)}f}")
+    decimals = max(0, digits - 1 - magnitude)
+    return _minus(f"{value:.{decimals}f}")
 
 
 def setting(value: float | None) -> str:

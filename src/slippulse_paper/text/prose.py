@@ -8,14 +8,18 @@ from jinja2 import Environment, StrictUndefined, TemplateError
 
 from .numerals import FILTERS, number
 
+MAX_QUOTED_LENGTH = 100
+
 
 class Prose(Environment):
-    """Rules of the expressions: an unknown name is an error, and an attribute of None is None."""
+    """Rules of the expressions: an attribute or an entry of None is None."""
 
     def getattr(self, obj: object, attribute: str) -> object:
+        """Return an attribute of an object, or None if the object is None."""
         return None if obj is None else super().getattr(obj, attribute)
 
     def getitem(self, obj: object, argument: object) -> object:
+        """Return an entry of an object, or None if the object is None."""
         return None if obj is None else super().getitem(obj, argument)
 
 
@@ -31,12 +35,22 @@ PROSE.filters |= FILTERS
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:
-    """Evaluate each ``{{ expression }}`` of a text; a ValueError quotes the line that fails."""
+    """Return a text in which each ``{{ expression }}`` is replaced by its value.
+
+    Raises ValueError with the line that fails.
+    """
     try:
         return PROSE.from_string(text).render(names)
     except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:
-        frames = extract_tb(error.__traceback__)
-        numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
-        last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
-        line = " ".join(text.splitlines()[last - 1].split())[:100]
-        raise ValueError(f"{line}: {type(error).__name__}: {error}") from None
+        line = text.splitlines()[_line_number(error) - 1]
+        quoted = " ".join(line.split())[:MAX_QUOTED_LENGTH]
+        raise ValueError(f"{quoted}: {type(error).__name__}: {error}") from None
+
+
+def _line_number(error: Exception) -> int:
+    """Return the line of a text, from 1, at which its evaluation has failed."""
+    frames = extract_tb(error.__traceback__)
+    numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
+    # An error of syntax has no frame in the template, but knows its line.
+    number = numbers[-1] if numbers else getattr(error, "lineno", None)
+    return number or 1

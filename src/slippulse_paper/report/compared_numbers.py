@@ -1,0 +1,206 @@
+"""Compare the measured numbers of joined runs within their uncertainties."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from pandas.api.types import is_numeric_dtype
+
+from slippulse.data.files import UnreadableFile
+from slippulse.data.tables import load_table
+
+from .joined_runs import LATTICE_COLUMNS, RUN_COLUMNS, columns_in_both, describe_pair
+
+TEXT_COLUMNS = ("boundary", "release", "quantity")
+# Relative difference that is always allowed, since tables have nine digits.
+TABLE_PRECISION = 1e-8
+# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
+# number or to 1, whichever is larger.
+EQUAL_LATTICE_TOLERANCE = 1e-6
+# Outcomes for a number that is in both folders. Numbers of altered runs are not judged.
+AGREES = "agrees"
+DIFFERS = "differs"
+UNKNOWN = "no uncertainty"
+ALTERED = "altered run"
+
+
+@dataclass(frozen=True)
+class MeasuredRuns:
+    """Runs of one table of one folder: all columns, the compared numbers, their uncertainties.
+
+    The three tables have the same rows. ``numbers`` and ``uncertainties`` have the same columns.
+    """
+
+    table: pd.DataFrame
+    numbers: pd.DataFrame
+    uncertainties: pd.DataFrame
+
+    def select(self, rows: pd.Series) -> "MeasuredRuns":
+        """Return the runs with these row labels, in this order."""
+        return MeasuredRuns(
+            self.table.loc[rows], self.numbers.loc[rows], self.uncertainties.loc[rows]
+        )
+
+
+@dataclass(frozen=True)
+class ComparedColumns:
+    """Columns of measured results that two tables have in common."""
+
+    numbers: list[str]
+    texts: list[str]
+
+
+def compared_columns(new: pd.DataFrame, old: pd.DataFrame) -> ComparedColumns:
+    """Return the columns that are compared. A column with text in one table counts as text."""
+    numbers, texts = [], []
+    for name in columns_in_both(new, old, new.columns):
+        if name in RUN_COLUMNS:
+            continue
+        if not (is_numeric_dtype(new[name]) and is_numeric_dtype(old[name])):
+            texts.append(name)
+        elif name not in LATTICE_COLUMNS:
+            numbers.append(name)
+    return ComparedColumns(numbers, texts)
+
+
+def read_runs(path: Path) -> pd.DataFrame:
+    """Read a table of measured runs. Raises ValueError if it lacks a parameter of the runs."""
+    return _read_table(path, RUN_COLUMNS)
+
+
+def with_uncertainties(table: pd.DataFrame, numbers: list[str], study: Path) -> MeasuredRuns:
+    """Return measured runs with the uncertainties of some numbers, read from their grid study."""
+    values = table[numbers].astype(float)
+    return MeasuredRuns(table, values, _read_uncertainties(study, values))
+
+
+def differing_texts(new: MeasuredRuns, old: MeasuredRuns, columns: list[str]) -> Iterator[str]:
+    """Yield a line for each text that differs between runs with the same lattice."""
+    new_texts = new.table[columns].astype(object).fillna("")
+    old_texts = old.table[columns].astype(object).fillna("")
+    is_same_lattice = _is_same_lattice(new, old)
+    for position, point in enumerate(new_texts.index):
+        if not is_same_lattice[position]:
+            continue
+        for column in columns:
+            new_text = new_texts[column].iat[position]
+            old_text = old_texts[column].iat[position]
+            if new_text != old_text:
+                yield f"point {point}, {column}: {new_text!r} against {old_text!r}"
+
+
+def compare_numbers(
+    new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]
+) -> pd.DataFrame:
+    """Compare the numbers of runs that are the same in both folders.
+
+    Returns one row for each number of each run. A number that only one of two runs on equal
+    lattices has is included, and differs.
+
+    parameters : columns that describe a run
+    """
+    numbers = _list_numbers(new, old, parameters)
+    is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))
+    has_study = numbers[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
+    # Equal lattices should give equal numbers, even if no study gives their uncertainty.
+    is_exact = is_same_lattice & ~has_study
+    size = numbers["new"].abs()
+    tolerance = EQUAL_LATTICE_TOLERANCE * size.clip(lower=1.0)
+    numbers["allowed"] = numbers["allowed"].mask(is_exact, tolerance)
+
+    is_within = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
+    numbers["outcome"] = DIFFERS
+    numbers.loc[~has_study & ~is_same_lattice, "outcome"] = UNKNOWN
+    numbers.loc[is_within, "outcome"] = AGREES
+
+    is_known = numbers[["new", "old"]].notna()
+    is_missing_once = is_known.any(axis=1) & is_same_lattice
+    return numbers[is_known.all(axis=1) | is_missing_once]
+
+
+def list_altered_numbers(
+    new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]
+) -> pd.DataFrame:
+    """Return the numbers of altered runs in the same form as `compare_numbers`, without judging."""
+    numbers = compare_numbers(new, old, parameters)
+    return numbers.dropna(subset=["new", "old"]).assign(outcome=ALTERED)
+
+
+def _list_numbers(new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]) -> pd.DataFrame:
+    """Return one row for each number of each pair of runs, with the sum of both uncertainties."""
+    quantities = new.numbers.columns
+    parameters = list(parameters)
+    runs = [
+        describe_pair(new_run, old_run, parameters)
+        for new_run, old_run in zip(
+            new.table.to_dict("records"), old.table.to_dict("records"), strict=True
+        )
+    ]
+    # The numbers of the first run come first, then those of the second run, and so on.
+    numbers = pd.DataFrame(
+        {
+            "point": np.repeat(new.table.index, len(quantities)),
+            "run": np.repeat(np.array(runs, object), len(quantities)),
+            "quantity": np.tile(quantities, len(runs)),
+            "old": old.numbers.to_numpy().ravel(),
+            "old_uncertainty": old.uncertainties.to_numpy().ravel(),
+            "new": new.numbers.to_numpy().ravel(),
+            "new_uncertainty": new.uncertainties.to_numpy().ravel(),
+        }
+    )
+    uncertainty = numbers["new_uncertainty"].fillna(0.0) + numbers["old_uncertainty"].fillna(0.0)
+    numbers["allowed"] = uncertainty + TABLE_PRECISION * numbers["new"].abs()
+    return numbers
+
+
+def _is_same_lattice(new: MeasuredRuns, old: MeasuredRuns) -> np.ndarray:
+    """Return for each pair of runs whether their lattices are the same."""
+    columns = columns_in_both(new.table, old.table, LATTICE_COLUMNS)
+    is_equal = new.table[columns].to_numpy() == old.table[columns].to_numpy()
+    return is_equal.all(axis=1)
+
+
+def _read_table(path: Path, required: Iterable[str]) -> pd.DataFrame:
+    """Read a table. Raises ValueError if a required column is missing or unexpectedly has text."""
+    with named_in_errors(path):
+        table = load_table(path)
+        for column in required:
+            if column not in table:
+                raise ValueError(f"no column {column}")
+            if column not in TEXT_COLUMNS and not is_numeric_dtype(table[column]):
+                raise ValueError(f"text in column {column}")
+    return table
+
+
+def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
+    """Return the uncertainty of every number, or NaN if there is no study of exactly this number.
+
+    path : table of the grid study, which may not exist
+    """
+    if not path.exists():
+        return numbers * np.nan
+    table = _read_table(path, ["point", "quantity", "value", "uncertainty"])
+    with named_in_errors(path):
+        study = table.pivot(index="point", columns="quantity", values=["value", "uncertainty"])
+        study = study.astype(float)
+        studied_numbers = study["value"].reindex_like(numbers)
+        uncertainties = study["uncertainty"].reindex_like(numbers)
+    # A study of an older run does not apply to the number of this run.
+    is_another_number = (numbers - studied_numbers).abs() > TABLE_PRECISION * numbers.abs()
+    return uncertainties.mask(is_another_number)
+
+
+@contextmanager
+def named_in_errors(path: Path) -> Iterator[None]:
+    """Turn an error inside the block into an UnreadableFile error, which names the file."""
+    try:
+        yield
+    except UnreadableFile:
+        raise
+    except LookupError as error:
+        raise UnreadableFile(path, f"no {error}") from None
+    except (OSError, ValueError, TypeError, RecursionError) as error:
+        raise UnreadableFile(path, getattr(error, "strerror", None) or error) from None
