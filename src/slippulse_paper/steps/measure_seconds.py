@@ -8,18 +8,29 @@ import time
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from slippulse.data.tables import load_table, save_table
-from slippulse.plotting.style import PAGE_WIDTH, house_style, legend_above, new_panels, save_figure
+from slippulse.plotting.style import (
+    PAGE_WIDTH,
+    few_ticks,
+    house_style,
+    legend_above,
+    new_panels,
+    save_figure,
+)
 
 from ..figures.shared.error_panels import draw_errors, error_rows
 from ..studies.accuracy_cost import DAMPING_RATIOS, Setting
 from .inputs import load_inputs
 
-# A run is repeated until it has taken this time in total, but not more often than this.
-LONG_ENOUGH, REPETITIONS = 0.01, 3
+# A run is repeated until it has taken this many seconds in total, but not more often than this.
+MIN_TOTAL_SECONDS = 0.01
+MAX_REPETITIONS = 3
+# Seconds that have a number on the axis, as far as the axis reaches.
+AXIS_TICKS = np.outer(10.0 ** np.arange(-5, 3), [1.0, 2.0, 5.0]).ravel()
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
@@ -60,7 +71,7 @@ def timed(trade: pd.DataFrame) -> pd.DataFrame:
 def shortest_seconds(simulate: Callable[[], object]) -> float:
     """Return the processor time of a run, the shortest of some repetitions."""
     times: list[float] = []
-    while len(times) < REPETITIONS and sum(times) < LONG_ENOUGH:
+    while len(times) < MAX_REPETITIONS and sum(times) < MIN_TOTAL_SECONDS:
         start = time.process_time()
         simulate()
         times.append(time.process_time() - start)
@@ -71,5 +82,8 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw four errors against processor seconds."""
     figure, panels = new_panels(PAGE_WIDTH, 5.0, "ab;cd")
     draw_errors(panels, table, "seconds", "processor seconds for one run")
+    for axes in panels:
+        low, high = axes.get_xlim()
+        few_ticks(axes.xaxis, AXIS_TICKS[(low < AXIS_TICKS) & (high > AXIS_TICKS)])
     legend_above(figure, panels[0])
     return figure
