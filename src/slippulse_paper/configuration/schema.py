@@ -694,7 +694,7 @@ class Configuration(Block):
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
-            allowed = "'localised', since accuracy is given"
+            allowed = "'localised' if accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
             self._check_scene_name(name)
