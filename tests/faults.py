@@ -70,7 +70,7 @@ def output_of(folder: Path) -> str:
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
-    """Return the digest of every result, without logs and hidden files.
+    """Return the digest of every result, without logs, measured seconds and hidden files.
 
     Records are hidden files, and so are the unfinished files that a killed run leaves.
     """
@@ -78,7 +78,7 @@ def digests(folder: Path, results: str = "results") -> dict[str, str]:
     for path in sorted((folder / results).rglob("*")):
         name = path.relative_to(folder / results)
         is_hidden = any(part.startswith(".") for part in name.parts)
-        if path.is_file() and not is_hidden and name.parts[0] != "logs":
+        if path.is_file() and not is_hidden and name.parts[0] not in ("logs", "seconds"):
             digest[str(name)] = hashlib.sha256(path.read_bytes()).hexdigest()
     return digest
 

@@ -21,12 +21,13 @@ SMALL_STUDIES = {
         "WEAKENINGS": (0.05, 0.8),
         "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
     },
+    "layer_healing": {"THICK_PULSES": ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5))},
     "rough_checks": {"GRID_SEEDS": 1, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
     "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
         "DAMPING_RATIOS": {
-            "total": (0.055, 0.075, 0.1, 0.135),
-            "elastic": (0.075, 0.12, 0.18, 0.26, 0.39),
+            "total": (0.055, 0.066, 0.08, 0.096, 0.115),
+            "elastic": (0.1, 0.13, 0.169, 0.22, 0.286),
         }
     },
 }

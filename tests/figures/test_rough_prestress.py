@@ -86,6 +86,21 @@ def test_the_rate_of_barriers_is_that_counted_in_fields():
     assert count / length == pytest.approx(predicted["barrier_rate"], rel=0.2)
 
 
+def test_walks_with_exponential_correlation_are_absorbed_as_far_behind_0_as_the_theory_says():
+    """Simulated walks: the mean step is that of an Ornstein-Uhlenbeck process of variance 1."""
+    generator, step, count, start, distance = np.random.default_rng(1), 0.1, 40_000, 2.0, 100.0
+    field, total = generator.standard_normal(count), np.full(count, start)
+    decay = math.exp(-step)
+    for _ in range(round(distance / step)):
+        noise = math.sqrt(1.0 - decay**2) * generator.standard_normal(field.size)
+        later = decay * field + noise
+        total = total + 0.5 * step * (field + later)
+        field, total = later[total > 0.0], total[total > 0.0]
+    # The variance of the walk grows by 2 for each unit of distance.
+    expected = math.erf((start + theory.MILNE) / math.sqrt(2.0 * 2.0 * distance))
+    assert total.size / count == pytest.approx(expected, rel=0.03)
+
+
 def test_first_passage_has_the_limits_of_a_random_walk():
     keys = KEYS | {"level": 0.0, "deviation": 0.3}
     rate = theory.diffusivity(keys)

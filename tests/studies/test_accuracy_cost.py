@@ -5,6 +5,10 @@ import pandas as pd
 import pytest
 import tolerances as tol
 
+from slippulse_paper.figures.shared.error_panels import QUANTITIES, error_rows
+from slippulse_paper.steps.measure_seconds import draw, timed
+from slippulse_paper.studies.accuracy_cost import ORDERS
+
 pytestmark = pytest.mark.slow
 
 # One setting is better than another by these. The energy balance is a check, not a result, and the
@@ -45,10 +49,45 @@ def test_the_exact_solution_is_beside_the_lattices(trade):
     (row,) = trade[trade["scheme"] == "continuum"].to_dict("records")
     assert all(row[name] < tol.EXACT_RUN for name in JUDGED[:-1])
     assert row["arrest_position"] < 2.0 * row["dx"] and np.isnan(row["work"])
-    # The textbook scheme does not converge in front speed.
-    rows = trade[trade["scheme"] == "fixed_step"].sort_values("step", ascending=False)
-    assert (np.diff(rows["front_speed"]) > 0.0).any()
-    assert rows["front_speed"].min() > 5e-4
+    # The textbook scheme does not converge in front speed, neither with the step nor the spacing.
+    textbook = trade[trade["scheme"] == "fixed_step"].sort_values("step", ascending=False)
+    assert sorted({*textbook["dx"]}) == [0.01, 0.02, 0.04]
+    for _, rows in textbook.groupby("dx"):
+        assert (np.diff(rows["front_speed"]) > 0.0).any() or len(rows) < 5
+    assert textbook["front_speed"].min() > 5e-4
+
+
+def test_the_seconds_of_a_run_are_measured_and_the_best_settings_of_each_order_are_drawn(trade):
+    """Some settings are enough: one of each order, one of the textbook scheme, and the exact."""
+    coarse = trade[(trade["dx"] == 0.04) & (trade["step"] == 0.5)]
+    few = pd.concat([coarse, trade[trade["scheme"] == "continuum"]])
+    table = timed(few)
+    assert (table["seconds"] > 0.0).all() and {*table["quantity"]} == {*QUANTITIES}
+    assert {*table["role"]} == {"textbook", "preset", "exact", "frontier"}
+    for _, rows in table[table["role"] == "frontier"].groupby(["quantity", "scheme", "order"]):
+        assert rows["seconds"].is_monotonic_increasing
+        assert (np.diff(rows["error"]) < 0.0).all()
+    # The textbook scheme has a point for each of its settings, and a stick time for each order.
+    times = table[table["quantity"] == "transition_time"]
+    assert len(times[times["role"] == "textbook"]) == len(few[few["scheme"] == "fixed_step"]) == 1
+    assert sorted({*times.loc[times["role"] == "frontier", "order"]}) == [1, *ORDERS]
+    figure = draw(table)
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == [f"order {order}" for order in ORDERS] + [
+        "textbook scheme",
+        "presets",
+        "exact solution",
+    ]
+
+
+def test_a_missing_error_does_not_hide_the_next_setting():
+    """At the coarsest spacing the crack never covers its path, so that it has no error."""
+    rows = {"scheme": "localised", "order": 4, "step": 1.0, "dx": [0.08, 0.04, 0.02, 0.01]}
+    trade = pd.DataFrame(rows).assign(work=[1.0, 2.0, 3.0, 4.0], preset=None)
+    trade = trade.assign(**{name: [np.nan, 0.4, 0.5, 0.2] for name in QUANTITIES})
+    rows = error_rows(trade, "work", lambda quantity: "work")
+    kept = rows[(rows["role"] == "frontier") & (rows["quantity"] == "share_time")]
+    assert kept["work"].tolist() == [2.0, 4.0]
 
 
 def test_the_textbook_front_locks_on_whole_steps_a_block_and_the_localised_does_not(study):

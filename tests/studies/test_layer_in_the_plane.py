@@ -1,8 +1,11 @@
 """The layer in the plane beside one dimension: what holds, what does not, and what converges."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+from slippulse_paper.studies import layer_healing
 from slippulse_paper.studies.layer_map import outcome
 
 CASE = ["gamma", "tau0", "fracture_energy"]
@@ -129,3 +132,34 @@ def test_the_outcome_of_a_point_follows_from_the_slips_of_its_runs(changed, expe
     for name, (last, halfway) in (SLIPS | changed).items():
         slips |= {f"{name}_slip": last, f"{name}_slip_halfway": halfway}
     assert outcome(slips) == expected
+
+
+def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
+    table = study("layer_healing").query("part == 'position'")
+    slip = table.pivot(
+        index=["thickness", "tau0", "before", "patch_half_length"],
+        columns="sample_position",
+        values="pulse_slip",
+    )
+    # In the thin layer pulses from both sides tend to one slip, which grows with the level.
+    thin = slip.loc[1.0].dropna(axis="columns")
+    for _, runs in thin.groupby("tau0"):
+        distances = runs.max() - runs.min()
+        assert distances.is_monotonic_decreasing and distances.iloc[0] > 0.4 * runs.iloc[0, 0]
+        assert distances.iloc[-1] < 0.03 * runs.iloc[-1].min()
+    assert thin.groupby("tau0").max().iloc[:, -1].is_monotonic_increasing
+    # In the thick layer the pulse of the lowest level dies, and others differ as much as before.
+    thick = slip.drop(index=1.0, level="thickness").dropna(axis="columns")
+    assert thick.iloc[0, -1] == 0.0
+    at_one_level = thick.xs(0.41, level="tau0")
+    ends = at_one_level.max() / at_one_level.min()
+    assert ends.iloc[-1] > ends.iloc[0] > 1.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("half_length", [1.5, 5.0])
+def test_pulses_of_a_thick_layer_have_the_same_fate_on_a_finer_grid(half_length):
+    slips = partial(layer_healing.slips, layer_healing.THICKNESS, 0.41, 0.41, half_length)
+    for refinement in (1, 2):
+        rows = [row["pulse_slip"] for row in slips(refinement=refinement)]
+        assert (rows[-1] > rows[0]) == (half_length == 5.0), rows

@@ -20,6 +20,28 @@ def test_energy_is_conserved_to_rounding(boundary, top):
     assert simulate_layer(scene).energy_residual < 1e-12
 
 
+def test_energy_is_conserved_with_friction_that_recovers_as_slip_slows_down():
+    run = simulate_layer(replace(PULSE, rate=0.05, weakening=0.1, cells=10))
+    assert run.energy_residual < 1e-12 and np.nanmax(run.slip) > 0.5
+
+
+def test_a_strip_that_slides_as_one_has_the_strength_of_its_velocity():
+    """Before a wave returns from the top, shear waves carry away the stress Z times velocity."""
+    level, rate, cells = 0.9, 0.05, 20
+    uniform = Prestress(level, level, width=None)
+    scene = LayerScene("displacement", GAMMA, uniform, 0.05, 3.0, cells=cells, rate=rate)
+    h, x = 1.0 / cells, np.arange(10 * cells) / cells
+    elastic, fields, fault = layer.layer_at_rest(scene, x, 0.5)
+    fault.nucleus[:], fault.sliding[:], fault.strength[:] = False, True, 0.85
+    everything = layer.Columns(centre=x.size // 2, nucleation=x.size, trail=x.size)
+    layer.advance_layer(elastic, fields, fault, 0.5 * h, (0, 6 * cells), everything)
+    # On the grid the velocity still rings a little.
+    velocity, middle = fields.vx[0, x.size // 2], x.size // 2
+    steady = 1.0 / (1.0 + velocity / (scene.slip_scale * rate))
+    assert fault.strength[middle] == pytest.approx(steady, rel=0.01)
+    assert level - np.sqrt(GAMMA / 2.0) * velocity == pytest.approx(steady, abs=5e-3)
+
+
 def plane_wave_error(cells: int) -> float:
     """Return the largest error of a compressional wave after a path of three thicknesses."""
     flat = Prestress(0.0, 0.0, 1.0, 0.0)

@@ -89,6 +89,8 @@ def test_checksums_and_manifest_cover_all_results_and_what_an_overlay_adds(input
         files = (f"data/{name}.nc", f"measurements/{name}.csv", f"uncertainties/{name}.csv")
         assert {f"results/{file}" for file in files} <= listed
     assert {f"results/scenes/one.{ending}" for ending in ("html", "png", "pdf", "csv")} <= listed
+    # Seconds are measured in each whole run.
+    assert "results/seconds/accuracy_cost.csv" in inputs["everything"]
     # Data of a figure and measurements of a claim are listed, too.
     assert {"results/data/steady_stress.nc", "results/measurements/scaling_stress.csv"} <= listed
 

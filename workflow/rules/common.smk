@@ -121,6 +121,8 @@ FILES = {
     "animations": "results/scenes/{name}.gif",
     "kernels": "results/kernels/{name}.txt",
 }
+# Errors against measured seconds.
+SECONDS = {ending: f"results/seconds/accuracy_cost.{ending}" for ending in ("csv", "png", "pdf")}
 # A job whose modules reach these kernels waits until they are compiled.
 KERNELS = {
     "layer": "slippulse.solver.layer",

@@ -50,6 +50,24 @@ rule figure:
         run_step("draw_figure", wildcards, input, output, params, threads, log)
 
 
+# Seconds differ from run to run, and so these files are not among the results that are compared.
+rule measure_seconds:
+    input:
+        studies=made("studies", ["accuracy_cost"]),
+        kernels=made("kernels", ["fixed_step", "localised"]),
+    output:
+        **SECONDS,
+    log:
+        "results/logs/measure_seconds.log",
+    params:
+        settings={},
+        code=code_of("measure_seconds"),
+    message:
+        "Measuring seconds"
+    run:
+        run_step("measure_seconds", wildcards, input, output, params, threads, log)
+
+
 rule draw_scene:
     input:
         data="results/data/{scene}.nc",

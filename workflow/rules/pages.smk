@@ -3,8 +3,8 @@
 from slippulse_paper.records.provenance import changes, source_files
 
 CLAIM_STUDIES = (
-    "derivations friction_laws layer layer_map open_choices published_figure published_scheme"
-    " rate_dependence"
+    "derivations friction_laws layer layer_healing layer_map open_choices published_figure"
+    " published_scheme rate_dependence"
     " rough_checks rough_prestress"
 ).split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
@@ -20,7 +20,7 @@ RESULTS = [
     *made("scenes", SCENES),
     *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
 ]
-EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
+EVERYTHING = [*RESULTS, *SECONDS.values(), "results/provenance.json", "results/index.html"]
 # By default, a draft makes the figures of the paper, and everything that an overlay adds.
 DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS)
 DRAFT += made("scenes", [name for name in SCENES if name not in SHIPPED.get("scenes", {})])
@@ -128,6 +128,7 @@ rule write_scenes_page:
 rule write_index:
     input:
         results=RESULTS,
+        seconds=[*SECONDS.values()],
         captions=project("manuscript/captions.yaml"),
         summary=project("manuscript/summary.yaml"),
         errata=project("manuscript/errata.yaml"),

@@ -5,6 +5,7 @@ gamma to the readings. `interpolate_fits` interpolates these fits between the da
 `infer_parameters` finds the best damping ratio and its confidence regions (profile likelihood).
 """
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from scipy.special import chdtri
 # Number of damping ratios at which the fits are interpolated.
 INTERPOLATED_RATIOS = 4001
 CONFIDENCE_LEVELS = (0.68, 0.95)
+INDEPENDENT_PREFIX = "independent "
 
 
 def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
@@ -22,20 +24,38 @@ def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
 
     The result has one row for each of INTERPOLATED_RATIOS damping ratios. Its columns are
     damping_ratio, dx, tau0, gamma, tau0_error, gamma_error, chi2, and the pull of each reading,
-    (predicted - drawn)/reading_error.
+    (predicted - drawn)/reading_error. Chi-square is the sum of squares of the independent pulls,
+    in which errors that several readings share are taken into account.
     """
-    pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
+    by_reading = partial(profile.pivot, index="damping_ratio", columns="reading")
+    pulls = by_reading(values="pull")
+    independent = by_reading(values="independent_pull").add_prefix(INDEPENDENT_PREFIX)
     columns = ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
     # The fit at each studied damping ratio.
-    studied = pd.concat([pulls, profile.groupby("damping_ratio")[columns].first()], axis=1)
+    numbers = profile.groupby("damping_ratio")[columns].first()
+    studied = pd.concat([pulls, independent, numbers], axis=1)
     studied_log_ratios = np.log(studied.index.to_numpy())
     log_ratios = np.linspace(studied_log_ratios[0], studied_log_ratios[-1], INTERPOLATED_RATIOS)
     values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
     fits = pd.DataFrame(values, columns=studied.columns)
-    # Only readings with a weight are fitted. Chi-square is the sum of their squared pulls.
+    # Only readings with a weight are fitted.
     fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    chi_square = (fits[fitted_readings] ** 2).sum(axis=1)
+    fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
+    chi_square = (fitted_pulls**2).sum(axis=1)
+    fits = fits.drop(columns=independent.columns)
     return fits.assign(chi2=chi_square, damping_ratio=np.exp(log_ratios))
+
+
+def independent_combinations(errors: np.ndarray, shared_errors: np.ndarray) -> np.ndarray:
+    """Return a matrix that turns deviations of readings into independent ones with errors of 1.
+
+    errors : error of each reading
+    shared_errors : part of this error that all readings with such a part have in common
+
+    A reading without a shared error is only divided by its error.
+    """
+    covariance = np.outer(shared_errors, shared_errors) + np.diag(errors**2 - shared_errors**2)
+    return np.linalg.inv(np.linalg.cholesky(covariance))
 
 
 def chi_square_rise(confidence: float, parameters: int = 1) -> float:
@@ -54,7 +74,7 @@ def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, An
 
     part : "profile" for fits without the drawn arrows, "arrows" for fits with them
 
-    Source: profile likelihood, where the readings have independent Gaussian errors.
+    Source: profile likelihood, where the readings have Gaussian errors.
     """
     fits: dict[str, Any] = {}
     for release, rows in table[table["part"] == part].groupby("release"):

@@ -39,17 +39,23 @@ PRECURSOR_CELLS = 32
 
 @dataclass(frozen=True)
 class LayerScene:
-    """Rupture of the layer in the plane, with friction that weakens linearly with slip."""
+    """Rupture of the layer in the plane, with friction that weakens with slip.
+
+    With ``rate`` 0 the strength falls linearly with the slip since the release. Otherwise it
+    relaxes, over the slip ``weakening``, towards 1/(1 + V/rate) at the slip velocity V, so that it
+    recovers while a point slows down. A point that sticks has its full strength again.
+    """
 
     boundary: str  # held at the top: "displacement" (v_x = 0) or "stress" (s_xy = 0)
     gamma: float  # 2G/(lambda + 2G), in (0, 1)
     prestress: Prestress  # shear stress tau(x) at the bottom before the rupture, as in `Scene`
-    weakening: float  # slip d_c over which the strength falls from 1 to 0 (units of U)
+    weakening: float  # slip d_c over which the strength falls (units of U)
     duration: float
     cells: int = 40  # across the thickness
     nucleation: float = 2.0  # friction is 0 at |x| <= nucleation from t = 0 on
     top: str = "held"  # normal displacement is held, or "free": normal stress does not change
     coupling: float = 0.0  # friction coefficient mu, if the strength follows pressure: - mu s_yy
+    rate: float = 0.0  # slip velocity at which the strength is halved, 0 if it has no influence
     # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. No
     # wave is faster, so this changes no event at x until the time x + trail.
     trail: float = math.inf
@@ -59,7 +65,7 @@ class LayerScene:
         check_number("gamma", self.gamma, above=0.0, below=1.0)
         for name in ("weakening", "duration"):
             check_number(name, getattr(self, name), above=0.0)
-        for name in ("nucleation", "coupling"):
+        for name in ("nucleation", "coupling", "rate"):
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
@@ -100,6 +106,7 @@ class Elastic(NamedTuple):
     moving_rows: int  # rows whose v_x is not held
     coupling: float  # mu
     weakening: float  # d_c in units of H (mu_s - mu_k) sigma_n/(lambda + 2G)
+    rate: float  # slip velocity at which the strength is halved, in the unit of vx
     # Weights of the values above and below a row, which are (2, 0) and (0, 2) at the outer rows
     above: np.ndarray
     below: np.ndarray
@@ -126,6 +133,7 @@ class Fault(NamedTuple):
     sliding: np.ndarray
     slip: np.ndarray
     slip_at_release: np.ndarray
+    strength: np.ndarray  # of sliding nodes, if it depends on slip velocity
     release_time: np.ndarray
     stick_time: np.ndarray
     excess: np.ndarray  # load minus strength at the last step, of nodes at rest
@@ -201,12 +209,15 @@ def update_velocities(elastic, fields, first, last):
 
 @kernel_function()
 def compute_strength(elastic, fields, fault, i):
-    """Return the strength of one node, from its slip since the release and its normal stress."""
+    """Return the strength of one node, from its motion since the release and its normal stress."""
     if fault.nucleus[i]:
         return 0.0
     weakening = 0.0
     if fault.sliding[i]:
-        weakening = (fault.slip[i] - fault.slip_at_release[i]) / elastic.weakening
+        if elastic.rate > 0.0:
+            weakening = 1.0 - fault.strength[i]
+        else:
+            weakening = (fault.slip[i] - fault.slip_at_release[i]) / elastic.weakening
     normal = 0.5 * (fields.syy[0, i - 1] + fields.syy[0, i])
     return max(0.0, 1.0 - weakening) - elastic.coupling * normal
 
@@ -228,6 +239,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
             return
         fault.sliding[i] = True
         fault.slip_at_release[i] = fault.slip[i]
+        fault.strength[i] = 1.0
         if np.isnan(fault.release_time[i]):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - before) if before < 0.0 else 0.0
@@ -243,6 +255,10 @@ def advance_node(elastic, fields, fault, i, dt, time):
         fault.sliding[i] = False
     fields.vx[0, i] = later
     fault.slip[i] += dt * later
+    if elastic.rate > 0.0:
+        steady = 1.0 / (1.0 + later / elastic.rate)
+        remaining = np.exp(-dt * later / elastic.weakening)
+        fault.strength[i] = steady + (fault.strength[i] - steady) * remaining
     moved = 0.5 * dt * (earlier + later)
     if elastic.is_mirrored and i == 1:
         moved *= 0.5
@@ -328,6 +344,7 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
         moving_rows=scene.cells + (scene.boundary == "stress"),
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
+        rate=scene.rate * scene.slip_scale,
         above=above,
         below=below,
         direct=np.where(normal, 1.0, 1.0 - lateral**2),
@@ -350,6 +367,7 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
         sliding=np.zeros(x.size, dtype=bool),
         slip=np.zeros(x.size),
         slip_at_release=np.zeros(x.size),
+        strength=np.ones(x.size),
         release_time=np.full(x.size, np.nan),
         stick_time=np.full(x.size, np.nan),
         excess=tau - np.where(nucleus, 0.0, 1.0),

@@ -3,6 +3,7 @@
 Positions were read off the figure. The study `published_figure` fits the exact solution to them.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -23,8 +24,23 @@ def left(evidence: Evidence, id: str) -> Reading:
         chi_square=best["chi2"],
         degrees_of_freedom=best["dof"],
         further=read_off(evidence, "space_time_displacement"),
-        template_values=best,
+        template_values=best | shares_of_errors(evidence, best["pulls"]),
     )
+
+
+def shares_of_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
+    """Return the error of an edge reading that is its own, and chi-square if no error were shared.
+
+    ``pulls`` has the deviation of each reading divided by its error.
+    """
+    own, independent = math.nan, 0.0
+    for name, reading in evidence.readings.items():
+        shared = reading.get("shared_error", 0.0)
+        if shared:
+            own = math.sqrt(reading["reading_error"] ** 2 - shared**2)
+        if name in pulls and not reading.get("arrow"):
+            independent += pulls[name] ** 2
+    return {"own_edge_error": own, "independent_chi_square": independent}
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:

@@ -656,6 +656,9 @@ class Reading(Block):
     statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
+    shared_error: NonNegative = key(
+        "part of this uncertainty that all readings with a shared error have in common", 0.0
+    )
     arrow: bool = key(
         "true if this is a drawn arrow, for which fits are made with it and without it", False
     )

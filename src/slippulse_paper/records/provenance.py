@@ -1,6 +1,7 @@
 """Provenance of the results, their checksums and a manifest for CODECHECK.
 
-The provenance is the only result that contains times, so that all others can be compared by byte.
+Only the provenance and the folder ``seconds`` contain times. The seconds have no checksums, so that
+all results with a checksum can be compared by byte.
 """
 
 import os

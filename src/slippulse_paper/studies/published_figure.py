@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from slippulse.measurement.inference import independent_combinations
 from slippulse.measurement.table import measure_run
 from slippulse.model.prestress import Prestress
 from slippulse.model.release import RELEASES
@@ -33,8 +34,8 @@ PANEL_END = 10.8
 FIRST_GUESS = np.array([0.25, 0.55])
 # Even steps of the logarithm around the best fit of each rule, beyond the range of accepted fits.
 DAMPING_RATIOS = {
-    "total": (0.04, 0.055, 0.075, 0.1, 0.135, 0.18),
-    "elastic": (0.075, 0.105, 0.145, 0.2, 0.28, 0.39),
+    "total": (0.05, 0.06, 0.072, 0.087, 0.104, 0.125),
+    "elastic": (0.095, 0.12, 0.15, 0.19, 0.24, 0.3),
 }
 # Damping ratio, release rule and spacing of the authors' public notebook for the paper.
 NOTEBOOK_RATIO = 0.2
@@ -61,6 +62,17 @@ TRAILING_EDGE_PREFIX = "trailing_edge_"
 SLOPE_DIFFERENCE = 0.01
 # Number of steps of a fit from the first guess, and from an extrapolated guess.
 FIRST_GUESS_STEPS, EXTRAPOLATED_STEPS = 2, 1
+# Number of steps to the fit with the arrows, after one with the slopes of the fit without them.
+ARROW_STEPS = 1
+
+
+class Optimum(NamedTuple):
+    """A trial that fits some readings best; arrays have one entry or row for each reading."""
+
+    trial: np.ndarray
+    exact: np.ndarray
+    correction: np.ndarray
+    slopes: np.ndarray  # of the independent pulls by tau_0 and gamma, at the trial before
 
 
 class Fit(NamedTuple):
@@ -91,7 +103,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     )
     without_arrows = notebook.rows["part"] == "profile"
     parts.append(notebook.rows[without_arrows].assign(part="notebook"))
-    readings = readings_of(published, "space_time_stress").drop(columns="arrow")
+    readings = readings_of(published, "space_time_stress")
+    readings = readings.drop(columns=["arrow", "shared_error"])
     readings = readings[readings["quantity"] == "largest_velocity"]
     for release, ratio in product(RELEASES, RIGHT_RATIOS):
         parts.append(right_panel_rows(readings, ratio, release))
@@ -138,6 +151,7 @@ def right_panel_rows(readings: pd.DataFrame, ratio: float, release: str) -> pd.D
     velocity = float(run["sample_velocity"].max())
     # The exact value of the largest velocity does not depend on the damping.
     exact = crack.peak_velocity
+    pull = (velocity - readings["drawn"]) / readings["reading_error"]
     return readings.assign(
         part="stress",
         release=release,
@@ -147,7 +161,8 @@ def right_panel_rows(readings: pd.DataFrame, ratio: float, release: str) -> pd.D
         width=RIGHT_PANEL.width,
         exact=exact,
         correction=velocity - exact,
-        pull=(velocity - readings["drawn"]) / readings["reading_error"],
+        pull=pull,
+        independent_pull=pull,
         weight=1.0,
     )
 
@@ -162,9 +177,10 @@ def readings_of(published: dict, simulation: str) -> pd.DataFrame:
     """
     rows = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
     rows = rows[rows["simulation"] == simulation].rename(columns={"value": "drawn"})
-    # Readings that are no arrows do not have this key, so that the table has NaN.
+    # Readings without these keys have NaN in the table.
     rows["arrow"] = rows["arrow"].eq(True)
-    return rows[["reading", "drawn", "quantity", "reading_error", "arrow"]]
+    rows["shared_error"] = rows["shared_error"].fillna(0.0)
+    return rows[["reading", "drawn", "quantity", "reading_error", "shared_error", "arrow"]]
 
 
 def sampled(scene: Scene, left: float) -> xr.Dataset:
@@ -186,6 +202,9 @@ class LeftPanel:
         self.readings = readings
         self.drawn = readings["drawn"].to_numpy()
         self.error = readings["reading_error"].to_numpy()
+        # The sum of squares of these combinations of deviations is the chi-square.
+        shared_error = readings["shared_error"].to_numpy()
+        self.combinations = independent_combinations(self.error, shared_error)
         self.quantities = readings["quantity"].tolist()
         self.edges = [name for name in self.quantities if name.startswith(TRAILING_EDGE_PREFIX)]
         self.edge_times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
@@ -241,10 +260,14 @@ class LeftPanel:
         """Return how far values are from the readings, divided by the reading errors."""
         return (values - self.drawn) / self.error
 
+    def independent_pulls(self, values: np.ndarray) -> np.ndarray:
+        """Return deviations from the readings, combined and scaled to independent errors of 1."""
+        return self.combinations @ (values - self.drawn)
+
     def slopes(
         self, trial: np.ndarray, exact: np.ndarray, ratio: float, release: str
     ) -> np.ndarray:
-        """Return the derivatives of all pulls by tau_0 (column 0) and gamma (column 1).
+        """Return the derivatives of the independent pulls by tau_0 (column 0) and gamma (1).
 
         exact : the exact values at the trial
         """
@@ -252,52 +275,65 @@ class LeftPanel:
         changes = np.diag(SLOPE_DIFFERENCE * trial)
         changed = np.array([self.exact(trial + change, ratio, release) for change in changes])
         derivatives = (changed - exact) / changes.sum(axis=1)[:, np.newaxis]
-        return derivatives.T / self.error[:, np.newaxis]
+        return self.combinations @ derivatives.T
 
     def fitted(self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int) -> Fit:
         """Fit tau_0 and gamma by least squares to all readings except the arrows.
 
-        Each step of the Gauss-Newton method solves a linear problem. The fit to all readings,
-        arrows included, is so near that one more step from the fit, with the same slopes and the
-        same correction for the lattice, suffices. The rows contain both fits.
+        The rows contain this fit and the fit to all readings, arrows included. The first step
+        towards the second fit uses the last slopes of the first one.
+        """
+        without_arrows = ~self.readings["arrow"].to_numpy()
+        everything = np.ones_like(without_arrows)
+        best = self.optimum(ratio, release, dx, guess, steps, without_arrows)
+        pulls = self.independent_pulls(best.exact + best.correction)
+        near = best.trial - least_squares(best.slopes, pulls)
+        best_with_arrows = self.optimum(ratio, release, dx, near, ARROW_STEPS, everything)
+        labels = {"release": release, "damping_ratio": ratio, "dx": dx}
+        rows = [
+            self.rows_of(best, without_arrows).assign(part="profile", **labels),
+            self.rows_of(best_with_arrows, everything).assign(part="arrows", **labels),
+        ]
+        return Fit(best.trial, pd.concat(rows))
+
+    def optimum(
+        self,
+        ratio: float,
+        release: str,
+        dx: float,
+        guess: np.ndarray,
+        steps: int,
+        is_fitted: np.ndarray,
+    ) -> Optimum:
+        """Fit tau_0 and gamma to some readings by steps of the Gauss-Newton method.
+
+        Each step solves a linear problem.
         """
         trial = guess
-        is_fitted = ~self.readings["arrow"].to_numpy()
         for step in range(steps + 1):
             exact = self.exact(trial, ratio, release)
             correction = self.lattice(trial, ratio, release, dx) - exact
-            pulls = self.pulls(exact + correction)
+            pulls = self.independent_pulls(exact + correction)
             if step < steps:
                 slopes = self.slopes(trial, exact, ratio, release)
                 trial = trial - least_squares(slopes[is_fitted], pulls[is_fitted])
-        trial_with_arrows = trial - least_squares(slopes, pulls)
-        exact_with_arrows = self.exact(trial_with_arrows, ratio, release)
-        labels = {"release": release, "damping_ratio": ratio, "dx": dx}
+        return Optimum(trial, exact, correction, slopes)
 
-        def rows_of(
-            part: str, trial: np.ndarray, exact: np.ndarray, is_fitted: np.ndarray
-        ) -> pd.DataFrame:
-            """Return one row for each reading, with the trial and its errors in each of them."""
-            covariance = np.linalg.inv(slopes[is_fitted].T @ slopes[is_fitted])
-            tau0_error, gamma_error = np.sqrt(np.diag(covariance))
-            return self.readings.drop(columns="arrow").assign(
-                part=part,
-                **labels,
-                tau0=trial[0],
-                gamma=trial[1],
-                tau0_error=tau0_error,
-                gamma_error=gamma_error,
-                exact=exact,
-                correction=correction,
-                pull=self.pulls(exact + correction),
-                weight=is_fitted.astype(float),
-            )
-
-        without_arrows = rows_of("profile", trial, exact, is_fitted)
-        with_arrows = rows_of(
-            "arrows", trial_with_arrows, exact_with_arrows, np.ones_like(is_fitted)
+    def rows_of(self, best: Optimum, is_fitted: np.ndarray) -> pd.DataFrame:
+        """Return one row for each reading, with the trial and its errors in each of them."""
+        slopes, values = best.slopes[is_fitted], best.exact + best.correction
+        tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
+        return self.readings.drop(columns=["arrow", "shared_error"]).assign(
+            tau0=best.trial[0],
+            gamma=best.trial[1],
+            tau0_error=tau0_error,
+            gamma_error=gamma_error,
+            exact=best.exact,
+            correction=best.correction,
+            pull=self.pulls(values),
+            independent_pull=self.independent_pulls(values),
+            weight=is_fitted.astype(float),
         )
-        return Fit(trial, pd.concat([without_arrows, with_arrows]))
 
 
 def least_squares(matrix: np.ndarray, right_side: np.ndarray) -> np.ndarray:

@@ -17,7 +17,7 @@ from slippulse.theory.barrier import barrier_depth
 # The death rate is maximised over these barriers, given as -(stress of the barrier)/(mean level).
 RELATIVE_BARRIERS = np.geomspace(0.03, 10.0, 12)
 # -zeta(1/2): how far behind 0 a walk is absorbed whose steps are an Ornstein-Uhlenbeck process, in
-# units of their deviation times their correlation length (Marshall and Watson 1985).
+# units of their deviation times their correlation length (Doering, Hagan and Levermore 1987).
 MILNE = 1.4603545088095868
 # Length of the field over which sums over the spectrum run, in correlation lengths.
 PERIOD_IN_CORRELATION_LENGTHS = 400
