@@ -22,7 +22,13 @@ SMALL_STUDIES = {
         "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
     },
     "layer_healing": {"THICK_PULSES": ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5))},
-    "rough_checks": {"GRID_SEEDS": 1, "BALANCE_SEEDS": 12, "EXACT_SEEDS": 1, "BUMP_SEEDS": 3},
+    "rough_checks": {
+        "GRID_SEEDS": 1,
+        "LENGTH_SEEDS": 2,
+        "BALANCE_SEEDS": 12,
+        "EXACT_SEEDS": 1,
+        "BUMP_SEEDS": 3,
+    },
     "rough_prestress": {"LONG_SEEDS": 200},
     "published_figure": {
         "DAMPING_RATIOS": {

@@ -139,6 +139,15 @@ def test_little_roughness_stops_no_pulse_under_held_displacement_and_much_does(s
     assert (exact[0.025] < 0.65 * exact[0.05]).all() and exact[0.05].max() < 0.01
 
 
+def test_pulses_die_as_often_in_the_second_half_of_longer_tracks(study):
+    first, second = study("rough_checks").query("part == 'length'").to_dict("records")
+    assert (first["stop"], second["stop"]) == (40.0, 80.0)
+    # Pulses run through the whole first half before they come to the second one.
+    assert first["distance"] > second["distance"] > 0.3 * first["distance"]
+    assert first["deaths"] > 0
+    assert first["rate_low"] < second["rate_high"] and second["rate_low"] < first["rate_high"]
+
+
 def test_survival_under_held_stress_has_the_exponent_of_a_random_walk(ensembles):
     (long,) = ensembles.query("part == 'long'").itertuples()
     assert long.exponent_low < 0.5 < long.exponent_high and long.exponent_deaths > 20

@@ -22,6 +22,10 @@ QUOTED_COLUMNS = (
     "predicted",
     "velocity_mean",
 )
+# Columns that name an ensemble.
+FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
+# Ensembles with fewer deaths have death rates with wide confidence intervals.
+LEAST_DEATHS = 5
 # A death rate is at most 3 divided by the distance without a death, at 95 % confidence.
 RULE_OF_THREE = 3.0
 
@@ -90,10 +94,12 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
     if displacement.empty or stress.empty:
         return {}
     checks = evidence.tables["rough_checks"]
-    numbers = death_rate_numbers(displacement) | settling_numbers(displacement, checks)
     study = evidence.tables["rough_prestress"]
+    numbers = death_rate_numbers(displacement) | settling_numbers(displacement, checks)
+    numbers |= survival_numbers(displacement, study) | accuracy_numbers(checks)
     long_distance = study[study["part"] == "long"].iloc[0]
     numbers |= {
+        "confidence": long_distance["confidence"],
         "tail_exponent": long_distance["exponent"],
         "tail_low": long_distance["exponent_low"],
         "tail_high": long_distance["exponent_high"],
@@ -112,19 +118,49 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
     """Compare death rates with the predicted rates of fatal barriers, where pulses died.
 
-    The ratios are also returned for the ensembles with the longest correlation length alone.
+    The ratios and the ends of their confidence intervals are those of ensembles with at least
+    LEAST_DEATHS deaths.
     """
-    dying = ensembles[ensembles["deaths"] > 0]
+    dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
     ratio = dying["rate"] / dying["barrier_rate"]
-    longest = dying["correlation_length"].max()
-    ratio_at_longest = ratio[dying["correlation_length"] == longest]
     return {
-        "least_ratio": ratio.min(),
-        "largest_ratio": ratio.max(),
-        "long_least": ratio_at_longest.min(),
-        "long_largest": ratio_at_longest.max(),
-        "long_length": longest,
+        "frequent_deaths": LEAST_DEATHS,
+        "frequent_least": ratio.min(),
+        "frequent_largest": ratio.max(),
+        "frequent_low": (dying["rate_low"] / dying["barrier_rate"]).min(),
+        "frequent_high": (dying["rate_high"] / dying["barrier_rate"]).max(),
+        "highest_level": ensembles["level"].max(),
     }
+
+
+def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
+    """Return the survival in the ensemble with the highest death rate, and that without deaths."""
+    calm = ensembles[ensembles["deaths"] == 0]
+    worst = ensembles.loc[ensembles["rate"].idxmax()]
+    is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
+    is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
+    end_of_curve = study[is_curve & is_worst].iloc[-1]
+    numbers = {"calm_rate": RULE_OF_THREE / calm["distance"].sum()}
+    numbers |= {f"worst_{column}": worst[column] for column in ("level", "deviation", "stop")}
+    return numbers | {f"worst_{name}": end_of_curve[name] for name in ("survival", "low", "high")}
+
+
+def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
+    """Return deaths on two lattices, and death rates in the two halves of longer tracks."""
+    by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
+    fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
+    halves = checks[checks["part"] == "length"].sort_values("stop")
+    numbers = {
+        "grid_pulses": coarse["pulses"],
+        "grid_dx": coarse["dx"],
+        "grid_deaths": coarse["deaths"],
+        "grid_fine_dx": fine["dx"],
+        "grid_fine_deaths": fine["deaths"],
+    }
+    for name, half in (("near", halves.iloc[0]), ("far", halves.iloc[-1])):
+        columns = ("rate", "rate_low", "rate_high", "stop")
+        numbers |= {f"{name}_{column}": half[column] for column in columns}
+    return numbers
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:

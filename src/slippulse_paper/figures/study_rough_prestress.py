@@ -20,7 +20,9 @@ NEEDS = {"studies": ["rough_prestress"]}
 # Parameters of the random field of an ensemble, and their symbols as a title of the legend.
 PARAMETERS = ["level", "deviation", "correlation_length", "hurst"]
 LEGEND_TITLE = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
-COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY)
+COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY, BLACK)
+# A larger study has more ensembles than colours. Of the others, only death rates are drawn.
+ENSEMBLE_MARKERS = (*MARKERS, "X")
 # Survival is drawn only if more than this fraction of the pulses has died.
 MIN_DRAWN_DEATHS = 0.1
 # The guide of slope -1/2 begins at this fraction of the largest distance, above the curve by the
@@ -57,7 +59,7 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_survival(survival_axes, ensemble)
         draw_rate(rate_axes, ensemble)
     finish_survival(survival_axes, dying["stop"].max())
-    finish_rates(rate_axes)
+    finish_rates(rate_axes, dying)
     at_gamma_0 = table[table["boundary"] == "stress"]
     for ensemble in ensembles(at_gamma_0, at_gamma_0[at_gamma_0["part"] == "ensemble"]):
         if ensemble.row["deaths"] > MIN_DRAWN_DEATHS * ensemble.row["pulses"]:
@@ -73,7 +75,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
     """Yield the ensembles of one boundary condition that belong to rows of the part ensemble."""
-    looks = zip(COLOURS, MARKERS, rows.iterrows(), strict=False)
+    looks = zip(COLOURS, ENSEMBLE_MARKERS, rows.iterrows(), strict=False)
     for colour, marker, (_, row) in looks:
         label = ", ".join(f"{row[name]:g}" for name in PARAMETERS)
         is_in_ensemble = (table[PARAMETERS] == row[PARAMETERS]).all(axis=1)
@@ -102,30 +104,36 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
     """Mark the death rate of an ensemble and its confidence interval."""
     row = ensemble.row
     below, above = row["rate"] - row["rate_low"], row["rate_high"] - row["rate"]
-    look: Look = {"color": ensemble.colour, "fmt": ensemble.marker}
+    look: Look = {"color": ensemble.colour, "fmt": ensemble.marker} | OPEN_MARKER
     look |= {"capsize": 2.0, "markersize": 4.0}
     axes.errorbar(row["barrier_rate"], row["rate"], [[below], [above]], **look)
 
 
-def finish_rates(axes: Axes) -> None:
-    """Draw the line on which both rates are equal, with a factor of two on both sides."""
-    ends = np.array([3e-5, 1e-2])
+def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
+    """Mark ensembles without a colour, and the line of equal rates, with a factor of two."""
+    others = dying.iloc[len(COLOURS) :]
+    axes.plot(others["barrier_rate"], others["rate"], ".", color=GREY, zorder=1.0)
+    ends = np.array([3e-5, max(1e-2, 1.2 * dying["barrier_rate"].max())])
     axes.plot(ends, ends, color=BLACK, linewidth=0.8)
     axes.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
-    axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2e-2), title=r"$\Gamma = 1$")
-    axes.set(xlabel="predicted rate of fatal barriers", ylabel="death rate of pulses")
+    axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2.0 * ends[1]))
+    axes.set(xlabel="predicted fatal barriers for each $H$", ylabel="deaths of pulses for each $H$")
+    axes.set_title(r"$\Gamma = 1$")
 
 
 def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     """Draw the survival over a long distance, and a guide with the slope of a random walk."""
     axes.plot(
-        long_survival["distance"], long_survival["survival"], color=GREY, label="balance alone"
+        long_survival["distance"],
+        long_survival["survival"],
+        color=GREY,
+        label="balance, not simulated",
     )
     start = GUIDE_START * long_survival["distance"].max()
     tail = long_survival[long_survival["distance"] > start]
     first = tail.iloc[0]
     guide = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
-    axes.plot(tail["distance"], guide, ":", color=BLACK, label="slope $-1/2$")
+    axes.plot(tail["distance"], guide, ":", color=BLACK, label="power law $x^{-1/2}$")
     axes.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
     axes.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
     axes.legend(loc="lower left", fontsize=SMALL_TEXT)
@@ -146,8 +154,8 @@ def finish_velocities(axes: Axes) -> None:
     """Draw the line on which both velocities are equal."""
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
-    axes.set(xlabel="half of the pre-stress integral", title=r"$\Gamma = 0$")
-    axes.set_ylabel("slip velocity of the pulse")
+    axes.set(xlabel=r"half of the integral of $\tau$ (theory)", title=r"$\Gamma = 0$")
+    axes.set_ylabel("slip velocity of the pulse, simulated")
     axes.legend(
         title=LEGEND_TITLE, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
     )

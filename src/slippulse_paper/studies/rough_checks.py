@@ -1,8 +1,9 @@
 """Checks of the rough ensembles on some of their seeds.
 
-Part grid: death rates on finer lattices. Part balance: deaths under a stress boundary, compared
-with the balance of the pre-stress. Part exact: final slip, compared with the exact solution. Part
-memory: how far beyond a bump of the pre-stress the final slip still depends on it.
+Part grid: death rates on finer lattices. Part length: death rates on longer tracks. Part balance:
+deaths under a stress boundary, compared with the balance of the pre-stress. Part exact: final slip,
+compared with the exact solution. Part memory: how far beyond a bump of the pre-stress the final
+slip still depends on it.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,13 +22,17 @@ from slippulse.theory.rupture import Rupture
 from ..configuration.expand import expand
 from .rough_prestress import CELL_MIDDLES, ROUGH_KEYS, START, fate_of_pulse, prestress_integral
 from .rough_theory import balance_position
-from .survival_statistics import death_rate
+from .survival_statistics import Fate, death_rate
 
 NEEDS = {"sweeps": ["rough_displacement", "rough_settling", "rough_stress"]}
 
 # Part grid: seeds of each ensemble, and spacings of the lattices.
 GRID_SEEDS = 10
 GRID_SPACINGS = (0.05, 0.025)
+# Part length: factor of the track and of the duration, seeds, and spacing.
+LENGTH_FACTOR = 2
+LENGTH_SEEDS = 20
+LENGTH_SPACING = 0.1
 # Part balance: seeds, duration and spacings.
 BALANCE_SEEDS = 20
 BALANCE_DURATION = 60.0
@@ -36,7 +41,7 @@ BALANCE_SPACINGS = (0.1, 0.05, 0.025)
 EXACT_SEEDS = 2
 EXACT_DURATION = 12.0
 EXACT_SPACINGS = (0.05, 0.025)
-COMPARED_BLOCK_DISTANCE = 0.25
+COMPARED_BLOCK_DISTANCE = 0.5
 # Part memory: seeds, and the Gaussian bump, which ends some widths from its position.
 BUMP_SEEDS = 10
 BUMP_POSITION = 15.0
@@ -51,10 +56,11 @@ Profile = Mapping[str, Any]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts grid, balance, exact and memory, which the module describes."""
+    """Return the parts grid, length, balance, exact and memory, which the module describes."""
     dying, settling, stress = (settings["sweeps"][name] for name in NEEDS["sweeps"])
     first_stress_ensemble = next(ensembles_of(stress))
-    parts = [grid_rows(dying), balance_rows(first_stress_ensemble, stress)]
+    parts = [grid_rows(dying), length_rows(dying)]
+    parts.append(balance_rows(first_stress_ensemble, stress))
     parts += [exact_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
     parts += [memory_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
     return pd.concat(parts, ignore_index=True)
@@ -101,6 +107,40 @@ def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
             fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
+
+
+def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the death rates in both halves of longer tracks, over some seeds of all ensembles.
+
+    The tracks and the duration are longer than those of the study by LENGTH_FACTOR. The column stop
+    has the end of each half.
+    """
+    profiles: list[Profile] = []
+    for ensemble in ensembles_of(sweep):
+        profiles += [with_longer_track(profile) for profile in ensemble[:LENGTH_SEEDS]]
+    end = profiles[0]["rough"]["stop"]
+    middle = end / LENGTH_FACTOR
+    duration = {"time": LENGTH_FACTOR * sweep["duration"]["time"]}
+    fates = []
+    for scene in scenes_of(sweep, profiles, duration=duration, dx=[LENGTH_SPACING]):
+        run = simulated_run(scene)
+        fates += [fate_of_pulse(run, side, end) for side in (1, -1)]
+    # In the first half, pulses that leave it alive are censored at its end.
+    in_first_half = [
+        Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
+    ]
+    rows = [
+        {"stop": middle} | death_rate(in_first_half, START),
+        {"stop": end} | death_rate(fates, middle),
+    ]
+    return pd.DataFrame(rows).assign(part="length", dx=LENGTH_SPACING)
+
+
+def with_longer_track(profile: Profile) -> Profile:
+    """Return a profile whose rough pre-stress reaches farther by LENGTH_FACTOR on both sides."""
+    rough = profile["rough"]
+    ends = {name: LENGTH_FACTOR * rough[name] for name in ("start", "stop")}
+    return {**profile, "rough": {**rough, **ends}}
 
 
 def balance_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:

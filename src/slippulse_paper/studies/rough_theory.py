@@ -6,6 +6,7 @@ the field (level), its standard deviation, correlation_length, hurst exponent an
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
     wave_numbers, variances = spectrum(parameters)
     most_frequent = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
     for barrier in level * RELATIVE_BARRIERS:
-        depth = barrier_depth(level, -barrier, parameters["gamma"], parameters["damping_ratio"])
+        depth = critical_depth(level, -barrier, parameters["gamma"], parameters["damping_ratio"])
         # Averaging over a length multiplies each amplitude by sin(k depth/2)/(k depth/2).
         averaging_factors = np.sinc(wave_numbers * depth / (2.0 * np.pi))
         averaged = variances * averaging_factors**2
@@ -59,6 +60,12 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
         if rate > most_frequent["barrier_rate"]:
             most_frequent = {"barrier_rate": rate, "barrier": -barrier, "depth": depth}
     return most_frequent
+
+
+@cache
+def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: float) -> float:
+    """Return the exact critical depth of a barrier, computed once for ensembles of equal level."""
+    return barrier_depth(level, barrier, gamma, damping_ratio)
 
 
 def diffusivity(parameters: Mapping[str, Any]) -> float:

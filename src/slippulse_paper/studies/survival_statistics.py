@@ -68,6 +68,7 @@ def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
         "rate": deaths / distance,
         "rate_low": low / distance,
         "rate_high": high / distance,
+        "confidence": CONFIDENCE,
     }
 
 
