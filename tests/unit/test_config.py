@@ -147,7 +147,7 @@ def test_with_an_accuracy_each_scene_has_its_own_spacing_but_not_by_the_textbook
     model = config["model"] | {"scheme": "fixed_step"}
     accuracy = accuracy_for(config, accuracy=1e-2)
     block = resolve(config["simulations"]["steady_displacement"], model, accuracy)
-    with pytest.raises(ValueError, match="scheme: 'fixed_step'; allowed: 'localised' where acc"):
+    with pytest.raises(ValueError, match="scheme: 'fixed_step'; allowed: 'localised' if acc"):
         promised(block)
 
 

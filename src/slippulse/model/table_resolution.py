@@ -14,7 +14,7 @@ MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
-    """Raise ValueError if the blocks miss variations of the table, or a point that reaches 1."""
+    """Raise ValueError if the blocks do not resolve the table, or miss a point that reaches 1."""
     x, tau = prestress.point_arrays
     in_spacings = x / dx
     # For each point: the block on its left, the nearest one, and the block on its right.
@@ -32,8 +32,8 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     rms_loss = float(np.sqrt(np.mean(losses**2)))
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst = int(np.argmax(losses))
-        key = f"prestress.points: the blocks miss the stress {tau[worst]:g} at x"
+        key = f"prestress.points: the blocks do not resolve the stress {tau[worst]:g} at x"
         allowed = (
-            f"a table that blocks of spacing dx = {dx:g} resolve: a smaller dx or fewer points"
+            f"a table that blocks of spacing dx = {dx:g} resolve; use a smaller dx or fewer points"
         )
         raise refusal(key, float(x[worst]), allowed)

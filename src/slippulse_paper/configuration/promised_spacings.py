@@ -21,7 +21,7 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
         return simulation
     # With other schemes the time step has an error that a grid study does not show.
     scheme = simulation["scheme"]
-    check_that(scheme == "localised", "scheme", scheme, "'localised' where accuracy is given")
+    check_that(scheme == "localised", "scheme", scheme, "'localised' if accuracy is given")
     # NaN means that the simulation sets its own spacing.
     if math.isnan(promise):
         return simulation
@@ -29,10 +29,11 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     # The constants of `settings_for` hold for Coulomb friction. With other laws a pulse may diverge
     # or have no width.
     coulomb = all(law["law"] == "coulomb" for law in laws)
-    check_that(coulomb, "friction", laws, "law coulomb where accuracy is given, or a dx of its own")
+    condition = "if accuracy is given and the simulation has no dx of its own"
+    check_that(coulomb, "friction", laws, f"law coulomb {condition}")
     spacings = []
     for entry in entries(simulation):
-        refuse_extra_terms(entry.extra_terms, "where accuracy is given, or a dx of its own")
+        refuse_extra_terms(entry.extra_terms, condition)
         settings = settings_for(
             promise,
             boundary=simulation["boundary"],

@@ -355,19 +355,19 @@ class Simulation(PhysicsOfSweep):
         "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
     )
     profiles: Distinct[Profile] | None = key(
-        "complete profiles, instead of the three keys above", None
+        "instead of the three keys above: complete profiles", None
     )
     beyond: Beyond | None = key("a second level on one side, given by the next two keys", None)
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key(
         "damping ratio beta/dx; by default that of `model`", None
     )
-    beta: Distinct[NonNegative] | None = key("damping beta, instead of `damping_ratio` [H]", None)
+    beta: Distinct[NonNegative] | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
     rate_strengthening: Distinct[float] | None = key(ALPHA, None)
     duration: Duration = key("duration of each run, in one of three units", words=UNITS)
     spacing: SpacingRule = key("rule for the block spacing", SpacingRule(), RULE)
-    dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
+    dx: Distinct[Spacing] | None = key("instead of `spacing`: block spacings [H]", None)
     release: Release | Distinct[Release] | None = key(
         "release rule; by default that of `model`", None, RELEASED
     )
@@ -388,7 +388,7 @@ class Simulation(PhysicsOfSweep):
         require(has_profile, "left, right: missing", "lists, or profiles")
         rule_keys = self.spacing.model_fields_set
         is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
-        require(is_consistent, "spacing.fixed: given with others", "alone")
+        require(is_consistent, "spacing.fixed: given with other keys", "no other key")
         units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
         if self.boundary == "stress":
@@ -397,11 +397,11 @@ class Simulation(PhysicsOfSweep):
             require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
         if "samples" in self.record:
-            allowed = "times, positions and extent when record has 'samples'"
+            allowed = "times, positions and extent, since record contains samples"
             require(self.samples is not None, "samples: missing", allowed)
         else:
-            allowed = "with samples in record (samples: null removes it)"
-            require(self.samples is None, "samples: given, but not recorded", allowed)
+            problem = "samples: given, but record does not contain samples"
+            require(self.samples is None, problem, "record: [..., samples], or samples: null")
         return self
 
 
@@ -412,7 +412,7 @@ class LayerKeys(Block):
     shear_modulus: Positive = key("shear modulus G [Pa]")
     lame_parameter: float | None = key("first Lame parameter lambda, > -2G/3 [Pa]", None)
     poisson_ratio: float | None = key(
-        "Poisson ratio, between -1 and 0.5, instead of `lame_parameter`", None
+        "instead of `lame_parameter`: Poisson ratio, between -1 and 0.5", None
     )
     density: Positive = key("density [kg/m3]")
     static_friction: Positive = key("coefficient of static friction, larger than the kinetic one")
@@ -442,7 +442,7 @@ class NamedScene(Profile, PhysicsOfScene):
     damping_ratio: NonNegative | None = key(
         "damping ratio beta/dx; by default that of `model`", None
     )
-    beta: NonNegative | None = key("damping beta, instead of `damping_ratio` [H]", None)
+    beta: NonNegative | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
     dx: Positive | None = key("block spacing, at most 1; by default that of the preset [H]", None)
@@ -652,7 +652,7 @@ class Claim(Block):
 
 class Reading(Block):
     simulation: str = key("simulation whose run is compared with the reading")
-    quantity: str = key("measured number, a column of the measured table")
+    quantity: str = key("measured number: a column of the tables in results/measurements")
     statement: Statement = key("description of what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
@@ -697,7 +697,7 @@ class Configuration(Block):
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
-            allowed = "'localised' where accuracy is given"
+            allowed = "'localised' if accuracy is given"
             require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
             self._check_scene_name(name)
@@ -722,7 +722,10 @@ class Configuration(Block):
             record_for[f"trailing_edge_{time:g}"] = "fronts"
         quantity, simulation = reading.quantity, reading.simulation
         check_name(f"{key}.simulation", simulation, self.simulations, "a name under simulations")
-        check_name(f"{key}.quantity", quantity, record_for, "a column of the measured table")
+        measured = "a measured number, which is a column of the tables in results/measurements"
+        check_name(f"{key}.quantity", quantity, record_for, measured)
         needed, recorded = record_for[quantity], self.simulations[simulation].record
-        allowed = f"what simulations.{simulation} records; it needs record: [fronts, {needed}]"
+        allowed = (
+            f"what simulations.{simulation} records; this one needs record: [fronts, {needed}]"
+        )
         require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)
