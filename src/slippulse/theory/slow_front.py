@@ -577,15 +577,17 @@ class SlowFront:
         t_minus_x = self.curve.evaluate(
             "t_minus_x", np.full(NODE_COUNT + 1, chunk.panel), nodes_and_end
         )
-        # Rounding and skipped entries make the computed positions begin a little off x0. The panel
-        # includes the pre-stress in this gap. Otherwise all later panels would begin off their
-        # start, too, and farther off where tau is nearer to 0.
+        source = self.tau(x) * (NODES_TO_DERIVATIVES @ x)
+        # Rounding and skipped entries make the computed positions begin a little off x0. If this
+        # gap is larger than rounding, the panel includes its pre-stress. Otherwise all later panels
+        # would begin off their start, too, and farther off where tau is nearer to 0.
         gap = float(NODES_TO_ENDS[0] @ x) - self.x0
-        in_gap = np.full(NODE_COUNT, 0.5 * gap * self.tau(np.array(self.x0)))
+        if abs(gap) > NEGLIGIBLE_MOTIONS[0] * self.size:
+            source += 0.5 * gap * self.tau(np.array(self.x0))
         return Panel(
             x=x,
             time=t_minus_x[:-1] + x,
-            source=self.tau(x) * (NODES_TO_DERIVATIVES @ x) + in_gap,
+            source=source,
             x_ends=(self.x0, x_end),
             time_ends=(self.t0, float(t_minus_x[-1]) + x_end),
         )
