@@ -399,7 +399,12 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     others.append(others[0] | {"id": "b", "counted": False, "follows_from": ["a"]})
     ledger = Ledger([CLAIM | fields for fields in others])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1
-    assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced."
+    counted = "2 counted claims: 1 reproduced, 1 not reproduced"
+    assert ledger.summary() == f"{counted}."
+    remark = CLAIM | {"id": "d", "counted": False}
+    ledger_with_remark = Ledger([*(CLAIM | fields for fields in others), remark])
+    more = "1 more claim, not counted, is not reproduced"
+    assert ledger_with_remark.summary() == f"{counted}; {more}."
     changed = [{"key": "c", "shipped": OPEN, "here": NO}]
     assert ledger.differences({"a": YES, "b": YES, "c": OPEN}) == changed
     numbers = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]

@@ -4,6 +4,9 @@ The table `layer` has one row for each run, grid and station; a station is a pos
 pulse is measured. Every run was made on several grids, and its finest grid is used.
 """
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pandas as pd
 
@@ -64,34 +67,62 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
-    """Judge the regimes of the layer, in three groups of runs.
+    """Judge that ruptures under a displacement boundary turn into steady pulses."""
+    tolerance = evidence.tolerance(id)
+    return on_two_grids(lambda coarser: steady_pulses(evidence, tolerance, coarser))
 
-    Under a displacement boundary ruptures must be steady pulses. Under a stress boundary a rupture
-    must be a crack in uniform pre-stress, and must stop on the side of a barrier, and there only.
+
+def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
+    """Judge ruptures under a stress boundary.
+
+    A rupture must be a crack in uniform pre-stress, and must stop on the side of a barrier, and
+    there only.
     """
     last_station = rows_at_station(evidence)
-    pulses = finest_rows(last_station, "pulse")
-    pulses_before = finest_rows(rows_at_station(evidence, before_last=1), "pulse")
+    is_crack, is_stopped = (
+        on_two_grids(partial(regime, last_station))
+        for regime in (never_sticks, stops_on_one_side)
+    )
+    further = {
+        "cracks that do not stick, in uniform pre-stress": float(is_crack.counts()["held"]),
+        "stopped on one side by a barrier": float(is_stopped.counts()["held"]),
+    }
+    return Qualitative(decided=[*is_crack.decided, *is_stopped.decided], further=further)
+
+
+def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
+    """Judge runs on their two finest grids; a run is undecided if the grids disagree.
+
+    holds : returns for each run whether the statement holds, on the finest grid (0) or on the
+        second finest (1)
+    """
+    grids = zip(holds(0), holds(1), strict=True)
+    return Qualitative(decided=[bool(fine) if fine == coarse else None for fine, coarse in grids])
+
+
+def steady_pulses(evidence: Evidence, tolerance: float, coarser: int) -> pd.Series:
+    """Return which pulses stick, and keep speed and slip between the last two stations."""
+    pulses = finest_rows(rows_at_station(evidence), "pulse", coarser)
+    pulses_before = finest_rows(rows_at_station(evidence, before_last=1), "pulse", coarser)
     compared = ["speed", "pulse_slip"]
     drift = (pulses[compared] / pulses_before[compared] - 1.0).abs()
-    is_steady = (drift < evidence.tolerance(id)).all(axis=1)
     # A width above 0 means that the pulse sticks.
-    is_steady_pulse = is_steady & (pulses["pulse_width"] > 0.0)
+    return (drift < tolerance).all(axis=1) & (pulses["pulse_width"] > 0.0)
 
-    never_sticks = ~np.isfinite(finest_rows(last_station, "crack")["first_stick"])
 
-    barriers = finest_rows(last_station, "barrier")
+def never_sticks(last_station: pd.DataFrame, coarser: int) -> pd.Series:
+    """Return which ruptures in uniform pre-stress never stick."""
+    return ~np.isfinite(finest_rows(last_station, "crack", coarser)["first_stick"])
+
+
+def stops_on_one_side(last_station: pd.DataFrame, coarser: int) -> pd.Series:
+    """Return which ruptures stop on the side of a barrier, stick, and run on at the other side."""
+    barriers = finest_rows(last_station, "barrier", coarser)
     left, right = (barriers.xs(side, level="side") for side in (-1.0, 1.0))
     balance_distance = left["balance_distance"]
     left_arrests = left["end"] > -balance_distance
     right_runs_on = right["end"] > 2.0 * balance_distance
-    is_stopped = left_arrests & right_runs_on & np.isfinite(left["first_stick"])
-    further = {
-        "pulses that stick and settle, displacement held": float(is_steady_pulse.sum()),
-        "cracks that do not stick, stress held": float(never_sticks.sum()),
-        "stopped on one side by a barrier, stress held": float(is_stopped.sum()),
-    }
-    return Qualitative(decided=[*is_steady_pulse, *never_sticks, *is_stopped], further=further)
+    return left_arrests & right_runs_on & np.isfinite(left["first_stick"])
 
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
@@ -121,6 +152,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
             "least": float(energies.min()),
             "most": float(energies.max()),
             "spread": largest_spread(pulses),
+            "largest_change": float(change(rows, "pulse", "pulse_width").max()),
         },
     )
 
@@ -128,7 +160,9 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are steady if the fracture energy is below the energy that is released.
 
-    Fracture energies are divided by the energy that the layer releases, so that the limit is 1.
+    Fracture energies are divided by the largest energy that the layer can release, so that the
+    limit is 1. No pulse can exist above it. The claim has a caveat if a pulse that crosses a larger
+    step has not settled at its last station.
     """
     points = evidence.tables["layer_map"]
     brittle = points[points["fracture_energy"] < 1.0]
@@ -138,9 +172,16 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     for outcome, count in points["outcome"].value_counts().items():
         further[f"points that are {outcome}"] = float(count)
     tough_and_dying = (tough["outcome"] == "dying").sum()
-    further["dying with more fracture energy than is released"] = float(tough_and_dying)
+    further["dying with more fracture energy than can be released"] = float(tough_and_dying)
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
-    return Qualitative(decided=decided, further=further)
+    step = across_a_step(evidence)
+    differences = [step["upwards_difference"], step["downwards_difference"]]
+    return Qualitative(
+        decided=decided,
+        condition=not max(differences) < evidence.tolerance(id),
+        further=further,
+        template_values=step | {"elasticity_ratios": float(brittle["gamma"].nunique())},
+    )
 
 
 def largest_spread(pulses: pd.DataFrame) -> float:
@@ -160,7 +201,9 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 
     Most are ranges, with the smallest (low) and the largest value (high) in all pulses, in those
     with varied fracture energy, or in those with the smallest fracture energy (brittle). Width and
-    slip are compared with the paper's formulas.
+    slip are compared with the paper's formulas, the slip also with the most that energy allows,
+    and the time for which a point slides with the time in which a shear wave crosses the layer.
+    The energy that leaves as waves is divided by the static release.
     """
     rows = rows_at_station(evidence)
     pulses = finest_rows(rows, "pulse")
@@ -169,8 +212,13 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     varied = pulses.xs(level, level="tau0", drop_level=False)
     brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
     patch = finest_rows(evidence.tables["layer"], "patch")
+    gamma = pulses.index.get_level_values("gamma")
+    thinnest = varied.xs(gamma.min(), level="gamma")
+    # A slip of s times the formula releases the static energy 4 s (1 - s), in units of G_0.
+    relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
+    released = 4.0 * relative_slip * (1.0 - relative_slip)
     ranges = {
-        "gamma": pulses.index.get_level_values("gamma"),
+        "gamma": gamma,
         "tau0": pulses.index.get_level_values("tau0"),
         "energy": varied["fracture_energy"],
         "speed": varied["speed"],
@@ -179,6 +227,10 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "slip": varied["pulse_slip"] / varied["paper_pulse_slip"],
         "brittle_slip": brittle["pulse_slip"] / brittle["paper_pulse_slip"],
         "crossing": pulses["pulse_width"] / crossing_width(pulses),
+        "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
+        "thinnest_width": thinnest["pulse_width"],
+        "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
+        "waves": 1.0 - pulses["fracture_energy"] / released,
         "first_stick": patch["first_stick"] / patch["strip_first_stick"],
     }
     numbers = {
@@ -187,6 +239,7 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "crossings": CROSSINGS_OF_TRANSITION,
         "spread": largest_spread(varied),
         "formula_speed": float(varied["paper_speed"].max()),
+        "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
     }
     for name, values in ranges.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
@@ -196,17 +249,24 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 
 
 def across_a_step(evidence: Evidence) -> dict[str, float]:
-    """Return the final slip of pulses that enter another pre-stress, and of uniform runs."""
+    """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
+
+    A difference is the relative one between the two slips at the last station.
+    """
     rows = evidence.tables["layer"].query("part == 'step'")
     rows = rows[rows["cells"] == rows["cells"].max()].sort_values("station")
     # The slip at the last station, by the level before the step and the level beyond it.
     final_slip = rows.groupby(["before", "tau0"])["pulse_slip"].last()
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
+    upwards, uniform_higher = float(final_slip[low, high]), float(final_slip[high, high])
+    downwards, uniform_lower = float(final_slip[high, low]), float(final_slip[low, low])
     return {
         "lower": low,
         "higher": high,
-        "upwards": float(final_slip[low, high]),
-        "downwards": float(final_slip[high, low]),
-        "uniform_lower": float(final_slip[low, low]),
-        "uniform_higher": float(final_slip[high, high]),
+        "upwards": upwards,
+        "downwards": downwards,
+        "uniform_lower": uniform_lower,
+        "uniform_higher": uniform_higher,
+        "upwards_difference": abs(upwards / uniform_higher - 1.0),
+        "downwards_difference": abs(downwards / uniform_lower - 1.0),
     }

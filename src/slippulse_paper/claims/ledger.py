@@ -10,7 +10,7 @@ from typing import Any
 
 from ..records.provenance import changes
 from ..text.numerals import MISSING, number, percent, rounded, setting, with_uncertainty
-from .rules import NOT_TESTABLE, REPRODUCED, VERDICTS
+from .rules import FAILED, NOT_TESTABLE, REPRODUCED, VERDICTS
 
 # A claim reports the tolerances at which its verdict changes if they are within this factor of its
 # own tolerance.
@@ -234,14 +234,22 @@ class Ledger:
         return sum(not verdicts or verdict in verdicts for verdict in earlier)
 
     def summary(self) -> str:
-        """Return the number of claims of each verdict in words."""
+        """Return the numbers of claims of each verdict in words: counted claims, then the others.
+
+        Of the claims that are not counted, only those that fail are named.
+        """
         listed = []
         for verdict in VERDICTS:
             count = self.count(verdict)
             words = verdict.replace("depends", "depend") if count > 1 else verdict
             if count:
                 listed.append(f"{count} {words}")
-        return f"{self.count()} claims: {', '.join(listed)}."
+        text = f"{self.count()} counted claims: {', '.join(listed)}"
+        failed = sum(not claim.counted and claim.verdict == FAILED for claim in self)
+        if failed:
+            words = "claim, not counted, is" if failed == 1 else "claims, not counted, are"
+            text += f"; {failed} more {words} not reproduced"
+        return f"{text}."
 
     def differences(self, shipped: Mapping[str, str]) -> list[dict]:
         """Return the verdicts that differ from the shipped ones, as `changes` lists them."""

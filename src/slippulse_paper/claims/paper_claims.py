@@ -90,6 +90,7 @@ JUDGES_BY_CLAIM: dict[str, Callable[[Evidence, str], Claim]] = {
     "pulses_widen_with_prestress": transition.pulses_widen_with_prestress,
     "thin_layer": pulses.thin_layer,
     "layer_regimes": layer.layer_regimes,
+    "layer_regimes_stress": layer.layer_regimes_stress,
     "layer_width": layer.layer_width,
     "layer_stability": layer.layer_stability,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,

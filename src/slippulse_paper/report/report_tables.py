@@ -27,6 +27,13 @@ STUDIED_QUANTITIES = (
     ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
     ("scaling_stress", "last_release_time", "last release, stress boundary"),
 )
+# Parts of the study of the two-dimensional layer, by their name in the table of its runs.
+LAYER_PARTS = {
+    "pulse": "displacement held",
+    "step": "displacement held, step of pre-stress",
+    "crack": "stress held",
+    "barrier": "stress held, barrier on the left",
+}
 # Markers around a long table: WIDE and CLOSE put it on landscape pages, SMALL and CLOSE set it in
 # small type over several pages. FLUSH places all earlier figures before the text that follows.
 OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n`````'.format
@@ -224,6 +231,33 @@ def sticking(examples: pd.DataFrame) -> str:
     rows = [(setting(x), *row) for x, *row in texts.itertuples()]
     head = r"$x$ r10 | release $T$ r15 | stick $t_\mathrm{s}$ r15 | slip $u(x,t_\mathrm{s})$ r15"
     return table(head, rows)
+
+
+def layer_runs(study: pd.DataFrame) -> str:
+    """Return a table of the runs of the two-dimensional layer, by part and level of pre-stress.
+
+    The strength falls over the slip d_c. The length G d_c/Delta tau, with the drop of strength
+    Delta tau, is gamma d_c in units of H. It is given in cells of the finest grid of each run.
+    """
+    rows = []
+    for part, title in LAYER_PARTS.items():
+        runs = study[study["part"] == part].sort_values("cells", kind="stable")
+        finest = runs.drop_duplicates(["gamma", "tau0", "weakening", "before"], keep="last")
+        for tau0, group in finest.groupby("tau0"):
+            length = group["gamma"] * group["weakening"] * group["cells"]
+            energies = _listed_numbers(group["fracture_energy"].dropna()) or DASH
+            low, high = (number(end, 2) for end in (length.min(), length.max()))
+            row = (title, setting(tau0), _listed_numbers(group["gamma"]), energies)
+            lengths = low if low == high else f"{low} to {high}"
+            rows.append((*row, lengths, _listed_numbers(group["cells"]), len(group)))
+    head = r"top l28 | $\tau_0$ r8 | $\gamma$ l22 | $G_\mathrm{c}/G_0$ l28"
+    head += r" | $\gamma d_\mathrm{c}/\Delta x$ r16 | $H/\Delta x$ r10 | runs r6"
+    return table(head, rows)
+
+
+def _listed_numbers(values: pd.Series) -> str:
+    """Return the distinct values in ascending order, to three digits."""
+    return ", ".join(setting(float(f"{value:.3g}")) for value in sorted(values.unique()))
 
 
 def edges(study: pd.DataFrame) -> str:

@@ -23,7 +23,7 @@ NEEDS = {
         "space_time_stress": ["transition"],
     },
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
-    "studies": ["arrest_path", "derivations", "extremes", "stability"],
+    "studies": ["arrest_path", "derivations", "extremes", "layer", "stability"],
 }
 VERDICTS_COMMENT = (
     "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
