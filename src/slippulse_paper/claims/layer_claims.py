@@ -80,8 +80,7 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     """
     last_station = rows_at_station(evidence)
     is_crack, is_stopped = (
-        on_two_grids(partial(regime, last_station))
-        for regime in (never_sticks, stops_on_one_side)
+        on_two_grids(partial(regime, last_station)) for regime in (never_sticks, stops_on_one_side)
     )
     further = {
         "cracks that do not stick, in uniform pre-stress": float(is_crack.counts()["held"]),
