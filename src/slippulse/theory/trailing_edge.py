@@ -450,7 +450,8 @@ class PartWithEdge(Part):
         """
         knots = self.knots
         deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
-        # Where a front has stopped, the stick time is that of the front itself, which is exact.
+        # A slip is brief only next to the point where a front has stopped. Its stick time is the
+        # time at which the front arrives, which is exact.
         deceleration = np.where(knots.kind == BRIEF_SLIP, np.inf, deceleration)
         error = VELOCITY_ERROR / np.maximum(deceleration, ROUNDING_ERROR)
         error[error < TIME_ERROR] = 0.0

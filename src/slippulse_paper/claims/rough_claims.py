@@ -146,7 +146,7 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
 
 
 def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return deaths on two lattices, and death rates in the two halves of longer tracks."""
+    """Return deaths on two lattices, and death rates in the near and far half of longer tracks."""
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
     halves = checks[checks["part"] == "length"].sort_values("stop")
@@ -186,7 +186,10 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return how far before the balance pulses die, on the coarsest and on the finest lattice."""
+    """Return how far before the balance position pulses die on the coarsest and finest lattice.
+
+    The column change of the part balance holds the median of this distance.
+    """
     by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
     finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
     return {

@@ -74,7 +74,11 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
-    """Yield the ensembles of one boundary condition that belong to rows of the part ensemble."""
+    """Yield the ensemble of each row of ``rows``, until the colours or the markers are used up.
+
+    table : all rows of the study with one boundary condition
+    rows : those in its part "ensemble" that are drawn, one for each ensemble
+    """
     looks = zip(COLOURS, ENSEMBLE_MARKERS, rows.iterrows(), strict=False)
     for colour, marker, (_, row) in looks:
         label = ", ".join(f"{row[name]:g}" for name in PARAMETERS)
