@@ -121,9 +121,10 @@ class PartWithEdge(Part):
         return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
 
     def _first_positions(self) -> np.ndarray:
-        """Return the positions of the first knots, every second of them in a middle.
+        """Return the positions of the first knots.
 
-        The others are ends of panels, marks, and the positions of the fronts at the final time.
+        Every second one is the middle between its neighbours. The others are the ends of panels,
+        the marks, and the positions of the fronts at the final time.
         """
         curve = self.curve
         left, right = curve.edges[[0, -1]]

@@ -116,10 +116,10 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
-    """Compare death rates with the predicted rates of fatal barriers, where pulses died.
+    """Compare death rates with the predicted rates of fatal barriers.
 
-    The ratios and the ends of their confidence intervals are those of ensembles with at least
-    LEAST_DEATHS deaths.
+    Return the range of measured divided by predicted rates, and of the ends of their confidence
+    intervals, over the ensembles with at least LEAST_DEATHS deaths.
     """
     dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
     ratio = dying["rate"] / dying["barrier_rate"]
@@ -134,7 +134,11 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 
 
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
-    """Return the survival in the ensemble with the highest death rate, and that without deaths."""
+    """Return how many pulses survive where most die, and a bound where none dies.
+
+    The survival is that in the ensemble with the highest death rate. The bound is an upper bound of
+    the death rate (calm_rate), over all ensembles without deaths.
+    """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
