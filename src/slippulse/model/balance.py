@@ -99,14 +99,17 @@ def prestress_balance_position(prestress: Prestress) -> float:
 @lru_cache(maxsize=1024)
 def _balance_position(prestress: Prestress) -> float:
     """Compute `prestress_balance_position`; results are cached."""
-    # Beyond this distance the profile equals its side levels to machine precision.
+    # Beyond this distance the profile equals its side levels to machine precision. On the right the
+    # level is 0, so that integrals to infinity end there.
     ends = [abs(centre) + 40.0 * width for centre, width in prestress.gaussians]
     ends += [abs(position) + (prestress.width or 1.0) for position, _ in prestress.steps]
     ends += [abs(position) + 1.0 for position, _ in prestress.points]
     distance = max(ends, default=1.0)
     left, right = prestress.level(np.array([-distance, distance])).tolist()
-    check_that(right == 0.0, "prestress.right", right, "0, or the balance integral is not finite")
-    check_that(left < 0.0, "prestress.left", left, "< 0, or the pre-stress is never balanced")
+    allowed = "0, since otherwise the balance integral is not finite"
+    check_that(right == 0.0, "prestress.right", right, allowed)
+    allowed = "< 0, since otherwise the pre-stress is never balanced"
+    check_that(left < 0.0, "prestress.left", left, allowed)
     if prestress.points:
         return _balance_of_table(prestress, distance)
     lower, upper = -distance, 0.0
@@ -123,6 +126,9 @@ def _balance_of_table(prestress: Prestress, distance: float) -> float:
     The integral from a position to infinity is followed from the nucleation to the left. Within
     each part of an interval the background keeps its sign, so that the integral cannot change sign
     twice. The balance lies in the first part at whose left end the integral is negative.
+
+    distance : distance from x = 0 beyond which the pre-stress is its level on either side. On the
+        right the level is 0, so that an integral to infinity ends there.
     """
     x, tau = prestress.point_arrays
     # A table without a Gaussian at x = 0 is released wherever it reaches 1.

@@ -41,13 +41,17 @@ def begin_weakening(motion, law_kink, block):
         if law_kink.rate == 0:
             motion.slip_at_release[block] = motion.w[SLIP, block] + motion.offset[block]
         motion.weakening_slope[block] = motion.law_factor[block] * law_kink.fall
+        # The block has not slipped since its release, and its slip rate is 0.
         return law_kink.lowest + motion.weakening_slope[block] * law_kink.end
     return 0.0
 
 
 @kernel_function(inline=True)
 def friction_of_block(motion, law_kink, block, reached):
-    """Return the piecewise linear friction of a block that reached a slip or slip rate."""
+    """Return the piecewise linear friction of a block that reached a slip or slip rate.
+
+    For a law of slip rate, ``slip_at_release`` stays 0.
+    """
     return law_kink.lowest + motion.weakening_slope[block] * (
         motion.slip_at_release[block] + law_kink.end - reached
     )
@@ -55,11 +59,14 @@ def friction_of_block(motion, law_kink, block, reached):
 
 @kernel_function()
 def friction_at_stick(motion, law_kink, block):
-    """Return the friction of a block when it sticks. For a law of slip rate it is 0 then."""
+    """Return the friction of a block when it sticks.
+
+    A block sticks at slip rate 0, where every law of slip rate has the kinetic value, 0.
+    """
     if law_kink is not None and law_kink.rate == 0:
-        return friction_of_block(
-            motion, law_kink, block, motion.w[SLIP, block] + motion.offset[block]
-        )
+        # The slip when it sticks: that at the start of the step, and its change since then.
+        slip = motion.w[SLIP, block] + motion.offset[block]
+        return friction_of_block(motion, law_kink, block, slip)
     return 0.0
 
 

@@ -66,9 +66,12 @@ def add_two_taylor_terms(nested, w, k, weight, lower_weight, first, last):
 def compute_velocities(out, w, first, last, step, order):
     """Compute the velocities of blocks first..last-1 after a time ``step``, in ``out``.
 
-    The Taylor polynomial of degree ``order`` is summed from its highest terms on. Returns the
-    number of blocks that may stop by then.
+    The Taylor polynomial of degree ``order`` is summed from the innermost parenthesis on:
+    w[1] + step (w[2] + step/2 (w[3] + step/3 (w[4] + ... step/order w[order + 1]))).
+    Returns the number of blocks that may stop by then.
     """
+    # ``out`` holds the parenthesis that begins with w[k + 1]. Each pass adds two terms and lowers k
+    # by 2, down to 3. If the order is even, one term is added first, so that k is odd.
     k = order
     if order % 2 == 1:
         for i in block_range(first, last):
@@ -94,10 +97,13 @@ def compute_velocities(out, w, first, last, step, order):
 
 @kernel_function(inline=True)
 def advance_slip(w, velocity, first, last, step, order):
-    """Advance slip by its Taylor polynomial, and set the velocity.
+    """Advance slip by its Taylor polynomial of degree order + 1, and set the velocity.
 
     The change of slip is left in row SLIP_INCREMENT of ``w``.
     """
+    # The polynomial is w[0] + step (w[1] + step/2 (w[2] + ... step/(order + 1) w[order + 1])). The
+    # highest row of ``w`` receives the parenthesis that begins with w[k + 1]. Each pass adds two
+    # terms, until k is 4 (if the order is even) or 3.
     nested = w[order + 1]
     k = order
     while k > 4:

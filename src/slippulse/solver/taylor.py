@@ -355,8 +355,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
     """Advance until a limit, and return the reason why it stopped.
 
     Each step goes through the numbered stages of the module docstring. The losses of energy of a
-    step are completed at the start of the next one. The function returns only after that, so the
-    losses are complete and the row ACCELERATION of w is valid.
+    step are completed at the start of the next one, where the accelerations are computed, too. The
+    function returns only after that, so the losses are complete, and the accelerations
+    (``motion.w[ACCELERATION]``) are those at the final time.
     """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
@@ -373,8 +374,9 @@ def advance(  # noqa: C901, PLR0912, PLR0915
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
-        # The losses of the step before still lack the part h D_1/3 (see `loss_of_step`). Its
-        # length h is the pending step, and D_1 is the dissipation or the power of friction now.
+        # The losses of the previous step still lack the part h D_1/3 (see `loss_of_step`). Here h
+        # is the length of that step (`pending_step`). At its end, which is now, D_1 is the
+        # dissipation for the viscous loss, and the power of friction for the friction loss.
         dissipation, dissipation_slope = 0.0, 0.0
         if has_losses:
             dissipation, dissipation_slope = compute_dissipation(medium, motion, segments)

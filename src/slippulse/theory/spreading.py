@@ -88,22 +88,23 @@ class Stretch:
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
-        """Remove the panels, and the part of a panel, beyond x on one side."""
-        # The cut as seen with this side turned to the right.
-        cut = side * x
+        """End the front on one side at x: remove the panels, and the part of a panel, beyond it."""
+        # Position of the cut with this side turned to the right.
+        x_of_cut = side * x
         kept = []
         for panel in turned_to_right(side, self.panels):
             left, right = panel.x_ends
-            if right <= cut:
+            if right <= x_of_cut:
                 kept.append(panel)
-            elif left < cut:
-                _, (s,) = Curve([panel]).locate(np.array([cut]))
+            elif left < x_of_cut:
+                # The parameter s goes from -1 to 1 along the panel. It can be -1 by rounding.
+                _, (s,) = Curve([panel]).locate(np.array([x_of_cut]))
                 if s > -1.0:
-                    kept.append(panel.until(float(s), cut))
+                    kept.append(panel.until(float(s), x_of_cut))
         time = kept[-1].time_ends[1] if kept else 0.0
         self.panels, self.curves = turned_to_right(side, kept), {}
         self.ends[side] = Point(x, time)
-        self.restarts[side] = [start for start in self.restarts[side] if side * start < cut]
+        self.restarts[side] = [start for start in self.restarts[side] if side * start < x_of_cut]
 
 
 def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:

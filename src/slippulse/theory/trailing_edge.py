@@ -121,9 +121,10 @@ class PartWithEdge(Part):
         return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
 
     def _first_positions(self) -> np.ndarray:
-        """Return the positions of the first knots, every second of them in a middle.
+        """Return the positions of the first knots.
 
-        The others are ends of panels, marks, and the positions of the fronts at the final time.
+        Every second one is the middle between its neighbours. The others are the ends of panels,
+        the marks, and the positions of the fronts at the final time.
         """
         curve = self.curve
         left, right = curve.edges[[0, -1]]
@@ -450,7 +451,8 @@ class PartWithEdge(Part):
         """
         knots = self.knots
         deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
-        # Where a front has stopped, the stick time is that of the front itself, which is exact.
+        # A slip is brief only next to the point where a front has stopped. Its stick time is the
+        # time at which the front arrives, which is exact.
         deceleration = np.where(knots.kind == BRIEF_SLIP, np.inf, deceleration)
         error = VELOCITY_ERROR / np.maximum(deceleration, ROUNDING_ERROR)
         error[error < TIME_ERROR] = 0.0

@@ -125,7 +125,7 @@ class OverChoices(Claim):
         return rules.verdict_over_choices(verdicts)
 
     @cached_property
-    def decided(self) -> list[Change]:
+    def decisive(self) -> list[Change]:
         """Changes of choices on which the verdict depends."""
         return decisive_changes(self.combinations)
 
@@ -137,17 +137,20 @@ class OverChoices(Claim):
             "choices": rows,
             "combinations": len(rows),
             "holds_at": sum(bool(row["holds"]) for row in rows),
-            "choice": self.decided[0].name if self.decided else "",
+            "choice": self.decisive[0].name if self.decisive else "",
         }
 
     def sentence_values(self) -> dict[str, Any]:
-        """Return the values that sentences may use, in addition to the fields.
+        """Return the values that sentences may use in addition to the fields of claims.json.
 
-        holding, failing : deviations at the combinations at which the claim holds or fails
-        last : deviations of lattices at their last release
-        changes, choice_names : the decisive changes, and the names of the choices in sentences
-        settings, unsure : the choices and values of the first combination in doubt, which is one
-            with a caveat if there is one
+        holding : deviations at the combinations at which the claim holds
+        failing : deviations at the combinations at which it fails
+        last : deviations of lattice runs that are measured at their last release
+        changes : the changes of choices on which the verdict depends
+        choice_names : names of the choices in sentences
+        settings : choices of the combination in doubt, in words. This is the first combination
+            whose verdict has a caveat, or the first of all if none has.
+        unsure : the template values of the claim at this combination
         """
         holding: list[float | None] = []
         failing: list[float | None] = []
@@ -160,21 +163,21 @@ class OverChoices(Claim):
                 failing.append(deviation)
             if combination.fraction == LAST_RELEASE_FRACTION and deviation is not None:
                 last.append(deviation)
-        in_doubt = [one for one in self.combinations if one.result["verdict"] == rules.CAVEAT]
-        unsure = in_doubt[0] if in_doubt else self.combinations[0]
+        with_caveat = [one for one in self.combinations if one.result["verdict"] == rules.CAVEAT]
+        in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
         settings = [
             f"{CHOICE_WORDS[name]} {named(value)}"
-            for name, value in unsure.choice.items()
+            for name, value in in_doubt.choice.items()
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
             "holding": holding,
             "failing": failing,
             "last": last,
-            "changes": self.decided,
+            "changes": self.decisive,
             "choice_names": CHOICE_WORDS,
             "settings": settings,
-            "unsure": unsure.claim.template_values,
+            "unsure": in_doubt.claim.template_values,
         }
 
 

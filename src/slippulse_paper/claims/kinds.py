@@ -100,7 +100,7 @@ class Claim(ABC):
         return {"further": dict(self.further)} | self.fields() | {"flips_at": self.flips()}
 
     def sentence_values(self) -> dict[str, Any]:
-        """Return the values that sentences may use in addition to these fields."""
+        """Return the values that sentences may use in addition to the fields of claims.json."""
         return self.template_values
 
 

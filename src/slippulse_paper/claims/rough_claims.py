@@ -116,10 +116,10 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
-    """Compare death rates with the predicted rates of fatal barriers, where pulses died.
+    """Compare death rates with the predicted rates of fatal barriers.
 
-    The ratios and the ends of their confidence intervals are those of ensembles with at least
-    LEAST_DEATHS deaths.
+    Return the range of measured divided by predicted rates, and of the ends of their confidence
+    intervals, over the ensembles with at least LEAST_DEATHS deaths.
     """
     dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
     ratio = dying["rate"] / dying["barrier_rate"]
@@ -134,7 +134,11 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 
 
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
-    """Return the survival in the ensemble with the highest death rate, and that without deaths."""
+    """Return how many pulses survive where most die, and a bound where none dies.
+
+    The survival is that in the ensemble with the highest death rate. The bound is an upper bound of
+    the death rate (calm_rate), over all ensembles without deaths.
+    """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
@@ -146,7 +150,7 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
 
 
 def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return deaths on two lattices, and death rates in the two halves of longer tracks."""
+    """Return deaths on two lattices, and death rates in the near and far half of longer tracks."""
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
     halves = checks[checks["part"] == "length"].sort_values("stop")
@@ -186,7 +190,10 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return how far before the balance pulses die, on the coarsest and on the finest lattice."""
+    """Return how far before the balance position pulses die on the coarsest and finest lattice.
+
+    The column change of the part balance holds the median of this distance.
+    """
     by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
     finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
     return {

@@ -148,7 +148,8 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Sequence]:
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
     """Return the spacing of a run, whose number from 0 is ``index``.
 
-    It is fixed, promised for an accuracy, given in a list, or follows from the rule in ``spacing``.
+    It is fixed by ``spacing``, chosen to reach a required accuracy (``spacings``), given in a list
+    (``dx``), or follows from the rule in ``spacing``.
     """
     rule = simulation["spacing"]
     if "fixed" in rule:
@@ -164,7 +165,11 @@ def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
 
 
 def _scaled_spacing(dx: float, rule: Mapping, entry: Entry) -> float:
-    """Return the spacing dx times scale W^width_power gamma^gamma_power by a rule."""
+    """Return the spacing that a rule derives from ``dx``, the spacing of the preset.
+
+    The rule has a scale and two powers. The spacing is
+    dx * scale * W^width_power * gamma^gamma_power.
+    """
     width = entry.prestress.width
     has_width = width is not None or rule["width_power"] == 0.0
     allowed = "0 for a profile without a width"

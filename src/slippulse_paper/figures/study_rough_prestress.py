@@ -74,7 +74,11 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
-    """Yield the ensembles of one boundary condition that belong to rows of the part ensemble."""
+    """Yield the ensemble of each row of ``rows``, until the colours or the markers are used up.
+
+    table : all rows of the study with one boundary condition
+    rows : those in its part "ensemble" that are drawn, one for each ensemble
+    """
     looks = zip(COLOURS, ENSEMBLE_MARKERS, rows.iterrows(), strict=False)
     for colour, marker, (_, row) in looks:
         label = ", ".join(f"{row[name]:g}" for name in PARAMETERS)
@@ -110,7 +114,10 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
 
 
 def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
-    """Mark ensembles without a colour, and the line of equal rates, with a factor of two."""
+    """Mark ensembles without a colour, and draw the line of equal rates.
+
+    The band around the line is a factor of two to both sides.
+    """
     others = dying.iloc[len(COLOURS) :]
     axes.plot(others["barrier_rate"], others["rate"], ".", color=GREY, zorder=1.0)
     ends = np.array([3e-5, max(1e-2, 1.2 * dying["barrier_rate"].max())])
@@ -145,7 +152,7 @@ def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
     alive = pulses[~pulses["died"].astype(bool)]
     look: Look = {"color": ensemble.colour, "label": ensemble.label}
     look |= {"markersize": 2.5, "linestyle": "none"} | OPEN_MARKER
-    # The pulses that differ least are drawn last.
+    # Ensembles with a smaller deviation are drawn on top of those with a larger one.
     look["zorder"] = 3.0 - ensemble.row["deviation"]
     axes.plot(alive["exact_velocity"], alive["velocity"], ensemble.marker, **look)
 

@@ -62,6 +62,7 @@ class WorkerPool:
 
 def run_here(job: Job) -> None:
     """Run a job in this process, which Snakemake has started for it. Raises JobFailed."""
+    # The job needs the libraries and the environment variables that this module sets.
     from . import worker_libraries  # noqa: F401
 
     run_job(job)
@@ -80,7 +81,11 @@ def _new_executor(workers: int) -> ProcessPoolExecutor:
 
 
 def _prepare_worker() -> None:
-    """Make a worker end at once if the user stops the run or if its parent process ends."""
+    """Load the libraries, and make the worker end at once if the run is stopped.
+
+    The run is stopped by the user, or because the parent process ends.
+    """
+    # A forked worker has these libraries already; a worker started by "spawn" loads them here.
     from . import worker_libraries  # noqa: F401
 
     signal.signal(signal.SIGINT, lambda *_: sys.exit("stopped"))

@@ -72,6 +72,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def exact_row(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
     """Return a row of the map, which is also the beginning of a row of the other parts.
 
+    The columns exact and paper are depths, by exact theory and by the paper's estimate.
+
     tau0 : pre-stress before the barrier, in which the pulse is steady
     barrier : negative pre-stress in the barrier
     """
@@ -89,12 +91,14 @@ def exact_row(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[s
 def passes(exact: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> bool:
     """Return True if a pulse on a lattice passes a barrier with this length.
 
+    exact : a row of `exact_row`, with the parameters and the exact depth
     relative_length : length of the barrier divided by the exact depth
     """
-    length = relative_length * exact["exact"]
+    exact_depth = exact["exact"]
+    length = relative_length * exact_depth
     steps = [(0.0, exact["barrier"]), (length, exact["tau0"])]
     depth = depth_on_lattice(exact, pulse, PASSING_SPACING, steps)
-    return depth > (relative_length + 0.5) * exact["exact"]
+    return depth > (relative_length + 0.5) * exact_depth
 
 
 def depth_on_lattice(
@@ -105,10 +109,10 @@ def depth_on_lattice(
     This is the distance from the beginning of the barrier to half a block beyond the last released
     block.
 
-    exact : a row of `exact_row`, with the parameters
+    exact : a row of `exact_row`, with the parameters and the exact depth
     steps : distances from the beginning of the barrier, and the pre-stress from there on
     """
-    tau0, gamma = exact["tau0"], exact["gamma"]
+    tau0, gamma, exact_depth = exact["tau0"], exact["gamma"], exact["exact"]
     # The barrier begins between two blocks, and farther out than the pulse remembers its
     # nucleation.
     memory = pulse.width / (pulse.speed - 1.0)
@@ -119,7 +123,7 @@ def depth_on_lattice(
     scene = Scene(
         boundary="displacement",
         prestress=Prestress(tau0, tau0, GAUSSIAN_WIDTH, steps=(*on_the_right, *on_the_left)),
-        duration=start + DURATION_IN_CROSSINGS * exact["exact"] + pulse.width,
+        duration=start + DURATION_IN_CROSSINGS * exact_depth + pulse.width,
         dx=dx,
         gamma=gamma,
         beta=exact["damping_ratio"] * dx,

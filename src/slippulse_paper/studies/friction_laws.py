@@ -200,9 +200,16 @@ def _late_front_speed(right: xr.Dataset) -> float:
 
 
 def _regime(right: xr.Dataset, slip_at_rest: float, still_fraction: float) -> str:
-    """Classify a rupture, from the growth of its right side over the second half of the run.
+    """Return the regime of a rupture, from its right side.
+
+    - No rupture: the front hardly advances in the second half of the run.
+    - Sticking pulse: the trailing edge advances, and the slip behind it is larger than at rest. So
+      much slip remains only if friction holds the blocks against the springs.
+    - Creeping pulse: the centre does not stick in this way, but is nearly at rest at the end.
+    - Crack: the centre still slides at the end.
 
     slip_at_rest : slip at which the springs balance the pre-stress, tau_0/gamma
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
     halfway, end = sliding_part(right, 0.5 * DURATION), sliding_part(right, DURATION)
     # The path of the front is counted from the edge of the nucleation.

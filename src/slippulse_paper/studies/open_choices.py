@@ -123,7 +123,7 @@ def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float
         leaf springs, so all times and lengths of a level are proportional to it.
     """
     # All columns except the nucleation and the fraction are times and lengths.
-    proportional = list(Arrest._fields[2:])
+    times_and_lengths = list(Arrest._fields[2:])
     parts = []
     for left, group in runs.groupby("left"):
         crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
@@ -131,11 +131,19 @@ def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float
         arrests = []
         for fraction in fractions:
             time, length = crack.transition(fraction)
-            arrests.append(Arrest("Gaussian", fraction, time, length, distance, 2.0 * distance))
+            arrest = Arrest(
+                nucleation="Gaussian",
+                fraction=fraction,
+                transition_time=time,
+                transition_length=length,
+                paper_transition_time=distance,
+                paper_transition_length=2.0 * distance,
+            )
+            arrests.append(arrest)
         arrests.append(tent_arrest(left, ratio, release))
         at_width_1 = pd.DataFrame(arrests)
         rows = group[["boundary", "left", "width"]].merge(at_width_1, how="cross")
-        rows[proportional] = rows[proportional].mul(rows["width"], axis=0)
+        rows[times_and_lengths] = rows[times_and_lengths].mul(rows["width"], axis=0)
         parts.append(rows)
     return pd.concat(parts)
 
@@ -154,6 +162,11 @@ def tent_arrest(left: float, ratio: float, release: str) -> Arrest:
     distance = 1.0 + tent_integral / -left
     # The last wave that drives the left front enters at the end of the tent on the right. Beyond
     # it the right front runs at the wave speed.
-    time = distance + 1.0 + crossing_time
-    length = 2.0 * distance + 2.0
-    return Arrest("tent", 1.0, time, length, distance, 2.0 * distance)
+    return Arrest(
+        nucleation="tent",
+        fraction=1.0,
+        transition_time=distance + 1.0 + crossing_time,
+        transition_length=2.0 * distance + 2.0,
+        paper_transition_time=distance,
+        paper_transition_length=2.0 * distance,
+    )
