@@ -1,10 +1,15 @@
 """The layer in the plane beside one dimension: what holds, what does not, and what converges."""
 
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 
+from slippulse_paper.claims import layer_claims
+from slippulse_paper.claims.rules import CAVEAT, REPRODUCED
+from slippulse_paper.report.report_tables import layer_runs
 from slippulse_paper.studies import layer_healing
 from slippulse_paper.studies.layer_map import outcome
 
@@ -163,3 +168,55 @@ def test_pulses_of_a_thick_layer_have_the_same_fate_on_a_finer_grid(half_length)
     for refinement in (1, 2):
         rows = [row["pulse_slip"] for row in slips(refinement=refinement)]
         assert (rows[-1] > rows[0]) == (half_length == 5.0), rows
+
+
+@pytest.fixture
+def evidence(study):
+    """Evidence for the claims about the layer, with a tolerance of 2 %."""
+    tables = {name: study(name) for name in ("layer", "layer_map")}
+    return SimpleNamespace(tables=tables, tolerance=lambda id: 0.02)
+
+
+def test_a_run_is_undecided_if_its_two_finest_grids_disagree():
+    grids = [pd.Series([True, True, False]), pd.Series([True, False, False])]
+    judged = layer_claims.on_two_grids(grids.__getitem__)
+    assert judged.counts() == {"held": 1, "failed": 1, "undecided": 1}
+
+
+def test_held_displacement_and_held_stress_are_counted_apart(evidence):
+    held = layer_claims.layer_regimes(evidence, "layer_regimes")
+    assert held.verdict() == REPRODUCED and len(held.decided) == 8
+    stress = layer_claims.layer_regimes_stress(evidence, "layer_regimes_stress")
+    assert list(stress.further.values()) == [1.0, 2.0] and len(stress.decided) == 3
+
+
+def test_a_pulse_that_has_not_settled_behind_a_step_is_a_caveat(evidence):
+    judged = layer_claims.layer_stability(evidence, "layer_stability")
+    # From 0.8 into 0.65 the slip is still 3 % above that of the uniform run.
+    assert judged.verdict() == CAVEAT
+    assert 0.02 < judged.template_values["downwards_difference"] < 0.04
+    evidence.tolerance = lambda id: 0.05
+    assert layer_claims.layer_stability(evidence, "layer_stability").verdict() == REPRODUCED
+
+
+def test_energy_limits_the_slip_and_the_crossing_time_limits_the_sliding(evidence, pulses):
+    numbers = layer_claims.layer_in_plane(evidence)
+    assert 0.6 < numbers["slip_over_bound_low"] < numbers["slip_over_bound_high"] < 1.0
+    assert 0.0 < numbers["waves_low"] < numbers["waves_high"] < 1.0
+    # Release = fracture energy + waves, in units of G_0, for the pulse with the most waves.
+    last = finest(pulses).reset_index()
+    slip = last["pulse_slip"] * last["gamma"] / (2.0 * last["tau0"])
+    waves = 1.0 - last["fracture_energy"] / (4.0 * slip * (1.0 - slip))
+    assert numbers["waves_high"] == pytest.approx(waves.max(), rel=1e-6)
+    # The bound leaves no waves.
+    bound = last["balance_pulse_slip"] * last["gamma"] / (2.0 * last["tau0"])
+    assert (4.0 * bound * (1.0 - bound)).to_list() == pytest.approx(
+        last["fracture_energy"].to_list()
+    )
+    assert 0.8 < numbers["sliding_low"] < numbers["sliding_high"] < 1.6
+
+
+def test_the_table_of_runs_has_one_row_for_each_part_and_level(study):
+    rows = layer_runs(study("layer")).splitlines()[2:]
+    assert len(rows) == 6
+    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 4 + 1 + 2
