@@ -152,7 +152,7 @@ def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
 
 
 def test_it_says_what_was_found_and_from_what(page):
-    assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable." in page
+    assert "3 counted claims: 1 reproduced, 1 not reproduced, 1 not testable." in page
     assert "Do they run? <strong>Yes</strong>: fronts run.</p>" in page
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "Of 4 runs, 1 misprint." in page
