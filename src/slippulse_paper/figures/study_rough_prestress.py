@@ -124,7 +124,9 @@ def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
     axes.plot(ends, ends, color=BLACK, linewidth=0.8)
     axes.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2.0 * ends[1]))
-    axes.set(xlabel="predicted barriers that stop pulses, per $H$", ylabel="deaths of pulses per $H$")
+    axes.set(
+        xlabel="predicted barriers that stop pulses, per $H$", ylabel="deaths of pulses per $H$"
+    )
     axes.set_title(r"$\Gamma = 1$")
 
 
@@ -163,7 +165,9 @@ def finish_velocities(axes: Axes) -> None:
     """Draw the line on which both velocities are equal."""
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
-    axes.set(xlabel=r"half of the integral of $\tau$ behind the pulse (theory)", title=r"$\Gamma = 0$")
+    axes.set(
+        xlabel=r"half of the integral of $\tau$ behind the pulse (theory)", title=r"$\Gamma = 0$"
+    )
     axes.set_ylabel("slip velocity of the pulse, simulated")
     axes.legend(
         title=LEGEND_TITLE, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
