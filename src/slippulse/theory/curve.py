@@ -263,15 +263,18 @@ class Curve:
 
     @cached_property
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Lowest exits (`_lowest_exit_beyond`) of T + x going right, and of T - x going left.
+        """Lowest exit values (`_lowest_exit_beyond`) for characteristics to the right and the left.
 
-        The exit of a panel is the value at the end where the characteristic leaves it.
+        A characteristic to the right leaves a panel at its right end, and the exit value is T + x
+        there. To the left it is T - x at the left end. Regions end only at the restarts that a
+        characteristic can reach from outside: those of the left side if it goes to the right.
         """
         _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
-        at_right_ends, at_left_ends = t_plus_x[1], t_minus_x[0]
+        exits_at_right_ends, exits_at_left_ends = t_plus_x[1], t_minus_x[0]
         left_restarts, right_restarts = self.restarts
-        to_right = _lowest_exit_beyond(at_right_ends, self.edges, left_restarts)
-        to_left = _lowest_exit_beyond(at_left_ends[::-1], self.edges[::-1], right_restarts)
+        to_right = _lowest_exit_beyond(exits_at_right_ends, self.edges, left_restarts)
+        # To the left the order of panels and edges is reversed.
+        to_left = _lowest_exit_beyond(exits_at_left_ends[::-1], self.edges[::-1], right_restarts)
         return to_right, to_left
 
     def front_at(self, time: float, x: float, side: float) -> float:

@@ -368,6 +368,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     exponent_tolerance = float(evidence.entries[id]["tolerance_exponent"])
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
+        """Judge the runs of three lattices; the extra verdict covers the gap and the exponent."""
         median_gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
         gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
         gap_verdict = rules.within(gap, gap_uncertainty, MAX_ARREST_GAP)
@@ -376,6 +377,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         extra_verdict = rules.worst([gap_verdict, power_verdict])
         return replace(
             evidence.approximate(id, tables, covered, predicted),
+            # The extra verdict does not depend on the tolerance, which is its argument.
             extra_verdict=lambda _: extra_verdict,
             further={"median gap in H, over all sweeps": gap, "exponent": power},
             template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},

@@ -84,7 +84,7 @@ def draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
         largest = error.groupby(spacing).max()
         label = f"${scaling.QUANTITIES[quantity]}$, largest"
         axes.plot(largest, marker=marker, color=colour, label=label)
-    style.draw_first_order(axes, spacing, 0.4, BLACK)
+    style.draw_first_order(axes, spacing, slope=0.4, colour=BLACK)
     axes.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
     axes.set_title(r"$\Gamma = 1$, refining")
     style.few_ticks(axes.xaxis, np.unique(spacing))

@@ -64,7 +64,7 @@ def draw(table: pd.DataFrame) -> Figure:
     first = quantity_panels[0]
     first.plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, first)
-    draw_refined(refined_axes, roles["refined"])
+    draw_errors_by_spacing(refined_axes, roles["refined"])
     return figure
 
 
@@ -86,14 +86,14 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
             axes.plot(marks["damping_ratio"], ratio, "o", color=colour, **look)
 
 
-def draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the relative deviation of each quantity from its limit, as a function of spacing."""
+def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the relative deviation of each quantity from its exact limit, by block spacing."""
     for quantity, colour, marker in zip(REFINED_COLUMNS, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
         label = QUANTITY_LABELS.get(quantity, "front speed")
         axes.plot(line["dx"], error, marker=marker, color=colour, label=label)
-    style.draw_first_order(axes, rows["dx"], 0.4, GREY)
+    style.draw_first_order(axes, rows["dx"], slope=0.4, colour=GREY)
     # All runs are the same scene at several spacings.
     first = rows.iloc[0]
     scene = conditions(

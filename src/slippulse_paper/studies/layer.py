@@ -114,17 +114,18 @@ def pulse_rows(gamma: float) -> Rows:
 
 
 def patch_rows(gamma: float) -> Rows:
-    """Return when the region without friction sticks, one row for each grid.
+    """Return one row for each grid, with the time at which the nucleation region sticks.
 
-    The column strip_first_stick has the time at which a strip that slides uniformly would stick: a
-    shear wave has then run to the top and back.
+    This is the region without friction around x = 0, where the rupture starts. The column
+    strip_first_stick has the time at which a strip that slides uniformly would stick: a shear wave
+    has then run to the top and back.
     """
     shear_wave_speed = math.sqrt(0.5 * gamma)
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
     rows = along_path("patch", scene, CELLS)
-    # The stick of the region is the same at all stations of a grid.
+    # There is one row for each station of a grid, but the region sticks only once in each run.
     first_stations = rows[:: len(FRACTIONS_OF_PATH)]
     return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
 

@@ -35,11 +35,11 @@ THIN_POSITIONS = (9.0, *range(12, 33, 4))
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the slip of each pulse by position, and part run with one row for each pulse.
+    """Return two parts: "position" has the slip of each pulse by position, "run" one row per pulse.
 
-    ``change`` is the relative change of slip from the first to the last position. ``spread`` is
-    the largest relative difference of the slips at the end between pulses at one level. A pulse
-    that has died leaves no slip.
+    In the part "run", pulse_slip is the slip at the last position, ``change`` its relative change
+    from the first position, and ``spread`` the largest relative difference of pulse_slip between
+    the pulses at one level. A pulse that has died leaves no slip.
     """
     rows = []
     for level, half_length in THICK_PULSES:
