@@ -117,13 +117,13 @@ def transitions(evidence: Evidence) -> list[Runs]:
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
     runs_by_criterion = {FIRST_STICK: lattices + exact, PRINTED_SLIP: lattices}
-    judged = []
-    for criterion, all_runs in runs_by_criterion.items():
+    runs = []
+    for criterion, runs_of_criterion in runs_by_criterion.items():
         columns = COLUMNS_BY_CRITERION[criterion]
-        for choice, tables in all_runs:
+        for choice, tables in runs_of_criterion:
             renamed = [table.rename(columns=columns) for table in tables]
-            judged.append(Runs(choice | {"criterion": criterion}, renamed))
-    return judged
+            runs.append(Runs(choice | {"criterion": criterion}, renamed))
+    return runs
 
 
 @cache
@@ -133,14 +133,16 @@ def arrests(evidence: Evidence) -> list[Runs]:
     Exact solutions count as arrested when the left front has covered a fraction of |x_minus|, and
     lattices at their last release.
     """
-    judged = []
-    for choice, (rows,) in exact_runs(evidence, "stress"):
-        judged.append(Runs(choice, [widest_at_each_level(rows, COLUMNS_BY_CRITERION[FIRST_STICK])]))
+    runs = []
+    # An exact solution has one table.
+    for choice, (table,) in exact_runs(evidence, "stress"):
+        widest_exact = widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK])
+        runs.append(Runs(choice, [widest_exact]))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
-        judged.append(Runs(choice | at_last_release, widest))
-    return judged
+        runs.append(Runs(choice | at_last_release, widest))
+    return runs
 
 
 def widest_at_each_level(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:

@@ -100,7 +100,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return pulses at several fracture energies and levels, beside one-dimensional theory."""
+    """Return the rows of pulses at several fracture energies and levels.
+
+    Each row also has the numbers of `one_dimensional_theory`.
+    """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
@@ -131,18 +134,18 @@ def patch_rows(gamma: float) -> Rows:
 
 
 def free_top_rows() -> Rows:
-    """Return a pulse in a layer whose top is free to rise."""
+    """Return the rows of a pulse in a layer whose top is free to rise."""
     scene = uniform("displacement", GAMMA, FREE_TOP_LEVEL, FREE_TOP_WEAKENING)
     return along_path("free", replace(scene, top="free"), CELLS)
 
 
 def crack_rows() -> Rows:
-    """Return a crack in uniform pre-stress under a stress boundary."""
+    """Return the rows of a crack in uniform pre-stress under a stress boundary."""
     return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS)
 
 
 def coupled_rows() -> Rows:
-    """Return pulses on both sides if the strength depends on the normal stress."""
+    """Return the rows of pulses on both sides, if the strength depends on the normal stress."""
     weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
     rows: Rows = []
@@ -152,9 +155,10 @@ def coupled_rows() -> Rows:
 
 
 def barrier_rows() -> Rows:
-    """Return ruptures under a stress boundary whose left front is stopped by a negative level.
+    """Return the rows of ruptures under a stress boundary whose left front is stopped.
 
-    The column balance_distance has the distance at which the paper's equation stops it.
+    A negative level on the left stops it. The column balance_distance has the distance at which it
+    stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
     scene = replace(
@@ -230,6 +234,7 @@ def at_stations(
         run = simulate_layer(scene)
         rows += measured(part, scene, run, 1, positions)
         if cells == grids[0]:
+            # The run on the coarsest grid shows how long those on finer grids must be.
             scene = shortened(scene, run, positions)
     return rows
 
@@ -284,7 +289,7 @@ def measured(
 ) -> Rows:
     """Return one row for each position: the parameters, `whole_run` and `pulse_at_station`."""
     tau0, gamma = scene.prestress.right, scene.gamma
-    known: dict[str, Any] = {
+    parameters: dict[str, Any] = {
         "part": part,
         "gamma": gamma,
         "tau0": tau0,
@@ -294,12 +299,12 @@ def measured(
         "cells": scene.cells,
     }
     if tau0 > 0.0:
-        known["fracture_energy"] = scene.weakening * gamma / tau0**2
-    known |= whole_run(scene, run, side)
+        parameters["fracture_energy"] = scene.weakening * gamma / tau0**2
+    numbers_of_run = whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
-        row = {"station": station} | pulse_at_station(run, position, scene.nucleation)
-        rows.append(known | row)
+        pulse = pulse_at_station(run, position, scene.nucleation)
+        rows.append(parameters | numbers_of_run | {"station": station} | pulse)
     return rows
 
 
