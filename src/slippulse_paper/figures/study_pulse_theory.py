@@ -29,7 +29,12 @@ REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return quantities by role: simulation, theory, refined (by dx, with the limit as theory)."""
+    """Return one row for each quantity of a pulse, in three parts, which the column role names.
+
+    theory : exact values divided by the paper's formula (over_paper), by damping ratio
+    simulation : measured values, with the exact ones (theory) and those of the paper's formula
+    refined : measured values on lattices of several spacings, with their limit (theory)
+    """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     curves = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [curves.assign(role="theory")]

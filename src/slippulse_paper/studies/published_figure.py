@@ -83,7 +83,7 @@ class Fit(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts profile, arrows, notebook and stress, one row for each fit and reading.
+    """Return one row for each fit and reading, in four parts, which the column part names.
 
     profile, arrows : fits of the left panel, without its arrows and to all readings
     notebook : the fit without arrows, with the settings of the authors' notebook
