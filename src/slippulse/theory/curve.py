@@ -345,17 +345,22 @@ def _lowest_exit_beyond(
 def _panels_of_crossings(
     edges: np.ndarray, regions: list[np.ndarray], y: np.ndarray, level: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the panels, from y on, on which a field rises to a level for the last time.
+    """Return, for each point, the panel on which a field rises to a level for the last time.
 
-    regions are the lowest exits (`_lowest_exit_beyond`): beyond a panel whose lowest exit is at
-    least the level, the field stays above the level up to the end of the region. The mask that is
-    returned with the panels is False where there is no such panel.
+    Also return a mask that is False for points without such a panel. The field is T + x, and the
+    search goes to the right, through the region of the point and those beyond it.
+
+    edges : ends of the panels
+    regions : lowest exit values of the panels in each region (`_lowest_exit_beyond`)
+    y, level : position of each point, and its value of the field
     """
     count = edges.size - 1
     start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
     panel, first_of_region = np.full(y.shape, count), 0
     for lowest_exits in regions:
         end_of_region = first_of_region + lowest_exits.size
+        # On this panel the field reaches the level, and it stays above it up to the end of the
+        # region. Lowest exit values are in ascending order.
         candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
         is_in_region = (start < end_of_region) & (candidate < end_of_region)
         is_missing = panel == count
