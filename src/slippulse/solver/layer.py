@@ -291,7 +291,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
     nucleation = int(scene.nucleation / h + 0.5)
-    # Waves run at most at speed 1, which is this many columns.
+    # No wave is faster than 1, so that during the run waves cross at most this many columns.
     columns_of_waves = int(steps * dt / h)
     columns_on_right = nucleation + columns_of_waves + 2 * PRECURSOR_CELLS
     # A symmetric layer has one column on the left, the mirror image of the first on the right.

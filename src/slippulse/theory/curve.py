@@ -359,8 +359,8 @@ def _panels_of_crossings(
     panel, first_of_region = np.full(y.shape, count), 0
     for lowest_exits in regions:
         end_of_region = first_of_region + lowest_exits.size
-        # On this panel the field reaches the level, and it stays above it up to the end of the
-        # region. Lowest exit values are in ascending order.
+        # The field reaches the level on this panel, and beyond it stays above the level up to the
+        # end of the region. The lowest exit values are in ascending order.
         candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
         is_in_region = (start < end_of_region) & (candidate < end_of_region)
         is_missing = panel == count

@@ -50,7 +50,7 @@ def exact_transition_displacement(
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # Only points of the front with x + T(x) <= t influence the motion at x = 0 up to the time t.
-    # They have x < t, and the stick is searched up to two periods.
+    # They have x < t. The stick is searched up to t = 2 periods, so this reach is long enough.
     fronts = fast_fronts(
         prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
     )

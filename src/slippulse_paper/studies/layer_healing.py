@@ -35,11 +35,14 @@ THIN_POSITIONS = (9.0, *range(12, 33, 4))
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return two parts: "position" has the slip of each pulse by position, "run" one row per pulse.
+    """Return the rows of two parts of the study, which the column part names.
 
-    In the part "run", pulse_slip is the slip at the last position, ``change`` its relative change
-    from the first position, and ``spread`` the largest relative difference of pulse_slip between
-    the pulses at one level. A pulse that has died leaves no slip.
+    position : the slip that each pulse leaves (pulse_slip), one row for each position
+    run : one row for each pulse, with its slip at the last position, the relative change of slip
+        since the first position (change), and the largest relative difference between the slips of
+        the pulses at one level (spread)
+
+    A pulse that has died leaves no slip.
     """
     rows = []
     for level, half_length in THICK_PULSES:
