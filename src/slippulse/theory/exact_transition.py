@@ -49,13 +49,15 @@ def exact_transition_displacement(
         raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
-    # The past of (0, t) begins where x + T(x) = t, so that x < t.
+    # Only points of the front with x + T(x) <= t influence the motion at x = 0 up to the time t.
+    # They have x < t. The stick is searched up to t = 2 periods, so this reach is long enough.
     fronts = fast_fronts(
         prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
     )
     stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        # The fronts are longer than the past of the stick, and are computed up to its time.
+        # The fronts are faster than the waves. At the time of the stick they may be farther away
+        # than was needed to find it, so they are computed again over a longer distance.
         speed = float(front_speed(level, damping_ratio, release))
         reach = speed * stick + _distance_to_uniform(prestress)
         fronts = fast_fronts(
