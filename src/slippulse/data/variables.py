@@ -7,15 +7,17 @@ from ..model.scene import SCENE_NUMBERS
 VARIABLES = {name: definition.meaning for name, definition in SCENE_NUMBERS.items()}
 VARIABLES |= {
     "boundary": "condition at the top of the layer: displacement (Gamma = 1) or stress (Gamma = 0)",
-    "damping_ratio": "beta/dx, which selects the front speed",
+    "damping_ratio": "damping ratio beta/dx, which determines the front speed",
     "left": "pre-stress level far to the left, tau_{0,l}",
     "right": "pre-stress level far to the right, tau_{0,r}",
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
-    "profile": "number of the pre-stress in the list of profiles, from 1 (if one is a table)",
+    "profile": "number of the pre-stress in the list `profiles`, from 1; recorded if one of them "
+    "is a table",
     "seed": "seed of a rough pre-stress; NaN if it is not rough",
-    "release": "whether the released stress includes the damping force: total or elastic",
+    "release": "release rule: whether the stress at release includes the damping force (total) or "
+    "not (elastic)",
     "scheme": "localised, fixed_step or continuum",
     "half_lattice": "1 if half of a symmetric scene may be simulated, otherwise 0",
     "friction": "law of friction of sliding blocks with its parameters, as JSON",
@@ -25,14 +27,14 @@ VARIABLES |= {
     "elastic_energy": "elastic energy of the strain at the end",
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to damping and to the increase of friction with slip rate",
-    "friction_loss": "work against friction above the kinetic one: the fracture energy of slip "
-    "weakening; with law linear_rate a part of viscous_loss",
+    "friction_loss": "work against the part of friction above kinetic friction: the fracture "
+    "energy of slip weakening; with the law linear_rate, viscous_loss contains this work",
     "event_loss": "energy lost when blocks stick within a step (textbook scheme)",
     "energy_residual": "error of the energy balance divided by its largest term",
     "end_time": "time at which the run ended",
     "stopped_because": "reason why the run ended",
     "steps": "number of time steps",
-    "block_updates": "sliding blocks summed over the steps",
+    "block_updates": "number of sliding blocks, summed over all time steps",
     "event_updates": "number of changes of a block by releases and sticks",
     "releases": "number of releases, summed over all blocks",
     "sticks": "number of sticks, summed over all blocks",
@@ -43,7 +45,7 @@ VARIABLES |= {
     "first_stick_time": "time of the first stick",
     "first_stick_position": "position of the first stick, in units of H",
     "half_lattice_used": "1 if half of the scene was simulated, otherwise 0",
-    "pulse_blocks": "blocks across the narrowest pulse at the end",
+    "pulse_blocks": "number of blocks in the narrowest pulse at the end",
     "run_flags": "reasons why numbers may differ from those of the model; empty if there are none",
     "limit_position": "position where the construction of the exact solution ends, in units of H",
     "limit_time": "time at which the construction of the exact solution ends",

@@ -123,7 +123,7 @@ STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
-GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); leave it out under `stress`"
+GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
 ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "friction law of sliding blocks, explained below; by default that of `model`"
 IN_SI = "properties of a layer in SI units; all keys of the scene are then in SI units too"
@@ -253,7 +253,7 @@ class Beyond(Block):
 class Duration(Block):
     time: Positive | None = key("the duration [H/c]", None)
     half_periods: Positive | None = key(
-        "the duration in units of pi/sqrt(gamma); only under `displacement`", None
+        "the duration in units of pi/sqrt(gamma); only with `boundary: displacement`", None
     )
     balance_distances: Positive | None = key(
         "the duration in units of |x_minus|; only if the left level is < 0 and the right one is 0",
@@ -268,9 +268,11 @@ class SpacingRule(Block):
         "one spacing for all presets and for the grid study; give no other key with it [H]", None
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
-    width_power: float = key("dx is proportional to W to this power", 0.0)
+    width_power: float = key(
+        "dx is proportional to this power of W, the width of the Gaussian", 0.0
+    )
     gamma_power: float = key(
-        "dx is proportional to gamma to this power; only under `displacement`", 0.0
+        "dx is proportional to this power of gamma; only with `boundary: displacement`", 0.0
     )
 
 
@@ -591,14 +593,15 @@ class Model(Block):
         "r = mu_k/(mu_s - mu_k); a run is flagged if a stress falls below -(1 + 2 r)"
     )
     resolved_blocks: int = key(
-        "a run is flagged if a pulse (under `stress`, the Gaussian) is narrower than this [dx]",
+        "a run is flagged if a pulse (under a stress boundary, the Gaussian) is narrower than"
+        " this [dx]",
         ge=1,
     )
 
 
 class Measure(Block):
     fraction: Fraction = key(
-        "fraction of |x_minus| that the left front has covered at T_trans, under `stress`"
+        "fraction of |x_minus| that the left front has covered at T_trans, if the stress is held"
     )
     front_window: float = key(
         "fraction of the path, at its end, over which the front speed is measured", ge=0.05, lt=1.0
