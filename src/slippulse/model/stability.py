@@ -97,6 +97,7 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     allowed = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
 
     def are_unstable(steps: np.ndarray) -> np.ndarray:
+        """Return a mask of the steps that amplify a mode by more than is allowed."""
         largest = np.max(_amplifications(steps, np.array(derivatives)), axis=-1)
         # Written with ~ so that an amplification of NaN counts as unstable.
         return ~(largest <= allowed)

@@ -48,12 +48,19 @@ def exact_transition_displacement(
         allowed = "equal levels > 0 on both sides"
         raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
-    period = float(np.pi / np.sqrt(gamma))
-    # The past of (0, t) begins where x + T(x) = t, so that x < t.
+    # Half of the period of the leaf springs, after which uniform slip would stick.
+    half_period = float(np.pi / np.sqrt(gamma))
+    # The stick is searched for up to two half-periods. Only the part of the fronts with
+    # |x| + T(x) < t lies in the past of the point (0, t), so that |x| < t is sufficient.
     fronts = fast_fronts(
-        prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
+        prestress,
+        damping_ratio=damping_ratio,
+        release=release,
+        reach=2.5 * half_period,
+        gamma=gamma,
     )
-    stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
+    part = Part(fronts, gamma, until=2.0 * half_period)
+    stick = float(part.find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
         # The fronts are longer than the past of the stick, and are computed up to its time.
         speed = float(front_speed(level, damping_ratio, release))
@@ -61,7 +68,7 @@ def exact_transition_displacement(
         fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
         )
-    return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
+    return ExactTransition(stick, 2.0 * fronts.front_at(stick, x=0.0, side=1.0))
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:

@@ -355,6 +355,7 @@ class PartWithEdge(Part):
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
         guess = knots.interpolate(k, x)
+        # The acceleration at stick, interpolated linearly between the knots.
         at_knots = knots.velocity_by_xi + knots.velocity_by_eta
         acceleration = at_knots[k] * (1.0 - s) + at_knots[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
@@ -430,7 +431,8 @@ class PartWithEdge(Part):
         if not stuck.any():
             return None
         error = self._stick_time_errors()
-        # If several positions stick first, the one nearest to x = 0 is returned.
+        # If several positions stick first (apart from rounding), the one nearest to x = 0 is
+        # returned.
         latest = np.where(stuck, knots.stick + error, np.inf)
         may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
