@@ -102,6 +102,7 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         # Written with ~ so that an amplification of NaN counts as unstable.
         return ~(largest <= allowed)
 
+    # The shortest step that is tried. If it is unstable, the bound lies between 0 and this step.
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if smallest == 0.0:
         return 0.0

@@ -178,6 +178,7 @@ def take_samples(recorder, motion, tally, end):
     times, blocks = recorder.times, recorder.blocks
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
+        # Within a step, slip changes at the constant velocity that belongs to its end.
         since = end - times[n]
         for p in range(blocks.shape[0]):
             i = blocks[p]

@@ -294,6 +294,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
     nucleation = int(scene.nucleation / h + 0.5)
+    # Number of columns on each side of x = 0, so many that no wave reaches the last one.
     half = nucleation + int(steps * dt / h) + 2 * PRECURSOR_CELLS
     centre = 1 if scene.symmetric else half
     x = (np.arange(centre + half) - centre) * h

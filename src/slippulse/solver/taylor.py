@@ -277,8 +277,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
-    # The viscous loss is beta/dx times the sum of (v_{i+1} - v_i)^2 over pairs of neighbours. On a
-    # mirrored lattice each pair counts twice, and each block too, except block 1 on the axis.
+    # The viscous dissipation is beta/dx times the sum of (v_{i+1} - v_i)^2 over all neighbours.
+    # Its slope therefore has a factor of 2. On a mirrored lattice each pair counts twice, and each
+    # block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)

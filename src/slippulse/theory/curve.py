@@ -159,7 +159,8 @@ class Curve:
     """Panels from left to right without gaps.
 
     restarts are the positions, on the left and on the right side, where a slow front became faster
-    than the waves again. They divide the curve into regions for `crossings`.
+    than the waves again. They divide the curve into regions for `crossings`. edges and edge_times
+    are the positions and times of the ends of the panels, where neighbouring panels share one.
     """
 
     def __init__(

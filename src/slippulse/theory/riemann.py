@@ -162,7 +162,8 @@ class DependenceDomains:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
     Every field is an integral over these domains (`_integrate`), whose integrand is a function of
-    `PanelNodes`.
+    `PanelNodes`. With the symbols of the module docstring, stiffness is k, and left and right are
+    the ends x_l and x_r of the integrals.
     """
 
     def __init__(

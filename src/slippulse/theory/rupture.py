@@ -292,7 +292,10 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def delay(position: float) -> float:
-            """Return how much later than the given time a position sticks."""
+            """Return how much later than the given time a position sticks.
+
+            A position that never sticks counts as if it stuck after the end of the rupture.
+            """
             stick = np.nan_to_num(
                 self._stick_time_beyond_end(np.array(position)), nan=2.0 * self.duration
             )

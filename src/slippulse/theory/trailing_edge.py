@@ -169,6 +169,7 @@ class PartWithEdge(Part):
         sticks = np.isfinite(stick)
         time = np.where(sticks, stick, self.until)
         domains = self.domains(x, time)
+        # The velocity is 0 at a stick, and has to be computed only if a position still slides.
         velocity = np.zeros(x.size) if sticks.all() else domains.slip_velocity()
         velocity[sticks] = 0.0
         by_xi, by_eta = domains.velocity_slopes()
@@ -236,6 +237,7 @@ class PartWithEdge(Part):
         # At the final time du/dt is 0 where the edge is then.
         has_edge = at_left * at_right < 0.0
         left, right = knots.x[k[has_edge]], knots.x[k[has_edge] + 1]
+        # The new knots are so near to each other that the interval between them is not divided.
         offset = 0.4 * MIN_INTERVAL_AT_END * self.scale
         x = roots_between(
             self._velocity_at_end,
