@@ -78,8 +78,8 @@ SCENES = {
     "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
     "friction: 0.5; allowed: a Friction": {"friction": 0.5},
     "dx: array([0.1, 0.2]); allowed: a finite number": {"dx": np.array([0.1, 0.2])},
-    "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip runs": linear(-1.62),
-    "friction.alpha: -0.01; allowed: >= 0 without leaf springs, or slip runs": WITHOUT_SPRINGS
+    "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, since": linear(-1.62),
+    "friction.alpha: -0.01; allowed: >= 0 without leaf springs, since": WITHOUT_SPRINGS
     | linear(-0.01),
 }
 for name in LATTICES:
@@ -130,7 +130,7 @@ RUPTURES = {
     "rate_strengthening: -1.62; allowed: > -2 sqrt(gamma) = -1.61245": {
         "rate_strengthening": -1.62
     },
-    "-0.01; allowed: >= 0 without leaf springs, or": {"rate_strengthening": -0.01, "gamma": 0.0},
+    "-0.01; allowed: >= 0 without leaf springs, since": {"rate_strengthening": -0.01, "gamma": 0.0},
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
 }
 SETTINGS = {

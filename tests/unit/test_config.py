@@ -79,7 +79,7 @@ def test_a_run_exceeds_its_cost_bound_at_most_by_a_small_factor(change):
 
 def test_a_run_that_would_not_end_is_refused_before_it_starts():
     profile = sp.Prestress(0.6, 0.6)
-    allowed = "allowed: 4e.[0-9]+, or run_sweep, which takes any scene"
+    allowed = "allowed: 4e.[0-9]+; use run_sweep, which takes any scene"
     with pytest.raises(ValueError, match=rf"^cost: up to 8.*e.22 block updates; {allowed}$"):
         sp.simulate(sp.Scene("stress", profile, 1e9, dx=0.01))
     samples = sp.Samples(np.linspace(0.0, 1.0, 30_000), np.linspace(-1.0, 1.0, 30_000))

@@ -276,8 +276,7 @@ def test_a_layer_is_refused_in_one_line(line):
 
 STRESSES_REFUSED = {
     "at least 3.7e+06 Pa everywhere; allowed: below static friction, 3e+06 Pa": STRESS + 1e6,
-    "-3.3e+06 Pa; allowed: > -3e+06 Pa, minus static friction, or the interface slides": STRESS
-    - 6e6,
+    "-3.3e+06 Pa; allowed: > -3e+06 Pa, which is minus static friction, since": STRESS - 6e6,
     "at most 2950000 Pa at a block; allowed: static friction, 3e+06 Pa, somewhere": STRESS - 1e5,
     "last value 3.2e+06 Pa; allowed: below static friction": STRESS + 5e5 * (X > 0.2),
     "stresses: nan; allowed: a finite number": np.where(X > 0.1, np.nan, STRESS),
@@ -300,16 +299,16 @@ CALLS = {
         2.7e6, DURATION, DX
     ),
     "duration_in_seconds: 0; allowed": lambda: BLOCK.scene((X, STRESS), 0, DX),
-    "gamma: 0.6; allowed: nothing: it follows from the layer": lambda: BLOCK.scene(
+    "gamma: 0.6; allowed: none, since it follows from the layer": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, gamma=0.6
     ),
-    "beta: 0.1; allowed: nothing beside damping_ratio": lambda: BLOCK.scene(
+    "beta: 0.1; allowed: none, since damping_ratio is given": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, beta=0.1, damping_ratio=0.1
     ),
     "order: 99; allowed: 3, 4, 5, 6, 7, 8 (in units of the layer: 0.02 m": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, order=99
     ),
-    "peak_in_pascal: 3000000.0; allowed: nothing without a width": lambda: BLOCK.scene(
+    "peak_in_pascal: 3000000.0; allowed: none without width_in_metres": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, peak_in_pascal=3e6
     ),
     "run: 'int'; allowed: a Dataset": lambda: BLOCK.to_si(3),

@@ -106,8 +106,10 @@ LAYERS = {
         "points": EVERYWHERE
     },
     "points: -3.1e+06 Pa; allowed: > -3e+06 Pa": {"points": BACKWARDS},
-    "gamma: 0.6; allowed: none, since the layer has it": {"gamma": 0.6},
-    "boundary: 'stress'; allowed: what layer.top = 'held' means": {"boundary": "stress"},
+    "gamma: 0.6; allowed: none, since it follows from the layer": {"gamma": 0.6},
+    "boundary: 'stress'; allowed: none, or the boundary of layer.top = 'held'": {
+        "boundary": "stress"
+    },
     "dx: 0.02; allowed: a number > 0 and <= the thickness, 0.01 m": {"dx": 0.02},
     "peak: 1, and the pre-stress of a block is at most 0.4": {
         "points": [[-0.1, 2.7e6], [0.1, 2.7e6]],
@@ -258,7 +260,7 @@ def test_the_command_line_is_refused(shipped, case):
 # Figures, simulations that they draw, changes of these, and the refusals.
 EQUAL = "at least one run with boundary displacement and equal levels above 0"
 BALANCED = "at least one run with boundary stress, left level below 0, right level 0 and no steps"
-OTHER = "; or another name for the simulation"
+OTHER = "; other runs need another name"
 NOW = {"time": 5.0, "balance_distances": None}
 STRESS_PROFILE = {"profiles": [{"left": -0.3, "right": 0.1}]}
 NOT_DRAWN = [

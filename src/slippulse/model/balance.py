@@ -106,8 +106,10 @@ def _balance_position(prestress: Prestress) -> float:
     ends += [abs(position) + 1.0 for position, _ in prestress.points]
     distance = max(ends, default=1.0)
     left, right = prestress.level(np.array([-distance, distance])).tolist()
-    check_that(right == 0.0, "prestress.right", right, "0, or the balance integral is not finite")
-    check_that(left < 0.0, "prestress.left", left, "< 0, or the pre-stress is never balanced")
+    allowed = "0, since otherwise the balance integral is not finite"
+    check_that(right == 0.0, "prestress.right", right, allowed)
+    allowed = "< 0, since otherwise the pre-stress is never balanced"
+    check_that(left < 0.0, "prestress.left", left, allowed)
     if prestress.points:
         return _balance_of_table(prestress, distance)
     lower, upper = -distance, 0.0

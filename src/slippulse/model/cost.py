@@ -55,7 +55,7 @@ class Bound(NamedTuple):
     bytes: float
 
     def exceeded(
-        self, chunks: int = 1, remedy: str = f"with more chunks or {OPTION_TO_ALLOW}"
+        self, chunks: int = 1, remedy: str = f"use more chunks or {OPTION_TO_ALLOW}"
     ) -> str:
         """Describe the first limit that is exceeded; an empty string if there is none.
 
@@ -68,7 +68,7 @@ class Bound(NamedTuple):
             value, allowed = getattr(self, name), fraction * limit
             if not value <= allowed:
                 cost = f"up to {value:.3g} {name.replace('_', ' ')}{where}"
-                return f"cost: {cost}; allowed: {allowed:.3g}, {remedy}"
+                return f"cost: {cost}; allowed: {allowed:.3g}; {remedy}"
         return ""
 
     @property

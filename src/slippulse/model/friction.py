@@ -30,8 +30,8 @@ def friction(law: str, **parameters: float) -> Friction:
     law : {"coulomb", "linear_rate", "bounded_rate", "rate_weakening", "slip_weakening", \
 "exponential_weakening"}
         In this order, the friction is: 0 (the law of the paper); alpha v; F v/(v + v_0);
-        -min(a v, F); max(0, 1 - slip/d_c); exp(-slip/d_c). Friction is measured from kinetic
-        friction, in units of the stress drop.
+        -min(a v, F); max(0, 1 - slip/d_c); exp(-slip/d_c). The scale is that
+        of the pre-stress: 0 is kinetic and 1 is static friction.
     **parameters : float
         "linear_rate" has alpha. "bounded_rate" has limit (F) and v_0. "rate_weakening" has
         slope (a) and limit (F). "slip_weakening" and "exponential_weakening" have d_c, in units of

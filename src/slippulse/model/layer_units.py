@@ -315,7 +315,7 @@ class Layer:
         >>> scene = block.scene((x, stress), 60e-6, 2e-4, damping_ratio=0.1)
         """
         for name in DERIVED_PARAMETERS:
-            allowed = "nothing: it follows from the layer or from the three arguments in SI units"
+            allowed = "none, since it follows from the layer or from the arguments in SI units"
             check_that(name not in parameters, name, parameters.get(name), allowed)
         check_number("dx_in_metres", dx_in_metres, above=0.0)
         check_number("duration_in_seconds", duration_in_seconds, above=0.0)
@@ -326,7 +326,7 @@ class Layer:
         self._check_that_something_moves(profile, dx)
         if damping_ratio is not None:
             beta = parameters.get("beta")
-            check_that(beta is None, "beta", beta, "nothing beside damping_ratio")
+            check_that(beta is None, "beta", beta, "none, since damping_ratio is given")
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             parameters["beta"] = damping_ratio * dx
         try:
@@ -365,9 +365,8 @@ class Layer:
             check_number("width_in_metres", width_in_metres, above=0.0)
             width = self.convert_from_si(float(width_in_metres), "length")
         if peak_in_pascal is not None:
-            check_that(
-                width is not None, "peak_in_pascal", peak_in_pascal, "nothing without a width"
-            )
+            allowed = "none without width_in_metres, since there is then no Gaussian"
+            check_that(width is not None, "peak_in_pascal", peak_in_pascal, allowed)
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
         if isinstance(prestress_in_pascal, Real) and not isinstance(prestress_in_pascal, bool):
             (level,) = self.table_from_pascal("prestress_in_pascal", [prestress_in_pascal]).tolist()
@@ -401,7 +400,8 @@ class Layer:
         """
         stress, lowest = as_numbers(key, stress), -self.static_strength
         if stress.min(initial=math.inf) <= lowest:
-            allowed = f"> {lowest:g} Pa, minus static friction, or the interface slides backwards"
+            reason = "since otherwise the interface slides backwards"
+            allowed = f"> {lowest:g} Pa, which is minus static friction, {reason}"
             raise ValueError(f"{key}: {stress.min():.6g} Pa; allowed: {allowed}")
         return np.asarray(self.convert_from_si(stress, "stress"))
 

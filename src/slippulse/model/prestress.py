@@ -121,7 +121,8 @@ class Prestress(ExplainsRemovedNames):
         allowed = "different positions, none of them 0 (see left, right)"
         check_that(are_distinct, "prestress.steps", positions, allowed)
         peak_has_width = self.width is not None or self.peak == 1.0
-        check_that(peak_has_width, "prestress.peak", self.peak, "nothing without a width")
+        allowed = "1 without a width, since there is then no Gaussian"
+        check_that(peak_has_width, "prestress.peak", self.peak, allowed)
         if self.points:
             self._check_points()
 
@@ -459,7 +460,7 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
     # A measured table replaces the points of a long table by a digest, which is text.
     is_digest = isinstance(parts["points"], str)
-    allowed = "the points themselves, which the data file of the run has"
+    allowed = "the points themselves, which are in the data file of the run"
     check_that(not is_digest, "steps_and_bumps points", parts["points"], allowed)
     return Prestress(left=left, right=right, width=width, peak=peak, **parts)
 

@@ -12,4 +12,6 @@ def check_runaway(gamma: float, alpha: float, key: str = "rate_strengthening") -
     if alpha < 0.0 and alpha * alpha >= 4.0 * gamma:
         bound = f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
         allowed = bound if gamma else ">= 0 without leaf springs"
-        raise ValueError(f"{key}: {alpha!r}; allowed: {allowed}, or slip runs away")
+        raise ValueError(
+            f"{key}: {alpha!r}; allowed: {allowed}, since otherwise slip grows without limit"
+        )

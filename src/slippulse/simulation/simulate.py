@@ -71,7 +71,7 @@ def simulate(
     check_that(is_valid, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
     _check_within(samples, scene.duration)
-    exceeded = bound_cost(scene, samples).exceeded(remedy="or run_sweep, which takes any scene")
+    exceeded = bound_cost(scene, samples).exceeded(remedy="use run_sweep, which takes any scene")
     # The exact solution itself refuses scenes that are too large, and names the key.
     if exceeded and scene.scheme != "continuum":
         raise ValueError(exceeded)

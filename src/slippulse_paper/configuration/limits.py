@@ -73,7 +73,8 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
         if not largest >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
-                f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, or nothing moves"
+                f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, since otherwise"
+                " nothing moves"
             )
 
 
@@ -102,8 +103,8 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
         widest = max(map(_pulse_blocks, scenes))
         raise ValueError(
             f"resolved_blocks: {scenes[0].resolved_blocks}, while the widest pulse has about"
-            f" {widest:.2g} blocks; allowed: a pulse of at least {fewest_blocks:g} blocks: a"
-            " smaller dx, or a smaller resolved_blocks if the simulation is about single blocks"
+            f" {widest:.2g} blocks; allowed: a pulse of at least {fewest_blocks:g} blocks; use"
+            " a smaller dx, or a smaller resolved_blocks if the simulation is about single blocks"
         )
 
 

@@ -72,7 +72,7 @@ def _check_shipped_simulations(merged: Mapping, shipped: Mapping) -> None:
         return
     removed = sorted({*shipped["simulations"]} - {*sweeps})
     if removed:
-        allowed = "what is shipped stays, since figures and verdicts need it"
+        allowed = "a sweep, since figures and verdicts need each shipped simulation"
         raise ConfigError(f"simulations.{removed[0]}: null; allowed: {allowed}")
 
 

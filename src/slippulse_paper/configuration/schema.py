@@ -142,7 +142,7 @@ class Rough(Block):
 
     level: float = key("mean of the pre-stress, below 1 [S]")
     deviation: NonNegative = key(
-        "standard deviation; larger values of the pre-stress than 0.95 are set to 0.95 [S]"
+        "standard deviation; values of the pre-stress above 0.95 are set to 0.95 [S]"
     )
     correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
     hurst: float = key(
@@ -152,7 +152,9 @@ class Rough(Block):
     )
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
-    spacing: Positive = key("distance between neighbouring positions [H]")
+    spacing: Positive = key(
+        "distance between the positions at which the random values are drawn [H]"
+    )
     seed: Seed | Distinct[Seed] = key(
         "seed of the random field; a list of seeds gives one profile for each seed", words=SEEDS
     )
@@ -266,9 +268,9 @@ class SpacingRule(Block):
         "one spacing for all presets and for the grid study; give no other key with it [H]", None
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
-    width_power: float = key("power of W in the rule for the spacing", 0.0)
+    width_power: float = key("dx is proportional to W to this power", 0.0)
     gamma_power: float = key(
-        "power of gamma in the rule for the spacing; only under `displacement`", 0.0
+        "dx is proportional to gamma to this power; only under `displacement`", 0.0
     )
 
 
@@ -287,7 +289,11 @@ class Physics(Block):
         "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
     scheme: Scheme | None = key("scheme; by default that of `model`", None)
-    resolved_blocks: int | None = key("as in `model`, which has the default", None, ge=1)
+    resolved_blocks: int | None = key(
+        "a run is flagged if a pulse is narrower than this; by default as in `model` [dx]",
+        None,
+        ge=1,
+    )
     max_step: Positive | None = key(
         "largest time step; by default that of the preset, or the stable one if it is smaller [dx]",
         None,
@@ -371,7 +377,9 @@ class Simulation(PhysicsOfSweep):
     release: Release | Distinct[Release] | None = key(
         "release rule; by default that of `model`", None, RELEASED
     )
-    friction_ratio: NonNegative | None = key("as in `model`, which has the default", None)
+    friction_ratio: NonNegative | None = key(
+        "r = mu_k/(mu_s - mu_k); by default that of `model`", None
+    )
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
         "times and positions of the samples, if `record` contains samples", None
@@ -470,8 +478,10 @@ class NamedScene(Profile, PhysicsOfScene):
             return self
         top = self.layer.top
         agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
-        require(agree, f"boundary: {self.boundary!r}", f"what layer.top = {top!r} means, or none")
-        require(self.gamma is None, f"gamma: {self.gamma}", "none, since the layer has it")
+        require(
+            agree, f"boundary: {self.boundary!r}", f"none, or the boundary of layer.top = {top!r}"
+        )
+        require(self.gamma is None, f"gamma: {self.gamma}", "none, since it follows from the layer")
         scene = self.in_model_units()
         try:
             scene.check_table()
@@ -711,8 +721,8 @@ class Configuration(Block):
         require(name not in self.simulations, problem, "another name")
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
-        problem = f"scenes.{name}: a file of that name exists"
-        require(not is_taken, problem, "neither index nor SCENE_numbers")
+        problem = f"scenes.{name}: its file has the name of another file"
+        require(not is_taken, problem, "neither index nor SCENE_numbers with another scene SCENE")
 
     def _check_reading(self, key: str, reading: Reading) -> None:
         """Raise ValueError if the number that a reading is compared with is not measured."""

@@ -97,7 +97,7 @@ def draw_survival(axes: Axes, ensemble: Ensemble) -> None:
 
 def finish_survival(axes: Axes, stop: float) -> None:
     """Set the axes of panel a; pulses are followed up to the distance ``stop``."""
-    axes.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
+    axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
     axes.set(ylim=(0.6, 1.01), xlim=(0.0, stop))
     axes.legend(
         title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
@@ -124,7 +124,9 @@ def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
     axes.plot(ends, ends, color=BLACK, linewidth=0.8)
     axes.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2.0 * ends[1]))
-    axes.set(xlabel="predicted fatal barriers for each $H$", ylabel="deaths of pulses for each $H$")
+    axes.set(
+        xlabel="predicted barriers that stop pulses, per $H$", ylabel="deaths of pulses per $H$"
+    )
     axes.set_title(r"$\Gamma = 1$")
 
 
@@ -142,8 +144,10 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     guide = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
     axes.plot(tail["distance"], guide, ":", color=BLACK, label="power law $x^{-1/2}$")
     axes.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
-    axes.set(xlabel="distance $x$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
-    axes.legend(loc="lower left", fontsize=SMALL_TEXT)
+    axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
+    axes.legend(
+        title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
+    )
 
 
 def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
@@ -161,7 +165,9 @@ def finish_velocities(axes: Axes) -> None:
     """Draw the line on which both velocities are equal."""
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
-    axes.set(xlabel=r"half of the integral of $\tau$ (theory)", title=r"$\Gamma = 0$")
+    axes.set(
+        xlabel=r"half of the integral of $\tau$ behind the pulse (theory)", title=r"$\Gamma = 0$"
+    )
     axes.set_ylabel("slip velocity of the pulse, simulated")
     axes.legend(
         title=LEGEND_TITLE, loc="upper left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
