@@ -67,8 +67,8 @@ def accurate_step(
     frequency = math.sqrt(4.0 + gamma_dx2)
     half_damping = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
     # This is sqrt(c^2 - k), written so that the squares do not overflow.
-    excess = math.sqrt(max(half_damping - frequency, 0.0)) * math.sqrt(half_damping + frequency)
-    largest_rate = max(half_damping, frequency) + excess
+    root = math.sqrt(max(half_damping - frequency, 0.0)) * math.sqrt(half_damping + frequency)
+    largest_rate = max(half_damping, frequency) + root
     return (error * math.factorial(order + 1)) ** (1.0 / (order + 1)) / largest_rate
 
 

@@ -378,11 +378,11 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     square = s * s
     fourth = square * square
     # Horner's rule in s^4 for the four polynomials q_m and for those of the derivative.
-    out = coefficients[-1] * fourth
+    sums = coefficients[-1] * fourth
     for row in coefficients[-2:0:-1]:
-        out += row
-        out *= fourth
-    out += coefficients[0]
+        sums += row
+        sums *= fourth
+    sums += coefficients[0]
     # q_0 + s^2 q_2 and q_1 + s^2 q_3, and then the sum of the first and s times the second.
-    out = out[:4] + square * out[4:]
-    return out[:2] + s * out[2:]
+    sums = sums[:4] + square * sums[4:]
+    return sums[:2] + s * sums[2:]

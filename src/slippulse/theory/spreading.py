@@ -221,11 +221,11 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
 
 def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
     """Return the stretches, with neighbours combined if their fronts have met."""
-    out = [stretches[0]]
+    joined = [stretches[0]]
     for right in stretches[1:]:
-        merged = _merge_if_met(out[-1], right)
-        out = [*out, right] if merged is None else [*out[:-1], merged]
-    return out
+        merged = _merge_if_met(joined[-1], right)
+        joined = [*joined, right] if merged is None else [*joined[:-1], merged]
+    return joined
 
 
 def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
