@@ -297,7 +297,11 @@ def verified_run(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
 
 
 def verify(given: Mapping[str, str]) -> int:
-    """Print each result that differs from what a run would make now, and return the exit code."""
+    """Print each result that differs from what a run would make now, and return the exit code.
+
+    These are the results that Snakemake would make again, those that were changed by hand, and
+    files that no job has recorded. The exit code is 1 if there are any.
+    """
     options, targets = verified_run(given)
     listing = summary(options_of(options), targets)
     if listing.returncode:
@@ -307,8 +311,9 @@ def verify(given: Mapping[str, str]) -> int:
     for name, reason in sorted(problems.items()):
         print(f"{name}: {reason}")
     if not problems:
-        files = listing.stdout.count("\n") - 1
-        print(f"{files} files are as a run would make them now")
+        # The first line of the listing is its header.
+        file_count = listing.stdout.count("\n") - 1
+        print(f"{file_count} files are as a run would make them now")
     return int(bool(problems))
 
 

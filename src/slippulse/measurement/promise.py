@@ -62,12 +62,14 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
 def fast_sides(run: Mapping) -> set[str]:
     """Return the sides on which the front has crossed only pre-stress of at least MIN_PRESTRESS.
 
-    A side whose front has an unknown path is not among them.
+    If the pre-stress is a table of points, its lowest crossed value is one of the measured numbers.
+    Otherwise, the profile is evaluated up to the end of the path. A side whose front has an unknown
+    path is not among the returned sides.
     """
     sides = set()
     if "lowest_prestress_left" in run:
         lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
-        # The numbers are NaN in a row of a sweep whose profile is not a table.
+        # A sweep may mix tables and other profiles; the numbers of the others are NaN.
         if all(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
     for side, sign in (("left", -1.0), ("right", 1.0)):

@@ -79,7 +79,10 @@ def _title_in_si(parameters: pd.DataFrame) -> str:
 
 
 def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
-    """Append the table of pre-stress, the law of friction and the flags to a title, if any."""
+    """Append remarks on a table of pre-stress, the law of friction and flags to a title, if any.
+
+    Each remark is a text in the column series.
+    """
     if "table" in roles:
         title += f", {roles['table']['series'].iloc[0]}"
     if "friction" in roles:

@@ -140,7 +140,7 @@ def spread_difference(difference, medium, motion, event, left, right, top):
     """Compute the derivatives of the difference from its derivatives at the centre.
 
     ``left`` and ``right`` are the numbers of adjacent sliding blocks on each side of the event,
-    which limit its reach.
+    which limit its reach. ``top`` is the order of the highest derivative.
     """
     rows, centre = difference.rows, difference.centre
     # Column p of the difference is the block p + column of the lattice.
@@ -157,6 +157,7 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         if medium.alpha != 0.0:
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, column, motion, medium.law_kink)
+        # After a stick the block is held, so the difference of its neighbours does not move it.
         rows[k, CENTRE_COLUMN] = centre[k] + (0.0 if event.is_stick else rows[k, CENTRE_COLUMN])
 
 

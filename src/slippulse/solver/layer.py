@@ -294,10 +294,12 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
     nucleation = int(scene.nucleation / h + 0.5)
-    # Number of columns on each side of x = 0, so many that no wave reaches the last one.
-    half = nucleation + int(steps * dt / h) + 2 * PRECURSOR_CELLS
-    centre = 1 if scene.symmetric else half
-    x = (np.arange(centre + half) - centre) * h
+    # No wave is faster than 1, so that during the run waves cross at most this many columns.
+    columns_of_waves = int(steps * dt / h)
+    columns_on_right = nucleation + columns_of_waves + 2 * PRECURSOR_CELLS
+    # A symmetric layer has one column on the left, the mirror image of the first on the right.
+    centre = 1 if scene.symmetric else columns_on_right
+    x = (np.arange(centre + columns_on_right) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
     # Without a trail, all columns behind the wave are advanced, including those at x < 0.
     trail = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))

@@ -269,15 +269,18 @@ class Curve:
 
     @cached_property
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Lowest exits (`_lowest_exit_beyond`) of T + x going right, and of T - x going left.
+        """Lowest exit values (`_lowest_exit_beyond`) for characteristics to the right and the left.
 
-        The exit of a panel is the value at the end where the characteristic leaves it.
+        A characteristic to the right leaves a panel at its right end, and the exit value is T + x
+        there. To the left it is T - x at the left end. Regions end only at the restarts that a
+        characteristic can reach from outside: those of the left side if it goes to the right.
         """
         _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
-        at_right_ends, at_left_ends = t_plus_x[1], t_minus_x[0]
+        exits_at_right_ends, exits_at_left_ends = t_plus_x[1], t_minus_x[0]
         left_restarts, right_restarts = self.restarts
-        to_right = _lowest_exit_beyond(at_right_ends, self.edges, left_restarts)
-        to_left = _lowest_exit_beyond(at_left_ends[::-1], self.edges[::-1], right_restarts)
+        to_right = _lowest_exit_beyond(exits_at_right_ends, self.edges, left_restarts)
+        # To the left the order of panels and edges is reversed.
+        to_left = _lowest_exit_beyond(exits_at_left_ends[::-1], self.edges[::-1], right_restarts)
         return to_right, to_left
 
     def front_at(self, time: float, x: float, side: float) -> float:
@@ -350,17 +353,22 @@ def _lowest_exit_beyond(
 def _panels_of_crossings(
     edges: np.ndarray, regions: list[np.ndarray], y: np.ndarray, level: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the panels, from y on, on which a field rises to a level for the last time.
+    """Return, for each point, the panel on which a field rises to a level for the last time.
 
-    regions are the lowest exits (`_lowest_exit_beyond`): beyond a panel whose lowest exit is at
-    least the level, the field stays above the level up to the end of the region. The mask that is
-    returned with the panels is False where there is no such panel.
+    Also return a mask that is False for points without such a panel. The field is T + x, and the
+    search goes to the right, through the region of the point and those beyond it.
+
+    edges : ends of the panels
+    regions : lowest exit values of the panels in each region (`_lowest_exit_beyond`)
+    y, level : position of each point, and its value of the field
     """
     count = edges.size - 1
     start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
     panel, first_of_region = np.full(y.shape, count), 0
     for lowest_exits in regions:
         end_of_region = first_of_region + lowest_exits.size
+        # The field reaches the level on this panel, and beyond it stays above the level up to the
+        # end of the region. The lowest exit values are in ascending order.
         candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
         is_in_region = (start < end_of_region) & (candidate < end_of_region)
         is_missing = panel == count

@@ -50,8 +50,9 @@ def exact_transition_displacement(
     gamma = float(gamma)
     # Half of the period of the leaf springs, after which uniform slip would stick.
     half_period = float(np.pi / np.sqrt(gamma))
-    # The stick is searched for up to two half-periods. Only the part of the fronts with
-    # |x| + T(x) < t lies in the past of the point (0, t), so that |x| < t is sufficient.
+    # Only points of the fronts with |x| + T(x) <= t influence the motion at x = 0 up to the time t.
+    # They have |x| < t. The stick is searched for up to t = 2 half-periods, so that this reach is
+    # long enough.
     fronts = fast_fronts(
         prestress,
         damping_ratio=damping_ratio,
@@ -62,7 +63,8 @@ def exact_transition_displacement(
     part = Part(fronts, gamma, until=2.0 * half_period)
     stick = float(part.find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        # The fronts are longer than the past of the stick, and are computed up to its time.
+        # The fronts are faster than the waves. At the time of the stick they may be farther away
+        # than was needed to find it, so they are computed again over a longer distance.
         speed = float(front_speed(level, damping_ratio, release))
         reach = speed * stick + _distance_to_uniform(prestress)
         fronts = fast_fronts(

@@ -248,8 +248,8 @@ class Rupture(ExplainsRemovedNames):
         """Time and position of the first sticking; None if nothing sticks before ``duration``."""
         first_of_parts = [part.first_stick() for part in self._solved]
         first = min(filter(None, first_of_parts), default=None)
-        # After a limit something else may have stuck earlier, but up to the limit the edge is
-        # known.
+        # Trailing edges are known up to the limit, where the construction ends. A later stick need
+        # not be the first one, because another one may have been missed.
         known_until = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
         if not first or first.time > min(known_until, self._latest_time):
             return None

@@ -385,7 +385,11 @@ class PartWithEdge(Part):
         return stick_times
 
     def slow_points(self) -> list[Point]:
-        """Return the points where the trailing edge is not faster than the waves."""
+        """Return the points where the trailing edge is not faster than the waves.
+
+        They are the knots just before a jump of the edge, the knots of the kind SLOWER_THAN_WAVES,
+        and the stopped ends of fronts from which the edge does not run back faster than the waves.
+        """
         knots = self.knots
         before_jumps, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
         slow = np.union1d(before_jumps, np.flatnonzero(knots.kind == SLOWER_THAN_WAVES))

@@ -101,15 +101,18 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
         holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
         if holds_before is True and holds_after is False:
             smallest_deciding.setdefault(change.name, change)
-    # Changes of the exact solution rank above changes of lattices. The dictionary keeps the last
-    # change of each choice, which is the one with the highest rank.
+    # The choices are sorted by their largest change, in descending order. Changes of the exact
+    # solution come before changes of lattices.
     rank = attrgetter("exact", "size")
-    highest = {change.name: change for change in sorted(all_changes, key=rank)}
-    ranked = sorted(highest.values(), key=rank)[::-1]
+    # A dictionary keeps the last change of each choice, which is the largest one.
+    largest = {change.name: change for change in sorted(all_changes, key=rank)}
+    largest_first = sorted(largest.values(), key=rank)[::-1]
     deciding = [
-        smallest_deciding[change.name] for change in ranked if change.name in smallest_deciding
+        smallest_deciding[change.name]
+        for change in largest_first
+        if change.name in smallest_deciding
     ]
-    return deciding or ranked[:1]
+    return deciding or largest_first[:1]
 
 
 @dataclass(frozen=True, kw_only=True)

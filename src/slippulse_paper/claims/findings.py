@@ -29,7 +29,7 @@ def findings(
     """
     all_findings = []
     for id, entry in entries.items():
-        # An entry has expressions over several tables.
+        # Each row of an entry has a table and expressions over its columns.
         expressions = entry.get("numbers", [])
         values = all_numbers(evidence, damping_ratio, id, expressions)
         # In the text the numbers are n.NAME.
@@ -100,7 +100,11 @@ def collapse(evidence: Evidence) -> dict[str, float]:
 
 
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
-    """Return the best fit to the published figure, its confidence region, and the other rule."""
+    """Return the best fit to the published figure, as numbers for the text.
+
+    low, high : ends of the confidence region of the damping ratio
+    difference : how much larger chi-square is with the other release rule
+    """
     fits = infer_parameters(evidence.tables["published_figure"])
     best = fits["best"]
     low, high = best["regions"][0.95]

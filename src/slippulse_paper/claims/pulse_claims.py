@@ -133,10 +133,11 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
 def within(
     deviation: np.ndarray, uncertainty: np.ndarray, allowed: float, sure: bool = False
 ) -> bool | None:
-    """Return True if all deviations are allowed, False if one is not, None if that is open.
+    """Return whether all deviations are at most ``allowed``; None if that is open.
 
-    A deviation is not allowed if it is too large even when its uncertainty is subtracted. If
-    ``sure``, all deviations must be allowed together with their uncertainties, else without.
+    It is False if a deviation minus its uncertainty is larger. Otherwise it is True if all
+    deviations are at most ``allowed``: with their uncertainties added if ``sure``, else as they
+    are.
     """
     if np.any(deviation - uncertainty > allowed):
         return False

@@ -168,11 +168,12 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
-    """Return how near final slip and speed are to steady pulses at the local and mean pre-stress.
+    """Return how near final slip and speed are to those of steady pulses.
 
-    Two ensembles are quoted, those with the shortest and the longest correlation length among the
-    ensembles with recorded slip. Also return how much a bump changes the slip at distances beyond
-    the memory of the pulse.
+    They are given for the ensembles with the shortest (short) and the longest (smooth) correlation
+    length among those with recorded slip. local and mean are deviations of the slip from steady
+    pulses at the local and at the mean pre-stress. forgotten is the largest change of the slip by a
+    bump at distances beyond the memory of the pulse.
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]

@@ -24,23 +24,27 @@ def left(evidence: Evidence, id: str) -> Reading:
         chi_square=best["chi2"],
         degrees_of_freedom=best["dof"],
         further=values_of_our_figure(evidence, "space_time_displacement"),
-        template_values=best | shares_of_errors(evidence, best["pulls"]),
+        template_values=best | split_errors(evidence, best["pulls"]),
     )
 
 
-def shares_of_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
-    """Return the error of an edge reading that is its own, and chi-square if no error were shared.
+def split_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
+    """Split the errors of the readings of the trailing edge, which are partly shared.
+
+    own_edge_error : the part of the error that is independent in each of these readings
+    independent_chi_square : chi-square if all errors were independent
 
     ``pulls`` has the deviation of each reading divided by its error.
     """
-    own, independent = math.nan, 0.0
+    own_edge_error, chi_square = math.nan, 0.0
     for name, reading in evidence.readings.items():
         shared = reading.get("shared_error", 0.0)
         if shared:
-            own = math.sqrt(reading["reading_error"] ** 2 - shared**2)
+            # All these readings have the same errors.
+            own_edge_error = math.sqrt(reading["reading_error"] ** 2 - shared**2)
         if name in pulls and not reading.get("arrow"):
-            independent += pulls[name] ** 2
-    return {"own_edge_error": own, "independent_chi_square": independent}
+            chi_square += pulls[name] ** 2
+    return {"own_edge_error": own_edge_error, "independent_chi_square": chi_square}
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:

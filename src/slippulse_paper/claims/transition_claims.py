@@ -117,13 +117,13 @@ def transitions(evidence: Evidence) -> list[Runs]:
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
     runs_by_criterion = {FIRST_STICK: lattices + exact, PRINTED_SLIP: lattices}
-    judged = []
-    for criterion, all_runs in runs_by_criterion.items():
+    runs = []
+    for criterion, runs_of_criterion in runs_by_criterion.items():
         columns = COLUMNS_BY_CRITERION[criterion]
-        for choice, tables in all_runs:
+        for choice, tables in runs_of_criterion:
             renamed = [table.rename(columns=columns) for table in tables]
-            judged.append(Runs(choice | {"criterion": criterion}, renamed))
-    return judged
+            runs.append(Runs(choice | {"criterion": criterion}, renamed))
+    return runs
 
 
 @cache
@@ -133,14 +133,16 @@ def arrests(evidence: Evidence) -> list[Runs]:
     Exact solutions count as arrested when the left front has covered a fraction of |x_minus|, and
     lattices at their last release.
     """
-    judged = []
-    for choice, (rows,) in exact_runs(evidence, "stress"):
-        judged.append(Runs(choice, [widest_at_each_level(rows, COLUMNS_BY_CRITERION[FIRST_STICK])]))
+    runs = []
+    # An exact solution has one table.
+    for choice, (table,) in exact_runs(evidence, "stress"):
+        widest_exact = widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK])
+        runs.append(Runs(choice, [widest_exact]))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
-        judged.append(Runs(choice | at_last_release, widest))
-    return judged
+        runs.append(Runs(choice | at_last_release, widest))
+    return runs
 
 
 def widest_at_each_level(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
@@ -368,6 +370,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     exponent_tolerance = float(evidence.entries[id]["tolerance_exponent"])
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
+        """Judge the runs of three lattices; the extra verdict covers the gap and the exponent."""
         median_gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
         gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
         gap_verdict = rules.within(gap, gap_uncertainty, MAX_ARREST_GAP)
@@ -376,6 +379,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         extra_verdict = rules.worst([gap_verdict, power_verdict])
         return replace(
             evidence.approximate(id, tables, covered, predicted),
+            # The extra verdict does not depend on the tolerance, which is its argument.
             extra_verdict=lambda _: extra_verdict,
             further={"median gap in H, over all sweeps": gap, "exponent": power},
             template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},

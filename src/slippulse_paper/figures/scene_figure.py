@@ -34,12 +34,18 @@ def table(
 ) -> pd.DataFrame:
     """Return everything that the figure shows, with a role in each row.
 
-    The roles of `run_table` are joined by title, profile (a field at the end), steady (the largest
-    value of a field in the exact steady pulse of each side) and number (a row of ``numbers``).
+    These are the roles of `run_table`, and:
+
+    title : the title of the scene
+    profile : a field at the end of the run, as a function of position
+    steady : the largest value of a field in the exact steady pulse of each side
+    number : a row of ``numbers``
+
+    The arguments:
 
     numbers : from `main_numbers.scene_numbers`; in SI units if there is a layer
     theory : measured and predicted numbers of the run
-    layer : the layer in SI units, which the table then has, too
+    layer : if given, the table is converted to SI units
     """
     parts = [
         pd.DataFrame([{"role": "title", "series": title}]),

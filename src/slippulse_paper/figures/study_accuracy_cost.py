@@ -20,7 +20,11 @@ NEEDS = {"studies": ["accuracy_cost"]}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the part locking of the study, and the errors that are drawn (part trade)."""
+    """Return the rows of two parts of the figure, which the column part names.
+
+    trade : errors by work, in the form that `error_rows` returns
+    locking : front speed by scheme and step, as in the study
+    """
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
     errors = error_rows(trade, "work", lambda quantity: "work").assign(part="trade")

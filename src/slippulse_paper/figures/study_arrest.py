@@ -30,7 +30,11 @@ SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the path of each left front (roles path, exact_path) and arrest times (run).
+    """Return the rows of three parts of the figure, which the column role names.
+
+    run : one row for each run, with the time of the last release, and the time at which the left
+        front has covered the stated fraction of its path
+    path, exact_path : fraction of the path that is still to go, by time and damping ratio
 
     Times and distances are in units of |x_minus|, which is also the paper's estimate of the
     transition time.

@@ -37,8 +37,11 @@ CURVE_LEVELS = (0.2, 0.5, 0.8)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the lattice depths of the study, and two interpolated parts: fine (a finer map) and
-    curve (at one gamma).
+    """Return the rows of three parts of the figure, which the column part names.
+
+    depth : depths on lattices and exact ones, as in the study
+    fine : exact depths at gamma = 1, interpolated to a finer map
+    curve : exact depths and the paper's estimate at CURVE_GAMMA and CURVE_LEVELS, interpolated
     """
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]

@@ -102,7 +102,7 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
             axes.plot(line["dx"], line["difference"], marker + "-", **look)
         label = "slip velocity" if quantity == "velocity" else quantity
         axes.plot([], [], marker, color=GREY, label=label)
-    style.draw_first_order(axes, rows["dx"], 1.5, GREY)
+    style.draw_first_order(axes, rows["dx"], slope=1.5, colour=GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)

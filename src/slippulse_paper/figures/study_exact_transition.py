@@ -30,7 +30,12 @@ QUANTITY_LOOKS = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return T_trans and L_trans of runs (role sweep or refinement) and the study (gaussian)."""
+    """Return the rows of three parts of the figure, which the column role names.
+
+    sweep, refinement : one row for each run, with T_trans and L_trans as measured, by the paper's
+        formulas (paper_) and exact (exact_)
+    gaussian : the rows of the study gaussian_transition
+    """
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
         kept += [f"{source}_{quantity}" for quantity in QUANTITY_LOOKS]
@@ -84,7 +89,7 @@ def draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
         largest = error.groupby(spacing).max()
         label = f"${scaling.QUANTITIES[quantity]}$, largest"
         axes.plot(largest, marker=marker, color=colour, label=label)
-    style.draw_first_order(axes, spacing, 0.4, BLACK)
+    style.draw_first_order(axes, spacing, slope=0.4, colour=BLACK)
     axes.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
     axes.set_title(r"$\Gamma = 1$, refining")
     style.few_ticks(axes.xaxis, np.unique(spacing))

@@ -29,7 +29,12 @@ REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return quantities by role: simulation, theory, refined (by dx, with the limit as theory)."""
+    """Return one row for each quantity of a pulse, in three parts, which the column role names.
+
+    theory : exact values divided by the paper's formula (over_paper), by damping ratio
+    simulation : measured values, with the exact ones (theory) and those of the paper's formula
+    refined : measured values on lattices of several spacings, with their limit (theory)
+    """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     curves = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [curves.assign(role="theory")]
@@ -64,7 +69,7 @@ def draw(table: pd.DataFrame) -> Figure:
     first = quantity_panels[0]
     first.plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, first)
-    draw_refined(refined_axes, roles["refined"])
+    draw_errors_by_spacing(refined_axes, roles["refined"])
     return figure
 
 
@@ -86,14 +91,14 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
             axes.plot(marks["damping_ratio"], ratio, "o", color=colour, **look)
 
 
-def draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the relative deviation of each quantity from its limit, as a function of spacing."""
+def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the relative deviation of each quantity from its exact limit, by block spacing."""
     for quantity, colour, marker in zip(REFINED_COLUMNS, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
         label = QUANTITY_LABELS.get(quantity, "front speed")
         axes.plot(line["dx"], error, marker=marker, color=colour, label=label)
-    style.draw_first_order(axes, rows["dx"], 0.4, GREY)
+    style.draw_first_order(axes, rows["dx"], slope=0.4, colour=GREY)
     # All runs are the same scene at several spacings.
     first = rows.iloc[0]
     scene = conditions(

@@ -35,7 +35,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_pulses(axes: Axes, steady: pd.DataFrame, runs: pd.DataFrame) -> None:
-    """Draw width and slip of pulses as functions of the rate, exact and on lattices."""
+    """Draw width and slip of pulses by rate strengthening, exact and on lattices."""
     width, slip = r"width $W_\text{p}$", r"slip $u$"
     looks = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
     for column, (colour, marker, label) in looks.items():
@@ -76,7 +76,7 @@ def _draw_arrest(axes: Axes, lattices: pd.DataFrame, asymptotes: pd.DataFrame) -
 
 
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
-    """Draw the regimes of runs by rate and level, with the exact limit between them."""
+    """Draw the regimes of runs by rate strengthening and level, with the exact limit."""
     look: Look = {"color": BLUE, "alpha": 0.12, "linewidth": 0.0}
     axes.fill_betweenx(limit["level"], -limit["scaled_rate"], limit["scaled_rate"], **look)
     axes.plot(limit["scaled_rate"], limit["level"], label="exact", **THEORY_LOOK)

@@ -131,7 +131,11 @@ def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
 
 
 def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
-    """Draw the survival over a long distance, and a guide with the slope of a random walk."""
+    """Draw the survival over a long distance and a power law, and set the axes of panel c.
+
+    This survival follows from the balance alone: a pulse dies where the integral of its pre-stress
+    has fallen to 0. The power law has the exponent of a random walk.
+    """
     axes.plot(
         long_survival["distance"],
         long_survival["survival"],

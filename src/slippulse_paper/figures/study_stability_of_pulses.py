@@ -30,7 +30,11 @@ MIN_DRAWN_VELOCITY = 0.03
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return slip beyond a step (roles exact and lattice) and velocity by time (role velocity)."""
+    """Return the rows of three parts of the figure, which the column role names.
+
+    exact, lattice : final slip by distance x from the step, under a displacement boundary
+    velocity : largest slip velocity by time, under a stress boundary
+    """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
     across = data["pulses_across_a_step"]

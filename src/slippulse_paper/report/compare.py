@@ -57,12 +57,13 @@ class TableRuns:
 class Comparison:
     """Result of comparing a new and an old folder of results.
 
-    ``numbers`` has one row for each number that is in both folders, and ``runs`` one entry for each
-    table. ``changes`` has the changed values of the configuration and the changed verdicts, by the
-    name of the file. ``older`` has by this name the folders in which the file is older than other
-    results, so that it does not describe them. ``disagreements`` has lines about results of the
-    same run that differ, and ``other_differences`` lines about everything that is altered or in one
-    folder only.
+    numbers : one row for each number that is in both folders
+    runs : one entry for each table
+    changes : changed values of the configuration and changed verdicts, by the name of their file
+    older : folders in which such a file is older than other results, and so does not describe
+        them, by its name
+    disagreements : lines about results of the same run that differ
+    other_differences : lines about everything that is altered, or in one folder only
     """
 
     numbers: pd.DataFrame = field(default_factory=pd.DataFrame)

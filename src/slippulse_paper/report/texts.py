@@ -194,7 +194,10 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
 
 
 def _claims_by_verdict(ledger: Ledger, subjects: Mapping[str, str]) -> list[tuple[Entry, str]]:
-    """Return the first claim of each verdict, and the subjects of all claims that share it."""
+    """Return, for each verdict, its first claim and the subjects of all claims that have it.
+
+    subjects : what each claim is about, by the id of the claim
+    """
     ids_by_verdict: dict[str, list[str]] = {}
     for id in subjects:
         ids_by_verdict.setdefault(ledger(id).verdict, []).append(id)

@@ -55,7 +55,7 @@ locking_scene = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
 LOCKING_STEPS = np.linspace(0.1, 0.98, 67).tolist()
 
 PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time")
-# Relative errors compared with exact theory, the largest of all damping ratios.
+# Columns with relative errors compared with exact theory, and the residual of the energy balance.
 QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 
 # These are the same for every setting.
@@ -104,7 +104,11 @@ class Setting(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts trade (work and errors of each setting) and locking (speed by step)."""
+    """Return the rows of two parts of the figure, which the column part names.
+
+    trade : one row for each setting, with its work and its errors
+    locking : one row for each scheme and step, with the front speed
+    """
     presets, window = settings["presets"], settings["measure"]["front_window"]
     preset_names = {
         Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
@@ -132,7 +136,11 @@ def compared_settings() -> list[Setting]:
 
 
 def locking(window: float) -> pd.DataFrame:
-    """Return the front speed as a function of the step, for both schemes."""
+    """Return the front speed as a function of the step, for both schemes.
+
+    In the textbook scheme a front locks onto speeds that depend on the step: it advances by one
+    block in a whole number of steps.
+    """
     schemes_and_steps = [("fixed_step", step) for step in LOCKING_STEPS]
     schemes_and_steps += [("localised", step) for step in LOCKING_STEPS[::4]]
     scenes = [locking_scene(scheme=scheme, max_step=step) for scheme, step in schemes_and_steps]
@@ -182,7 +190,7 @@ def crack_errors(setting: Setting) -> dict[str, float]:
     """Return the costs of the crack, and the relative errors of its left front.
 
     share_time : time at which the front has covered COVERED_FRACTION of its path
-    arrest_position : how far the front gets
+    arrest_position : distance that the front has run at the end
     """
     crack = cached_crack(ARRESTING_PRESTRESS, max(DAMPING_RATIOS))
     exact_time = crack.transition(COVERED_FRACTION).time

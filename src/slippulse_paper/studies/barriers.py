@@ -43,8 +43,9 @@ DURATION_IN_CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts map (depths at gamma = 1), depth (lattices) and passing (short barriers).
+    """Return the rows of three parts of the study, which the column part names.
 
+    map : exact depths and the paper's estimates at gamma = 1, by both levels
     depth : depth of a barrier without end, exact and on lattices, by spacing
     passing : barriers of several lengths; measured is 1 if the pulse has passed, else 0
     """

@@ -15,7 +15,9 @@ STIFFNESS_RATIO = 0.2  # G/G_r
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles curve, before and after; section IV C 2.
+    """Return the rows of three parts of the figure, which the column role names.
+
+    The formulas are those of section IV C 2 of the paper.
 
     curve : stress drop by ratio of stiffness, for several thicknesses of the rock
     before, after : displacement by height y in the example of the sketch, before and after slip
@@ -46,7 +48,7 @@ def curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
 
 
 def displacements(slip: float) -> pd.DataFrame:
-    """Return the displacement at the fault, at the top of the damage zone, and at that of the rock.
+    """Return the displacement at three heights: the fault, and the tops of damage zone and rock.
 
     The top of the rock has the imposed displacement.
     """

@@ -18,7 +18,11 @@ RELATIVE_DAMPING_RATIOS = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the roles curve (in units of the paper's formulas) and limit (dx -> 0)."""
+    """Return one row for each pulse and quantity, in two parts, which the column role names.
+
+    curve : pulses at the spacing of the sweep, divided by the paper's formulas
+    limit : the pulse as dx -> 0, with its front speed
+    """
     swept, refined = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
     # All refined runs are the same scene at several spacings, so they have the same limit.
     rows = curve_rows(swept) + limit_rows(refined[0])

@@ -56,7 +56,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     step = scenes["pulses_across_a_step"][0]
     level, gamma = step.prestress.left, step.gamma
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
-    # Computed once, and only if it is needed.
+    # The rupture is computed once, and only when a number needs it.
     rupture = cache(lambda: exact_rupture(published))
     numbers: Numbers = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic")

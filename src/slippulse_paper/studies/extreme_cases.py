@@ -251,7 +251,7 @@ def extreme_spacings() -> list[Case]:
         (0.01, "T_trans", JUST_LONG_ENOUGH, RIGHT),
         (0.001, "T_trans", JUST_LONG_ENOUGH, RIGHT),
     ):
-        cases.append(Case("spacing", f"dx = {dx:g}", quantity, verdict, dx, duration))
+        cases.append(Case("spacing", f"dx = {dx:g}", quantity, verdict, dx=dx, duration=duration))
     return cases
 
 
@@ -270,7 +270,9 @@ def extreme_nucleations() -> list[Case]:
             width=width_in_blocks * 0.05,
         )
         cases.append(case)
-    wide = Case("nucleation", "W = 1000", "T_trans", RIGHT, 1.0, JUST_LONG_ENOUGH, width=1000.0)
+    wide = Case(
+        "nucleation", "W = 1000", "T_trans", RIGHT, dx=1.0, duration=JUST_LONG_ENOUGH, width=1000.0
+    )
     return [*cases, wide]
 
 
@@ -362,10 +364,10 @@ def peaks_near_threshold() -> list[Case]:
     A peak below the threshold releases nothing. One just above it acts like one at it.
     """
     return [
-        Case("peak", "1 - 1e-09", "releases", RIGHT, 0.05, 30.0, peak=1.0 - 1e-9),
-        Case("peak", "1 - 0.001", "releases", RIGHT, 0.05, 30.0, peak=1.0 - 1e-3),
-        Case("peak", "1 + 1e-09", "front speed", RIGHT, 0.05, 30.0, peak=1.0 + 1e-9),
-        Case("peak", "1 + 0.001", "front speed", RIGHT, 0.05, 30.0, peak=1.0 + 1e-3),
+        Case("peak", "1 - 1e-09", "releases", RIGHT, dx=0.05, duration=30.0, peak=1.0 - 1e-9),
+        Case("peak", "1 - 0.001", "releases", RIGHT, dx=0.05, duration=30.0, peak=1.0 - 1e-3),
+        Case("peak", "1 + 1e-09", "front speed", RIGHT, dx=0.05, duration=30.0, peak=1.0 + 1e-9),
+        Case("peak", "1 + 0.001", "front speed", RIGHT, dx=0.05, duration=30.0, peak=1.0 + 1e-3),
     ]
 
 
@@ -377,8 +379,10 @@ def two_nucleations() -> list[Case]:
     # With this bump the pre-stress is 1 there too.
     twin = ((NUCLEATION_DISTANCE, 1.0 - LEVEL, 1.0),)
     return [
-        Case("two nucleations", "20 apart", "meeting time", RIGHT, 0.02, 1.5, bumps=twin),
-        Case("two nucleations", "20 apart", "asymmetry", RIGHT, 0.02, 3.0, bumps=twin),
+        Case(
+            "two nucleations", "20 apart", "meeting time", RIGHT, dx=0.02, duration=1.5, bumps=twin
+        ),
+        Case("two nucleations", "20 apart", "asymmetry", RIGHT, dx=0.02, duration=3.0, bumps=twin),
     ]
 
 
@@ -386,8 +390,8 @@ def barriers() -> list[Case]:
     """Return cases of a deep barrier, which stops the pulse, and a shallow one, which does not."""
     deep, shallow = barrier(1.5), barrier(0.2)
     return [
-        Case("barrier", "depth 1.5", "passes by", RIGHT, 0.05, 60.0, bumps=deep),
-        Case("barrier", "depth 0.2", "front speed", RIGHT, 0.05, 60.0, bumps=shallow),
+        Case("barrier", "depth 1.5", "passes by", RIGHT, dx=0.05, duration=60.0, bumps=deep),
+        Case("barrier", "depth 0.2", "front speed", RIGHT, dx=0.05, duration=60.0, bumps=shallow),
     ]
 
 
@@ -404,9 +408,27 @@ def unstable_runs() -> list[Case]:
     too_large = {"max_step": 3.0}
     textbook = {"scheme": "fixed_step"} | too_large
     return [
-        Case("damping sign", "as printed", "slip", STOPPED, 0.02, 10.0, damping_sign=-1),
-        Case("step", "3 dx, localised", "front speed", REFUSED, 0.1, 10.0, other=too_large),
-        Case("step", "3 dx, fixed_step", "front speed", REFUSED, 0.1, 10.0, other=textbook),
+        Case(
+            "damping sign", "as printed", "slip", STOPPED, dx=0.02, duration=10.0, damping_sign=-1
+        ),
+        Case(
+            "step",
+            "3 dx, localised",
+            "front speed",
+            REFUSED,
+            dx=0.1,
+            duration=10.0,
+            other=too_large,
+        ),
+        Case(
+            "step",
+            "3 dx, fixed_step",
+            "front speed",
+            REFUSED,
+            dx=0.1,
+            duration=10.0,
+            other=textbook,
+        ),
     ]
 
 

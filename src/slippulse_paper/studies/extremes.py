@@ -135,8 +135,12 @@ simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
 def measured(case: Case, window: float) -> Outcome:
-    """Run a case and measure it; errors of refused scenes and stopped runs are passed on."""
+    """Run a case and return its measured value, with the flags of the run as the message.
+
+    Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
+    """
     if case.quantity == "velocity error":
+        # The library does not offer single precision; the error shows why.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":

@@ -136,8 +136,8 @@ def _selection(still_fraction: float) -> list[dict[str, Any]]:
 def _strength(level: float, law: Friction) -> float:
     """Return the strength of a law relative to the pre-stress level.
 
-    This is d_c gamma/tau_0^2 for slip weakening, F/tau_0 for rate strengthening, and -F/tau_0 for
-    rate weakening.
+    This is d_c gamma/tau_0^2 for slip weakening, and F/tau_0 for rate strengthening. For rate
+    weakening it is -F/tau_0, so that one axis can show both laws of slip rate.
     """
     parameters = law.mapping()
     if "d_c" in parameters:

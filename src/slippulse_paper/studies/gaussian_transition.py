@@ -13,7 +13,7 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return T_trans sqrt(gamma)/pi at Gamma = 1; gamma is NaN for nucleation at a point."""
+    """Return the ratio `over_paper` for each level and gamma; gamma is NaN for a point."""
     rows = []
     for level in LEVELS:
         for gamma in (None, *GAMMAS):

@@ -100,7 +100,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return pulses at several fracture energies and levels, beside one-dimensional theory."""
+    """Return the rows of pulses at several fracture energies and levels.
+
+    Each row also has the numbers of `one_dimensional_theory`.
+    """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
@@ -114,34 +117,35 @@ def pulse_rows(gamma: float) -> Rows:
 
 
 def patch_rows(gamma: float) -> Rows:
-    """Return when the region without friction sticks, one row for each grid.
+    """Return one row for each grid, with the time at which the nucleation region sticks.
 
-    The column strip_first_stick has the time at which a strip that slides uniformly would stick: a
-    shear wave has then run to the top and back.
+    This is the region without friction around x = 0, where the rupture starts. The column
+    strip_first_stick has the time at which a strip that slides uniformly would stick: a shear wave
+    has then run to the top and back.
     """
     shear_wave_speed = math.sqrt(0.5 * gamma)
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
     rows = along_path("patch", scene, CELLS)
-    # The stick of the region is the same at all stations of a grid.
+    # There is one row for each station of a grid, but the region sticks only once in each run.
     first_stations = rows[:: len(FRACTIONS_OF_PATH)]
     return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
 
 
 def free_top_rows() -> Rows:
-    """Return a pulse in a layer whose top is free to rise."""
+    """Return the rows of a pulse in a layer whose top is free to rise."""
     scene = uniform("displacement", GAMMA, FREE_TOP_LEVEL, FREE_TOP_WEAKENING)
     return along_path("free", replace(scene, top="free"), CELLS)
 
 
 def crack_rows() -> Rows:
-    """Return a crack in uniform pre-stress under a stress boundary."""
+    """Return the rows of a crack in uniform pre-stress under a stress boundary."""
     return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS)
 
 
 def coupled_rows() -> Rows:
-    """Return pulses on both sides if the strength depends on the normal stress."""
+    """Return the rows of pulses on both sides, if the strength depends on the normal stress."""
     weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
     rows: Rows = []
@@ -151,9 +155,10 @@ def coupled_rows() -> Rows:
 
 
 def barrier_rows() -> Rows:
-    """Return ruptures under a stress boundary whose left front is stopped by a negative level.
+    """Return the rows of ruptures under a stress boundary whose left front is stopped.
 
-    The column balance_distance has the distance at which the paper's equation stops it.
+    A negative level on the left stops it. The column balance_distance has the distance at which it
+    stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
     scene = replace(
@@ -229,6 +234,7 @@ def at_stations(
         run = simulate_layer(scene)
         rows += measured(part, scene, run, 1, positions)
         if cells == grids[0]:
+            # The run on the coarsest grid shows how long those on finer grids must be.
             scene = shortened(scene, run, positions)
     return rows
 
@@ -283,7 +289,7 @@ def measured(
 ) -> Rows:
     """Return one row for each position: the parameters, `whole_run` and `pulse_at_station`."""
     tau0, gamma = scene.prestress.right, scene.gamma
-    known: dict[str, Any] = {
+    parameters: dict[str, Any] = {
         "part": part,
         "gamma": gamma,
         "tau0": tau0,
@@ -293,12 +299,12 @@ def measured(
         "cells": scene.cells,
     }
     if tau0 > 0.0:
-        known["fracture_energy"] = scene.weakening * gamma / tau0**2
-    known |= whole_run(scene, run, side)
+        parameters["fracture_energy"] = scene.weakening * gamma / tau0**2
+    numbers_of_run = whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
-        row = {"station": station} | pulse_at_station(run, position, scene.nucleation)
-        rows.append(known | row)
+        pulse = pulse_at_station(run, position, scene.nucleation)
+        rows.append(parameters | numbers_of_run | {"station": station} | pulse)
     return rows
 
 

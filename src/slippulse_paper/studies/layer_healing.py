@@ -35,11 +35,14 @@ THIN_POSITIONS = (9.0, *range(12, 33, 4))
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the slip of each pulse by position, and part run with one row for each pulse.
+    """Return the rows of two parts of the study, which the column part names.
 
-    ``change`` is the relative change of slip from the first to the last position. ``spread`` is
-    the largest relative difference of the slips at the end between pulses at one level. A pulse
-    that has died leaves no slip.
+    position : the slip that each pulse leaves (pulse_slip), one row for each position
+    run : one row for each pulse, with its slip at the last position, the relative change of slip
+        since the first position (change), and the largest relative difference between the slips of
+        the pulses at one level (spread)
+
+    A pulse that has died leaves no slip.
     """
     rows = []
     for level, half_length in THICK_PULSES:
@@ -61,10 +64,13 @@ def slips(
 ) -> list[dict[str, Any]]:
     """Simulate one pulse, and return its slip at each position.
 
-    ``refinement`` multiplies the number of cells.
+    thickness : THICKNESS for the thick layer, 1 for the thin one
+    level, before : pre-stress, and pre-stress at distances up to STEP_POSITION
+    half_length : half-length of the region without friction
+    refinement : factor of the number of cells
 
-    Raises ValueError if a point slides so late that waves may have come back from a thick layer's
-    top.
+    Raises ValueError if a point still slides when waves may have returned from the top of the thick
+    layer, or at the end in the thin one.
     """
     is_thick = thickness > 1.0
     duration, cells = (THICK_DURATION, THICK_CELLS) if is_thick else (THIN_DURATION, THIN_CELLS)
@@ -87,10 +93,12 @@ def slips(
     rows = []
     for position in THICK_POSITIONS if is_thick else THIN_POSITIONS:
         node = int(np.argmin(np.abs(thickness * run.x - position)))
-        slip, stick = (thickness * float(array[node]) for array in (run.slip, run.stick_time))
-        if slip > 0.0 and not stick < (
-            math.hypot(position, 2.0 * thickness) if is_thick else duration
-        ):
+        slip = thickness * float(run.slip[node])
+        stick_time = thickness * float(run.stick_time[node])
+        # In the thick layer, a wave from the nucleation returns from the top after this time.
+        end = math.hypot(position, 2.0 * thickness) if is_thick else duration
+        has_stuck_in_time = stick_time < end
+        if slip > 0.0 and not has_stuck_in_time:
             raise ValueError(f"{case}: still slides at {position}")
         rows.append(case | {"sample_position": float(position), "pulse_slip": slip})
     return rows

@@ -49,11 +49,16 @@ class Arrest(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return exact transitions and the paper's estimates, for each run of figure 5 and choice."""
-    springs, cracks = (
+    """Return exact transitions and the paper's estimates.
+
+    There is one row for each run of figure 5 and each combination of choices.
+    """
+    with_springs, without_springs = (
         pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
     )
-    springs, cracks = springs.query("left > 0"), cracks.query("left < 0")
+    with_springs = with_springs.query("left > 0")
+    # Only in negative pre-stress does the left front arrest.
+    without_springs = without_springs.query("left < 0")
     values_by_choice = tables["open_choices"].groupby("choice")
     fraction_choices = values_by_choice.get_group("fraction")["value"]
     # The choice "last release" is a text; it belongs to lattices.
@@ -62,8 +67,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts = []
     for ratio, release in damping_choices.values:
         for rows in (
-            displacement(springs, ratio, release),
-            stress(cracks, ratio, release, fractions),
+            displacement(with_springs, ratio, release),
+            stress(without_springs, ratio, release, fractions),
         ):
             parts.append(rows.assign(damping_ratio=ratio, release=release))
     return pd.concat(parts, ignore_index=True)
@@ -78,13 +83,13 @@ def displacement(runs: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
     # Leaf springs do not change the fronts, so all runs of a level and width share them.
     for (level, width), group in runs.groupby(["left", "width"]):
         gammas = group["gamma"].to_numpy()
-        latest = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
+        latest_sticks = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
         # The velocity at (0, t) depends on |x| with |x| + T(x) < t, where T is the release time,
         # so only on |x| < t.
-        reach = max(float(latest.max()), 2.0 * GAUSSIAN_REACH * width)
+        reach = max(float(latest_sticks.max()), 2.0 * GAUSSIAN_REACH * width)
         fronts = fast_fronts(Prestress(level, level, width), ratio, release, reach, gammas.max())
         times = []
-        for gamma, until in zip(gammas, latest, strict=True):
+        for gamma, until in zip(gammas, latest_sticks, strict=True):
             (stick_time,) = Part(fronts, gamma, until).find_stick_times(np.zeros(1))
             times.append(float(stick_time))
         positions = front_positions(fronts, np.array(times), level, width, ratio, release)

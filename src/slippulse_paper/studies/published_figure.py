@@ -83,7 +83,7 @@ class Fit(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts profile, arrows, notebook and stress, one row for each fit and reading.
+    """Return one row for each fit and reading, in four parts, which the column part names.
 
     profile, arrows : fits of the left panel, without its arrows and to all readings
     notebook : the fit without arrows, with the settings of the authors' notebook
@@ -210,7 +210,7 @@ class LeftPanel:
         self.edge_times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
 
     def exact(self, trial: np.ndarray, ratio: float, release: str) -> np.ndarray:
-        """Return the values of the exact rupture, which ends at the end of the panel."""
+        """Return the values of the exact rupture for the readings, at a trial."""
         tau0, gamma = map(float, trial)
         rupture = Rupture(Prestress(tau0, tau0), gamma, ratio, release, PANEL_END)
         front_end = rupture.front_ends[-1][1]
@@ -237,7 +237,7 @@ class LeftPanel:
         return np.array([values[name] for name in self.quantities])
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
-        """Return the values of a lattice run."""
+        """Return the values of a lattice run for the readings, at a trial."""
         tau0, gamma = map(float, trial)
         scene = Scene(
             boundary="displacement",
@@ -287,8 +287,11 @@ class LeftPanel:
         everything = np.ones_like(without_arrows)
         best = self.optimum(ratio, release, dx, guess, steps, without_arrows)
         pulls = self.independent_pulls(best.exact + best.correction)
-        near = best.trial - least_squares(best.slopes, pulls)
-        best_with_arrows = self.optimum(ratio, release, dx, near, ARROW_STEPS, everything)
+        first_step = least_squares(best.slopes, pulls)
+        guess_with_arrows = best.trial - first_step
+        best_with_arrows = self.optimum(
+            ratio, release, dx, guess_with_arrows, ARROW_STEPS, everything
+        )
         labels = {"release": release, "damping_ratio": ratio, "dx": dx}
         rows = [
             self.rows_of(best, without_arrows).assign(part="profile", **labels),
@@ -307,7 +310,8 @@ class LeftPanel:
     ) -> Optimum:
         """Fit tau_0 and gamma to some readings by steps of the Gauss-Newton method.
 
-        Each step solves a linear problem.
+        Each step solves a linear problem. After the last step the values are computed once more, at
+        the optimum.
         """
         trial = guess
         for step in range(steps + 1):
@@ -320,7 +324,10 @@ class LeftPanel:
         return Optimum(trial, exact, correction, slopes)
 
     def rows_of(self, best: Optimum, is_fitted: np.ndarray) -> pd.DataFrame:
-        """Return one row for each reading, with the trial and its errors in each of them."""
+        """Return one row for each reading, with its values and deviations.
+
+        Each row also has the trial and the errors of tau_0 and gamma.
+        """
         slopes, values = best.slopes[is_fitted], best.exact + best.correction
         tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
         return self.readings.drop(columns=["arrow", "shared_error"]).assign(

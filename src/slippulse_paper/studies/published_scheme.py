@@ -25,7 +25,12 @@ QUANTITIES = ("front_speed", "first_stick_time", "pulse_slip")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the published, localised (same lattice) and exact values of QUANTITIES."""
+    """Return one row for each of QUANTITIES, with its value by three computations.
+
+    published : by the scheme of the authors' solver
+    localised : by our localised scheme, on a lattice with the same spacing
+    exact : by exact theory
+    """
     window = settings["measure"]["front_window"]
     ratio = BETA / SPACING
     pulse = steady_pulse(PRESTRESS.left, GAMMA, BETA, damping_ratio=ratio)

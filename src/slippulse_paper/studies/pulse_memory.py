@@ -22,7 +22,12 @@ DISTANCES_BEYOND = np.concatenate(
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the final slip by distance from the step, with both steady slips and the memory."""
+    """Return one row for each scene and distance x from the step, with the final slip there.
+
+    before, level : pre-stress before the step and beyond it
+    steady_before, steady : slips of the steady pulses in the two
+    memory : distance over which a pulse forgets what it met
+    """
     scenes, _ = expand(settings["sweeps"]["pulses_across_a_step"])
     return pd.concat([rows_of_scene(scene) for scene in scenes], ignore_index=True)
 
@@ -32,9 +37,12 @@ def rows_of_scene(scene: Scene) -> pd.DataFrame:
     position, level = scene.prestress.steps[-1]
     before = scene.prestress.right
     # In the limit dx -> 0 damping acts only through the front speed.
-    rules: dict[str, Any] = {"damping_ratio": scene.damping_ratio, "release": scene.release}
-    pulse_before = steady_pulse(before, scene.gamma, **rules)
-    pulse_beyond = steady_pulse(level, scene.gamma, **rules)
+    front_parameters: dict[str, Any] = {
+        "damping_ratio": scene.damping_ratio,
+        "release": scene.release,
+    }
+    pulse_before = steady_pulse(before, scene.gamma, **front_parameters)
+    pulse_beyond = steady_pulse(level, scene.gamma, **front_parameters)
     memory = pulse_beyond.width / (pulse_beyond.speed - 1.0)
     x = np.concatenate([DISTANCES_BEFORE, memory * DISTANCES_BEYOND])
     slip = exact_rupture(scene).final_slip(position + x)

@@ -21,7 +21,10 @@ FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the FIELDS of each pulse by simulation, run and x, which is 0 at the peak."""
+    """Return slip, velocity and acceleration of each pulse, as functions of the position x.
+
+    The largest velocity is at x = 0. The columns simulation and run name the pulse.
+    """
     parts = []
     for name, sweep in settings["sweeps"].items():
         for number, run in enumerate(runs(sweep)):

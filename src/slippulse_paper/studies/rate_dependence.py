@@ -181,7 +181,8 @@ def _regime_and_pulse(
 ) -> tuple[str, PulseSize]:
     """Return the regime at the end of a run, and the pulse; its size is NaN if it does not stick.
 
-    Without a trailing edge the sliding part keeps growing, or has a tail of tiny velocities.
+    If no block sticks behind the pulse, the sliding part keeps growing, or ends in a tail of tiny
+    velocities.
     """
     right = right_of_centre(run)
     halfway, end = sliding_part(right, 0.5 * duration), sliding_part(right, duration)

@@ -75,6 +75,7 @@ def areas_and_lines(ratio: float, release: str, still_fraction: float) -> Iterat
     Where one level is negative, a rupture without leaf springs is a pulse. Only near the axis,
     where the negative level is small compared with the positive one, is it a crack.
     """
+    # A rupture is a pulse up to this ratio of the positive level to the size of the negative one.
     level_ratios = largest_pulse_ratio(BORDER_LEVELS, ratio, release, still_fraction)
     negative_levels = -BORDER_LEVELS / level_ratios
     border = np.column_stack([negative_levels, BORDER_LEVELS])

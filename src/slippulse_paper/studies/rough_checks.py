@@ -56,7 +56,7 @@ Profile = Mapping[str, Any]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts grid, length, balance, exact and memory, which the module describes."""
+    """Return the rows of all checks; the column part names the check (see the module)."""
     dying, settling, stress = (settings["sweeps"][name] for name in NEEDS["sweeps"])
     first_stress_ensemble = next(ensembles_of(stress))
     parts = [grid_rows(dying), length_rows(dying)]

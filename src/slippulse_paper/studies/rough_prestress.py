@@ -74,10 +74,12 @@ class Ensemble(NamedTuple):
 
 
 def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the parts ensemble (one row each) and survival (curves) of all ensembles.
+    """Return the rows of these parts of the study, which the column part names.
 
-    For a stress boundary there are also the parts pulse (one row per run), and long and
-    long_survival (the same as ensemble and survival, for the long distance).
+    ensemble : one row for each ensemble, with its death rate and its other numbers
+    survival : the survival curve of each ensemble, one row for each distance
+    pulse : one row for each run under a stress boundary
+    long, long_survival : the same as ensemble and survival, over LONG_DISTANCE without a simulation
     """
     ensembles: list[Ensemble] = []
     for name in NEEDS["data"]:
@@ -228,33 +230,33 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     curve = survival(fates).assign(part="survival")
     curve["predicted"] = predicted_survival(curve["distance"].to_numpy(), pushes, parameters)
 
-    rate = diffusivity(parameters)
+    variance_rate = diffusivity(parameters)
     row = {"part": "ensemble"} | death_rate(fates, START)
     row |= {
         "push": smooth_push,
-        "diffusivity": rate,
-        "death_scale": float(np.mean(pushes)) ** 2 / rate,
+        "diffusivity": variance_rate,
+        "death_scale": float(np.mean(pushes)) ** 2 / variance_rate,
     }
     # Survival at the largest distance.
     row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
-    row |= velocity_numbers(pulses[~pulses["died"]], rate)
+    row |= velocity_numbers(pulses[~pulses["died"]], variance_rate)
     return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**parameters)
 
 
-def velocity_numbers(alive: pd.DataFrame, rate: float) -> dict[str, float]:
+def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, float]:
     """Return the spread of the velocities of living pulses, and the spread by theory.
 
     The velocity is half of the push. Its variance grows with distance like that of a random walk.
 
     alive : rows of the part pulse
-    rate : variance of the push per distance, from `diffusivity`
+    variance_rate : variance of the push per distance, from `diffusivity`
     """
     errors = (alive["velocity"] - alive["exact_velocity"]).abs()
     return {
         "cracks": int(alive["is_crack"].sum()),
         "velocity_mean": alive["velocity"].mean(),
         "velocity_deviation": alive["velocity"].std(),
-        "velocity_predicted": 0.5 * np.sqrt(rate * alive["distance"].mean()),
+        "velocity_predicted": 0.5 * np.sqrt(variance_rate * alive["distance"].mean()),
         "velocity_off": errors.median(),
     }
 

@@ -55,7 +55,13 @@ class StableFraction(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the derived limit and the largest steps at which nothing sticks, in units of dx."""
+    """Return one row for each scheme, order and damping ratio, with steps in units of dx.
+
+    derived : the derived limit
+    measured, measured_rupture : the largest step at which nothing sticks, for each of PROFILES.
+        There are also its ratio to the derived limit (measured_ratio), and where it lies in the
+        searched range (measured_limit, see `StableFraction`).
+    """
     schemes = [("fixed_step", 1)]
     schemes += [("localised", order) for order in ORDERS]
     rows = []

@@ -21,10 +21,14 @@ NAME: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
 
 
 def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) -> pd.DataFrame:
-    """Return a row for each quantity and setting that a figure draws.
+    """Return one row for each quantity and setting that a figure draws, by role.
 
-    Role frontier has the settings of a scheme and order of which none that costs less has a smaller
-    error. ``cost`` names the cost in the result, and ``column_of`` its column for a quantity.
+    textbook, preset, exact : the textbook scheme, the presets, and the exact solution
+    frontier : for each scheme and order, the settings whose error is smaller than that of all
+        cheaper ones
+
+    cost : name of the cost in the result
+    column_of : function that returns the column of ``trade`` with the cost for a quantity
     """
     parts = []
     for name in QUANTITIES:
@@ -37,9 +41,12 @@ def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) 
             "exact": rows[rows["scheme"] == "continuum"],
         }
         lattices = rows[rows["scheme"] != "continuum"].dropna(subset="error")
-        smallest = lattices.groupby(["scheme", "order"])["error"].transform("cummin")
-        before = smallest.groupby([lattices["scheme"], lattices["order"]]).shift(fill_value=np.inf)
-        roles["frontier"] = lattices[lattices["error"] < before]
+        # The rows are in the order of their cost, so the smallest error of all cheaper settings is
+        # the running minimum of the row before.
+        running_minimum = lattices.groupby(["scheme", "order"])["error"].transform("cummin")
+        by_order = running_minimum.groupby([lattices["scheme"], lattices["order"]])
+        smallest_of_cheaper = by_order.shift(fill_value=np.inf)
+        roles["frontier"] = lattices[lattices["error"] < smallest_of_cheaper]
         parts += [part.assign(role=role) for role, part in roles.items()]
     return pd.concat(parts, ignore_index=True)
 
@@ -67,7 +74,7 @@ def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_lab
 
 
 def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
-    """Draw the smallest error of each order at no more than a cost, and of the textbook scheme."""
+    """Draw the smallest error that a cost can buy, for each order and the textbook scheme."""
     frontier, end = rows[rows["role"] == "frontier"], rows[cost].max()
     orders = sorted(frontier.loc[frontier["scheme"] == "localised", "order"].unique())
     shades = np.linspace(FIRST_COLOUR, LAST_COLOUR, len(orders))

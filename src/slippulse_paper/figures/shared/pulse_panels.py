@@ -117,7 +117,10 @@ def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> Pu
 
 
 def simulated_profile(run: xr.Dataset, window: float, frame: PulseFrame) -> pd.DataFrame:
-    """Return the FIELDS of the right pulse of a run at its end; x is 0 at the largest velocity."""
+    """Return the right pulse at the end of a run: the columns of FIELDS as functions of x.
+
+    The largest slip velocity is at x = 0.
+    """
     pulse = leading_pulse(run, window)
     # xi is the distance from the front.
     profile = pd.DataFrame(comoving(run, pulse))

@@ -86,38 +86,40 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
 
 
 def ratio_inset(
-    axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, across: str, line: str
+    axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, x_column: str, line_column: str
 ) -> Axes:
-    """Make an inset in a box, and draw `draw_ratio` in it with labels and a legend."""
+    """Add an inset with the plot of `draw_ratio`, labels and a legend to a panel, and return it."""
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
-    draw_ratio(inset, runs, quantity, across, line)
-    inset.set_xlabel(f"${SYMBOLS[across]}$", fontsize=SMALL_TEXT, labelpad=0.0)
+    draw_ratio(inset, runs, quantity, x_column, line_column)
+    inset.set_xlabel(f"${SYMBOLS[x_column]}$", fontsize=SMALL_TEXT, labelpad=0.0)
     look: Look = {"fontsize": SMALL_TEXT, "handlelength": 1.1, "handletextpad": 0.3}
     look["borderaxespad"] = 0.3
     inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
     return inset
 
 
-def draw_ratio(axes: Axes, runs: pd.DataFrame, quantity: str, across: str, line: str) -> None:
+def draw_ratio(
+    axes: Axes, runs: pd.DataFrame, quantity: str, x_column: str, line_column: str
+) -> None:
     """Draw the measured length or time divided by the paper's formula.
 
     Runs are markers with error bars, and exact theory is drawn as lines.
 
-    across : column on the horizontal axis
-    line : column whose values have a line and a colour each
+    x_column : column on the horizontal axis
+    line_column : column whose values have a line and a colour each
     """
     axes.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
-    for value, group in runs.groupby(line):
-        group = group.sort_values(across)
+    for value, group in runs.groupby(line_column):
+        group = group.sort_values(x_column)
         exact_ratio = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
-        look: Look = {"color": style.colour(line, value), "linewidth": 0.8, "gid": "exact"}
-        look["label"] = f"${SYMBOLS[line]}$ = {setting(value)}"
-        axes.plot(group[across], exact_ratio, **look)
+        look: Look = {"color": style.colour(line_column, value), "linewidth": 0.8, "gid": "exact"}
+        look["label"] = f"${SYMBOLS[line_column]}$ = {setting(value)}"
+        axes.plot(group[x_column], exact_ratio, **look)
     formula = runs[f"paper_{quantity}"]
     ratio, error = runs[quantity] / formula, runs[f"uncertainty_{quantity}"] / formula
-    _error_bars(axes, runs[across], ratio, error)
-    _scatter(axes, runs, runs[across], ratio, {"c": style.colour(line, runs[line])})
+    _error_bars(axes, runs[x_column], ratio, error)
+    _scatter(axes, runs, runs[x_column], ratio, {"c": style.colour(line_column, runs[line_column])})
 
 
 def _error_bars(axes: Axes, x: pd.Series, y: pd.Series, error: pd.Series) -> None:
