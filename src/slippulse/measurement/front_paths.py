@@ -47,8 +47,8 @@ def front_path(
 def limit_time(run: AnyRun) -> float:
     """Return the time until which all of the rupture is known.
 
-    An exact solution may know only some blocks after this time. It is infinite for a lattice, and
-    for an exact solution that knows all blocks until the end.
+    An exact solution may know only some blocks after this time. The time is infinite for a lattice,
+    and for an exact solution that knows all blocks until the end.
     """
     limit = run.attrs.get("limit_time", np.nan)
     return np.inf if np.isnan(limit) else float(limit)
@@ -62,7 +62,8 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
     if not times.size:
         return limit_time(run)
     # No wave from the unknown part of the rupture catches up with a supersonic front. The front is
-    # unknown only if nothing is known of the block ahead of it.
+    # unknown only if nothing is known of the block ahead of it. If slip was not recorded, this
+    # is so from the time at which a wave from the limit of the exact solution reaches the block.
     ahead = (1.0 if side == "right" else -1.0) * (distances[-1] + run.attrs["dx"])
     wave_arrival = limit_time(run) + abs(ahead - run.attrs["limit_position"])
     block = int(np.argmin(np.abs(np.asarray(run["x"]) - ahead)))
@@ -122,6 +123,7 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     times, distances = times[chosen], distances[chosen]
     waits = np.diff(np.maximum.accumulate(times))
     longest_wait = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
+    # The number of the first block after the last pause; 0 if there is no pause.
     after_pause = int(np.max(np.flatnonzero(waits > longest_wait) + 1, initial=0))
     if 0 < after_pause <= times.size - MIN_FITTED_BLOCKS:
         line = fit_line(times[after_pause:], distances[after_pause:])

@@ -102,6 +102,8 @@ def front_at_end(
     # The next block has not been released: the front is at most one block beyond the last release.
     ahead, dx = float(speed * (run.attrs["end_time"] - release_times[-1])), run.attrs["dx"]
     last_distance = released_distances[-1]
+    # The front has stopped if the last released block is at rest and if, at its speed, the front
+    # would have released the next block by now.
     at_rest = not velocity[np.searchsorted(distance, last_distance)] > 0.0
     if at_rest and not 0.0 <= ahead <= dx:
         return float(last_distance), True

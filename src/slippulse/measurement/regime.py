@@ -49,6 +49,7 @@ def classify_regime(
     sliding_sides = int(np.any(slides[x < 0.0])) + int(np.any(slides[x > 0.0]))
     running_sides = fast_sides if fast_sides > 0 else sliding_sides
     ways = "two-way" if running_sides == 2 else "one-way"
+    # On a crack that runs on one side, the slower front still moves if its speed is not nearly 0.
     has_slow_front = running_sides == 1 and min(left_speed, right_speed) > steady_tolerance
     final_samples = np.asarray(run["sample_velocity"])[-1]
     if np.isnan(np.append(final_velocity, final_samples)).any():

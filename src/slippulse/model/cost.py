@@ -110,10 +110,12 @@ def bound_front_reach(
 def _distance(ends: np.ndarray, speeds: np.ndarray, start: float, duration: float) -> float:
     """Return the distance that a front reaches which crosses intervals at given speeds.
 
-    ``ends`` are the far ends of the intervals, in the order in which the front crosses them.
+    ``ends`` are the far ends of the intervals, in the order in which the front crosses them. The
+    last one is infinite. The front begins at the distance ``start`` and runs for ``duration``.
     """
     ahead = ends > start
     ends, speeds = ends[ahead], speeds[ahead]
+    # The times at which the front reaches the ends.
     times = np.cumsum(np.diff(ends, prepend=start) / speeds)
     last = int(np.searchsorted(times, duration))
     entry, entry_time = (ends[last - 1], times[last - 1]) if last else (start, 0.0)

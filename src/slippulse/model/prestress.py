@@ -391,7 +391,7 @@ class Prestress(ExplainsRemovedNames):
 
     @cached_property
     def _equal_bumps(self) -> list[EqualBumps]:
-        """Bumps, from x = 0 outwards, where those that are mirror images are combined.
+        """Bumps from x = 0 outwards. Mirror images of each other are combined into one entry.
 
         The sum of mirror images is added to the profile as a whole. A symmetric profile then has
         symmetric values to the last bit.

@@ -33,6 +33,7 @@ def sample_function(
     check_that(callable(function), "function", function, "a function of the position")
 
     def evaluate(positions: np.ndarray) -> np.ndarray:
+        """Return the function at positions; ValueError if a value is not a finite number."""
         values = []
         for position in positions.ravel().tolist():
             value = function(position)

@@ -67,8 +67,8 @@ def accurate_step(
     frequency = math.sqrt(4.0 + gamma_dx2)
     half_damping = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
     # This is sqrt(c^2 - k), written so that the squares do not overflow.
-    excess = math.sqrt(max(half_damping - frequency, 0.0)) * math.sqrt(half_damping + frequency)
-    largest_rate = max(half_damping, frequency) + excess
+    root = math.sqrt(max(half_damping - frequency, 0.0)) * math.sqrt(half_damping + frequency)
+    largest_rate = max(half_damping, frequency) + root
     return (error * math.factorial(order + 1)) ** (1.0 / (order + 1)) / largest_rate
 
 
@@ -97,10 +97,12 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     allowed = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
 
     def are_unstable(steps: np.ndarray) -> np.ndarray:
+        """Return a mask of the steps that amplify a mode by more than is allowed."""
         largest = np.max(_amplifications(steps, np.array(derivatives)), axis=-1)
         # Written with ~ so that an amplification of NaN counts as unstable.
         return ~(largest <= allowed)
 
+    # The shortest step that is tried. If it is unstable, the bound lies between 0 and this step.
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if smallest == 0.0:
         return 0.0

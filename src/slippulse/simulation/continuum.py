@@ -75,8 +75,8 @@ def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.
 def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]:
     """Return the samples of slip and slip velocity."""
     if rupture is None:
-        rest = np.zeros((samples.times.size, samples.positions.size))
-        return {"sample_slip": rest, "sample_velocity": rest}
+        zeros = np.zeros((samples.times.size, samples.positions.size))
+        return {"sample_slip": zeros, "sample_velocity": zeros}
     maps = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
     return {"sample_slip": maps["slip"], "sample_velocity": maps["slip_velocity"]}
 
@@ -88,10 +88,10 @@ def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float)
     # A point may be sliding if its slip velocity is not known (NaN).
     sliding = not np.all(fields["slip_velocity"] <= 0.0)
     # The stress of a stuck point between the waves and the threshold is not computed.
-    unknown = "min_stuck_stress", "friction_ratio_needed", "energy_residual"
+    not_computed = "min_stuck_stress", "friction_ratio_needed", "energy_residual"
     without_lattice = "steps", "block_updates", "event_updates", "re_releases", "half_lattice_used"
     return (
-        dict.fromkeys(unknown, math.nan)
+        dict.fromkeys(not_computed, math.nan)
         | dict.fromkeys(without_lattice, 0)
         | {
             "end_time": end,

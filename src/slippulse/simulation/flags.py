@@ -76,8 +76,9 @@ def lowest_stress(scene: Scene, solution: Solution) -> float:
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:
     """Return True if the first block to stick was released again, as near a slow undamped front."""
     # Under a stress boundary the first stick is not a transition, and the flag has no meaning.
-    undone = scene.boundary == "displacement" and solution.numbers["re_releases"] > 0
-    return undone and solution.numbers["first_stick_time"] not in solution.stick_time
+    may_be_undone = scene.boundary == "displacement" and solution.numbers["re_releases"] > 0
+    # A later release removes the stick time of a block.
+    return may_be_undone and solution.numbers["first_stick_time"] not in solution.stick_time
 
 
 def first_stick_at_front(scene: Scene, solution: Solution) -> bool:

@@ -19,6 +19,7 @@ def make_bar(total: float = 1.0) -> Callable[..., None] | None:
     drawn = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=BAR_FORMAT)
 
     def draw(done: float, _: float = total) -> None:
+        """Draw the bar with the amount done; a sweep also passes the total, which is not used."""
         drawn.update(done - drawn.n)
         if done >= total:
             drawn.close()

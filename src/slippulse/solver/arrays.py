@@ -40,7 +40,8 @@ ALL_STUCK = 4
 
 # Kernels and Python read the fields of these records as attributes. Numba recognises a dtype by its
 # address, so there is one dtype object of each kind: a copy would be looked up in each call.
-# The viscous loss of the last step (pending_step) still lacks the dissipation at the end of it.
+# The losses of the last step still lack a part that depends on the dissipation at its end. Until
+# this part is added, pending_step is the length of that step; afterwards it is 0.
 _FLOATS = (
     "time first_stick_time pending_step viscous_loss stick_loss friction_loss min_velocity"
     " min_stuck_stress"

@@ -124,17 +124,17 @@ def predict_release(medium, motion, prediction, block, now, h, top):
         coefficients[k - 1] += inverse_factorial * damping * neighbours
         inverse_factorial *= RECIPROCALS[k]
         coefficients[k] = inverse_factorial * medium.inverse_dx2 * neighbours
-    excess = evaluate_polynomial(coefficients, top, now)
-    if excess >= 0.0:
-        return now, excess + 1.0
+    above_threshold = evaluate_polynomial(coefficients, top, now)
+    if above_threshold >= 0.0:
+        return now, above_threshold + 1.0
     # The positive terms alone bound the rise of the stress. Most searches for a root end here.
     rise = 0.0
     for k in range(top, 0, -1):
         rise = h * (max(coefficients[k], 0.0) + rise)
     if coefficients[0] + rise < 0.0:
-        return math.inf, excess + 1.0
+        return math.inf, above_threshold + 1.0
     time = find_threshold_crossing(coefficients, prediction.slopes, top, now, h)
-    return time, excess + 1.0
+    return time, above_threshold + 1.0
 
 
 @kernel_function(inline=True)
@@ -294,7 +294,9 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
         degree = top - law_kink.rate
         for i in range(first, last):
             sign = 1.0 if motion.weakening_slope[i] > 0.0 else -1.0
-            # Slip only grows. A slip rate that exceeds the kink for a part of the step shows it in
+            # A block is left out if ``after``, the polynomial at the end of the step or only its
+            # sign, is negative. Slip only grows: every block before a kink in slip is examined, and
+            # none beyond it. A slip rate that passes the kink for a part of the step shows it in
             # its tangent, as in `predict_sticks`.
             after = sign
             if law_kink.rate == 1:
@@ -307,6 +309,7 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
             for k in range(degree + 1):
                 coefficients[k] = factor * w[k + law_kink.rate, i]
                 factor *= RECIPROCALS[k + 1]
+            # In a law of slip rate, slip_at_release is 0. Only the row of slip has an offset.
             at_kink = motion.slip_at_release[i] + law_kink.end
             coefficients[0] -= sign * (at_kink if law_kink.rate else at_kink - motion.offset[i])
             root = predict_law_kink(coefficients, prediction.slopes, degree, now, h)

@@ -258,6 +258,8 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     else:
         friction = start_sliding(centre, medium, motion, block, now, top)
     loss_change = change_of_loss_slope(medium, w, block, centre[ACCELERATION], now, top)
+    # The time derivative of the power of friction (friction times velocity) changes by friction
+    # times the change of acceleration, and at a kink by what `change_weakening` returns.
     work_change += friction * centre[ACCELERATION]
     spread_difference(difference, medium, motion, event, left, right, top)
     if is_stick:

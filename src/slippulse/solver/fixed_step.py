@@ -54,6 +54,7 @@ def combine_laws(laws: Sequence[type[Friction]]):
 
     @kernel_function()
     def friction(law, slip, velocity, parameter_1, parameter_2):
+        """Return the friction of the law at a position of the list."""
         if law == 0:
             return first(slip, velocity, parameter_1, parameter_2)
         return rest(law - 1, slip, velocity, parameter_1, parameter_2)
@@ -78,13 +79,13 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
     for i in range(first, last):
         elastic = inverse_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
         stress = elastic - medium.leaf_stiffness * slip[i] + tau[i]
-        drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
-        force[i] = stress + drag - medium.alpha * velocity[i]
+        damping_force = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
+        force[i] = stress + damping_force - medium.alpha * velocity[i]
         if not sliding[i]:
             if not medium.damping_counts_for_release:
-                drag = 0.0
-            lowest = min(lowest, stress + drag)
-            if stress + drag >= 1.0:
+                damping_force = 0.0
+            lowest = min(lowest, stress + damping_force)
+            if stress + damping_force >= 1.0:
                 sliding[i] = True
                 record_release(history, i, t)
         sliding_count += sliding[i]
@@ -108,8 +109,8 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 
     A block whose velocity would be negative sticks.
 
-    Returns the largest velocity (inf if one is not finite), and the work against friction without
-    the part of alpha v.
+    Returns the largest velocity (inf if one is not finite), and the work against friction. Work
+    against friction alpha v is left out, because it is a part of `viscous_loss`.
     """
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     force, tally = motion.w[ACCELERATION], history.tally
@@ -131,6 +132,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
             friction = motion.law_factor[i] * value
             force[i] -= friction
         after = before + dt * force[i]
+        # A block that has a mirror image counts twice.
         weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
         if after <= 0.0:
             # A block that stops does no work in this step. Its kinetic energy is a separate loss.
@@ -176,6 +178,7 @@ def take_samples(recorder, motion, tally, end):
     times, blocks = recorder.times, recorder.blocks
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
+        # Within a step, slip changes at the constant velocity that belongs to its end.
         since = end - times[n]
         for p in range(blocks.shape[0]):
             i = blocks[p]

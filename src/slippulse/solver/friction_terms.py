@@ -74,6 +74,7 @@ def friction_at_stick(motion, law_kink, block):
 def switch_weakening(motion, law_kink, block):
     """Stop the weakening of a block that passes the kink, or start it again on the way back."""
     if law_kink is not None:
+        # The slope is either 0 or ``fall``, and takes the other value.
         motion.weakening_slope[block] = law_kink.fall - motion.weakening_slope[block]
 
 

@@ -32,7 +32,10 @@ class UnstableRun(RuntimeError):
 class Lattice:
     """The state of a scene that the localised scheme solves.
 
-    All arrays have one ghost block at each end.
+    All arrays have one ghost block at each end. medium, motion, history, scratch and recorder are
+    groups of `arrays`, and the kernels change the contents of all of them except medium. tally is a
+    part of the history. largest_force is the bound of `arrays.Limits`. sampled has the numbers of
+    the sampled blocks, where block 0 lies at x = 0.
     """
 
     localised = True
@@ -49,6 +52,7 @@ class Lattice:
         self.tally = arrays.new_record(arrays.TALLY_DTYPE)
         self.history = arrays.History(np.zeros(0), np.zeros(0), self.tally)
         self._prepare_samples(samples or Samples(np.zeros(0), np.zeros(0)))
+        # A mirrored lattice has one block at x < 0, the mirror image of the first one at x > 0.
         self._extend(1 if self.is_mirrored else INITIAL_BLOCKS + 1, INITIAL_BLOCKS + 1)
         # The lattice must contain every block that is released at t = 0, also at distant bumps of
         # the pre-stress.

@@ -244,6 +244,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - before) if before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
+    # Half a cell has half the mass, so that a force changes the velocity twice as much.
     earlier = fields.vx[0, i]
     later = earlier + 2.0 * elastic.ratio * (load - resistance)
     if later <= 0.0:
@@ -256,14 +257,16 @@ def advance_node(elastic, fields, fault, i, dt, time):
     fields.vx[0, i] = later
     fault.slip[i] += dt * later
     if elastic.rate > 0.0:
+        # The strength relaxes towards its steady value over the slip ``weakening``.
         steady = 1.0 / (1.0 + later / elastic.rate)
         remaining = np.exp(-dt * later / elastic.weakening)
         fault.strength[i] = steady + (fault.strength[i] - steady) * remaining
+    # Work is force times the distance moved at the mean velocity. A node on the axis of symmetry
+    # counts half.
     moved = 0.5 * dt * (earlier + later)
     if elastic.is_mirrored and i == 1:
         moved *= 0.5
-    # The friction that acted follows from the change of velocity, also when the node sticks. A node
-    # on the axis of symmetry counts half.
+    # The friction that acted follows from the change of velocity, also when the node sticks.
     friction = load - (later - earlier) / (2.0 * elastic.ratio)
     fault.work[0] += abs(fault.tau[i]) * moved
     fault.work[1] += (fault.tau[i] - friction) * moved

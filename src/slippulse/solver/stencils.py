@@ -112,6 +112,7 @@ def advance_slip(w, velocity, first, last, step, order):
     half, third = step / 2.0, step / 3.0
     fourth, fifth = step / 4.0, step / 5.0
     for i in block_range(first, last):
+        # The parenthesis that begins with w[3].
         rest = w[3, i] + fourth * (w[4, i] + fifth * nested[i] if k == 4 else nested[i])
         increment = step * (w[1, i] + half * (w[2, i] + third * rest))
         w[SLIP_INCREMENT, i] = increment

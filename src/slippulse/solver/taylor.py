@@ -214,7 +214,10 @@ def fill_rate_strengthened_derivatives(medium, motion, segments, top):
 
 @inlined_kernel
 def predict_events(medium, motion, segments, prediction, tally, h, top):
-    """Compute all velocities at time h and predict the events until then; False at a blow-up."""
+    """Compute all velocities at time h, and predict the events until then.
+
+    Returns False if a velocity is not finite.
+    """
     prediction.event_count.n = 0
     for r in range(segments.count.n):
         a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
@@ -274,8 +277,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
-    # The viscous loss is beta/dx times the sum of (v_{i+1} - v_i)^2 over pairs of neighbours. On a
-    # mirrored lattice each pair counts twice, and each block too, except block 1 on the axis.
+    # The viscous dissipation is beta/dx times the sum of (v_{i+1} - v_i)^2 over all neighbours.
+    # Its slope therefore has a factor of 2. On a mirrored lattice each pair counts twice, and each
+    # block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
@@ -305,6 +309,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
         stencils.advance_slip(w, motion.velocity, a, b, h, order)
         tally.block_updates += b - a
         fastest = max(fastest, w[VELOCITY, a], w[VELOCITY, (a + b) // 2], w[VELOCITY, b - 1])
+    # Events have changed the slip by the offset. It is added once to each block and then cleared.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
             w[SLIP, i] += offset[i]
@@ -317,6 +322,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
+    # The row SLIP_INCREMENT is also that of the acceleration, which is 0 for a block at rest.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0

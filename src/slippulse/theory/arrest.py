@@ -68,6 +68,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         The integral of tau from the position to the entry is 0.
         """
         integral_to = partial(integral, self.prestress, position)
+        # The entry lies on the two fast fronts, whose curve ends at self.end.
         last = self.end - 1e-9
         if integral_to(last) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, the limit of the left front"
@@ -89,6 +90,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         if position >= self.zero:
             return float(self.fronts.arrival(position))
         entry = self._entry_of(position)
+        # The formula for t in the docstring of the class.
         return entry + float(self.fronts.arrival(entry)) - position
 
     def transition(self, fraction: float) -> ExactTransition:
@@ -105,7 +107,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         check_number("fraction", fraction, above=0.0, below=1.0)
         left = fraction * self.balance_position
         time = self.time_at(left)
-        right = self.fronts.front_at(time, 0.0, 1.0)
+        # The front to the right of x = 0 at this time, or the end of its curve if that is passed.
+        right = self.fronts.front_at(time, x=0.0, side=1.0)
         # From the end of its curve on, the right front runs at the wave speed, 1.
         end_time = float(self.fronts.edge_times[-1])
         if time > end_time:
@@ -124,7 +127,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         -------
         tuple of arrays : x - t of the characteristics, and du/dt on them
         """
-        # Characteristics that enter on the right front, and on the fast part of the left front.
+        # Characteristics that enter on the right front, and on the fast part of the left front. On
+        # them x - t is the value at the entry, e - T(e).
         on_right = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
         on_left = np.linspace(0.0, self.zero, SAMPLES_PER_SECTION)
         on_fast = np.concatenate([on_right, on_left[1:]])
@@ -135,6 +139,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         on_slow = self.zero + (self.balance_position - self.zero) * fraction
         entries = np.array([self._entry_of(x) for x in on_slow])
         slow_phase = 2.0 * on_slow - entries - self.fronts.arrival(entries)
+        # Beyond the end of the profile du/dt + du/dx is 0, and du/dt - du/dx is the integral of tau
+        # from the position where its characteristic began.
         positions = np.concatenate([on_fast, on_slow])
         velocity = [0.5 * integral(self.prestress, x, self.end) for x in positions]
         return np.concatenate([fast_phase, slow_phase]), np.array(velocity)

@@ -79,13 +79,17 @@ def barrier_depth(
     proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     panel_count = max(4, math.ceil(memory * proper_length / MAX_PANEL_LENGTH))
     edges = np.linspace(-memory, 0.0, panel_count + 1)
+    # The front runs right and reaches the barrier, at x = 0, at t = 0. At x <= 0 its arrival time
+    # x/v is that of `straight_panels` with the slowness -1/v.
     panels = straight_panels(edges, -1.0 / speed, tau0)
     background = uniform_background(tau_barrier)
     level = Prestress(left=tau_barrier, right=tau_barrier, width=None)
+    # The slow front is continued by one panel at a time until it ends. The barrier is infinitely
+    # long, so that there is no mark at which its negative pre-stress ends.
     stop, progress = None, Progress()
     while stop is None:
         front = SlowFront(Curve(panels), level, background, gamma=1.0)
-        panel, stop, progress = front.next_panel(math.inf, progress)
+        panel, stop, progress = front.next_panel(mark=math.inf, progress=progress)
         if panel is not None:
             panels.append(panel)
     if stop != "stops":

@@ -134,9 +134,13 @@ def pulse_at_speed(
 
 
 def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) -> str:
-    """Return the message of an error: the rate strengthening is too large, or else the speed."""
+    """Return the error message for a pulse that cannot be computed.
+
+    It names the rate strengthening if this may be too large, and the speed otherwise.
+    """
     critical = critical_rate_strengthening(gamma, speed)
     place = f"at gamma = {gamma:.6g}"
+    # The critical value is that without damping. With damping, pulses end at another value.
     if abs(rate_strengthening) > 0.5 * critical:
         allowed = f"less than {critical:.6g} in size {place}, speed = {speed:.6g} without beta"
         refused = f"rate_strengthening: {rate_strengthening!r}"

@@ -159,7 +159,8 @@ class Curve:
     """Panels from left to right without gaps.
 
     restarts are the positions, on the left and on the right side, where a slow front became faster
-    than the waves again. They divide the curve into regions for `crossings`.
+    than the waves again. They divide the curve into regions for `crossings`. edges and edge_times
+    are the positions and times of the ends of the panels, where neighbouring panels share one.
     """
 
     def __init__(
@@ -175,20 +176,22 @@ class Curve:
 
     def joined(self, other: "Curve") -> "Curve":
         """Return this curve followed by another that begins at its right end, without restarts."""
-        out = Curve.__new__(Curve)
-        out.panels, out.restarts = self.panels + other.panels, ((), ())
+        # The arrays of both curves are joined, which is faster than building them from the panels.
+        whole = Curve.__new__(Curve)
+        whole.panels, whole.restarts = self.panels + other.panels, ((), ())
         for name in ("x", "time", "source", "t_plus_x", "t_minus_x", "x_ends", "time_ends"):
-            setattr(out, name, np.concatenate([getattr(self, name), getattr(other, name)]))
-        out.edges = np.append(self.edges[:-1], other.edges)
-        out.edge_times = np.append(self.edge_times[:-1], other.edge_times)
-        return out
+            setattr(whole, name, np.concatenate([getattr(self, name), getattr(other, name)]))
+        whole.edges = np.append(self.edges[:-1], other.edges)
+        whole.edge_times = np.append(self.edge_times[:-1], other.edge_times)
+        return whole
 
     def restarted(self, restarts: tuple[Sequence[float], Sequence[float]]) -> "Curve":
         """Return this curve with the given restarts."""
-        out = copy(self)
-        out.__dict__.pop("_lowest_exits", None)
-        out.restarts = restarts
-        return out
+        changed = copy(self)
+        # This cached property depends on the restarts. The other ones remain valid.
+        changed.__dict__.pop("_lowest_exits", None)
+        changed.restarts = restarts
+        return changed
 
     @cached_property
     def end_values(self) -> np.ndarray:
@@ -197,7 +200,10 @@ class Curve:
         return np.concatenate([x, time, time + x, time - x]).T
 
     def coefficients(self, columns: np.ndarray) -> np.ndarray:
-        """Return the given columns of `powers`, computed on demand if the curve is long."""
+        """Return the given columns of `powers`, the coefficients of one polynomial each.
+
+        On a long curve only the polynomials of these columns are computed (see MAX_EAGER_PANELS).
+        """
         count = len(self.panels)
         are_all_computed = "powers" in self.__dict__
         is_short = count <= MAX_EAGER_PANELS
@@ -293,7 +299,9 @@ class Curve:
         return side * max(side * front, side * x)
 
     def _solve(self, columns: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """Return the parameters where monotonic fields (by column) have given levels.
+        """Return the parameters at which fields have given levels, one for each column.
+
+        A column stands for one monotonic field on one panel (see `columns`).
 
         Newton's method starts from linear interpolation between the ends of the panel. Its steps do
         not leave the panel.
@@ -302,7 +310,7 @@ class Curve:
         span = at_right - at_left
         is_flat = np.abs(span) < 1e-13
         fraction = (level - at_left) / np.where(is_flat, 1.0, span)
-        out = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
+        parameters = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
         # Where a slow front has stopped, the end of the panel is a double root. Newton's steps only
         # halve the distance to it, or leave the panel, so a level at an end is not iterated.
         distance = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
@@ -310,7 +318,7 @@ class Curve:
         # The sign of the slope is known, since the field is monotonic, and a lower bound of its
         # size limits the step.
         min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
-        s, level, sign, min_slope = np.array([out, level, np.sign(span), min_slope])[:, todo]
+        s, level, sign, min_slope = np.array([parameters, level, np.sign(span), min_slope])[:, todo]
         coefficients = self.coefficients(columns[todo])
         for _ in range(MAX_NEWTON_STEPS):
             if not todo.size:
@@ -318,11 +326,11 @@ class Curve:
             value, slope = value_and_slope(coefficients, s)
             step = sign * (level - value) / np.maximum(sign * slope, min_slope)
             next_s = (s + step).clip(-1.0, 1.0)
-            out[todo] = next_s
+            parameters[todo] = next_s
             going = np.abs(next_s - s) >= 1e-9
             todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
             s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, going]
-        return out
+        return parameters
 
 
 def _lowest_exit_beyond(
@@ -378,11 +386,11 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     square = s * s
     fourth = square * square
     # Horner's rule in s^4 for the four polynomials q_m and for those of the derivative.
-    out = coefficients[-1] * fourth
+    sums = coefficients[-1] * fourth
     for row in coefficients[-2:0:-1]:
-        out += row
-        out *= fourth
-    out += coefficients[0]
+        sums += row
+        sums *= fourth
+    sums += coefficients[0]
     # q_0 + s^2 q_2 and q_1 + s^2 q_3, and then the sum of the first and s times the second.
-    out = out[:4] + square * out[4:]
-    return out[:2] + s * out[2:]
+    sums = sums[:4] + square * sums[4:]
+    return sums[:2] + s * sums[2:]

@@ -48,13 +48,20 @@ def exact_transition_displacement(
         allowed = "equal levels > 0 on both sides"
         raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
-    period = float(np.pi / np.sqrt(gamma))
-    # Only points of the front with x + T(x) <= t influence the motion at x = 0 up to the time t.
-    # They have x < t. The stick is searched up to t = 2 periods, so this reach is long enough.
+    # Half of the period of the leaf springs, after which uniform slip would stick.
+    half_period = float(np.pi / np.sqrt(gamma))
+    # Only points of the fronts with |x| + T(x) <= t influence the motion at x = 0 up to the time t.
+    # They have |x| < t. The stick is searched for up to t = 2 half-periods, so that this reach is
+    # long enough.
     fronts = fast_fronts(
-        prestress, damping_ratio=damping_ratio, release=release, reach=2.5 * period, gamma=gamma
+        prestress,
+        damping_ratio=damping_ratio,
+        release=release,
+        reach=2.5 * half_period,
+        gamma=gamma,
     )
-    stick = float(Part(fronts, gamma, 2.0 * period).find_stick_times(np.zeros(1))[0])
+    part = Part(fronts, gamma, until=2.0 * half_period)
+    stick = float(part.find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
         # The fronts are faster than the waves. At the time of the stick they may be farther away
         # than was needed to find it, so they are computed again over a longer distance.
@@ -63,7 +70,7 @@ def exact_transition_displacement(
         fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
         )
-    return ExactTransition(stick, 2.0 * fronts.front_at(stick, 0.0, 1.0))
+    return ExactTransition(stick, 2.0 * fronts.front_at(stick, x=0.0, side=1.0))
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:

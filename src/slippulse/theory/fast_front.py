@@ -46,8 +46,9 @@ FEATURE_MULTIPLES = np.array([-GAUSSIAN_EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, GAUSS
 class FastFront:
     """The law of motion of a front that outruns the waves, and the panels of its path.
 
-    pieces are the pieces of positive and negative pre-stress. features are positions at which a
-    panel begins or ends. kernel_rate is the rate of the waves (`riemann.kernel_rate`).
+    alpha is the coefficient of the drag -alpha du/dt. pieces are the pieces of positive and of
+    negative pre-stress. features are positions at which a panel begins or ends; narrow_features are
+    those of narrow Gaussians. kernel_rate is the rate of the waves (`riemann.kernel_rate`).
     """
 
     prestress: Prestress

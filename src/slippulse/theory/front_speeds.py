@@ -86,22 +86,24 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     """
     check_choice("release", release, RELEASES)
     tau, ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
-    out = np.array(front_speed_undamped(tau))
+    speeds = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
-    near = (
-        damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & ((release == "total") | (ratio < 1e3))
+    # Under rule "elastic" the expansion holds only for fronts that are much faster than the ratio.
+    may_be_expanded = (release == "total") | (ratio < 1e3)
+    is_nearly_one = damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & may_be_expanded
+    speeds[is_nearly_one] = 1.0 / slowness_nearly_one(
+        tau[is_nearly_one], ratio[is_nearly_one], release
     )
-    out[near] = 1.0 / slowness_nearly_one(tau[near], ratio[near], release)
-    is_solved = damped & ~near
+    is_solved = damped & ~is_nearly_one
     if np.any(is_solved):
         tau, ratio = tau[is_solved], ratio[is_solved]
         # Elements with similar speeds share a contour.
         order = np.argsort(first_guess(tau, ratio, release))
-        speed = np.empty(tau.size)
+        solved_speeds = np.empty(tau.size)
         for part in np.split(order, range(ELEMENTS_PER_CHUNK, order.size, ELEMENTS_PER_CHUNK)):
-            speed[part] = speeds_into(tau[part], Lattice(ratio[part], release))
-        out[is_solved] = speed
-    return out if out.ndim else float(out)
+            solved_speeds[part] = speeds_into(tau[part], Lattice(ratio[part], release))
+        speeds[is_solved] = solved_speeds
+    return speeds if speeds.ndim else float(speeds)
 
 
 def prestress_for_speed(speed, damping_ratio, release: str = "total"):
@@ -126,11 +128,12 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     check_choice("release", release, RELEASES)
     speeds, ratio = broadcast_numbers(speed=speed, damping_ratio=damping_ratio)
     excess = speeds - 1.0
-    out = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
+    # Without damping the pre-stress is sqrt(v^2 - 1)/v.
+    prestress = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
     damped = ratio > 0.0
     if np.any(damped):
-        out[damped] = np.exp(log_prestress_in_chunks(excess[damped], ratio[damped], release))
-    return out if out.ndim else float(out)
+        prestress[damped] = np.exp(log_prestress_in_chunks(excess[damped], ratio[damped], release))
+    return prestress if prestress.ndim else float(prestress)
 
 
 def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
@@ -151,7 +154,10 @@ def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str)
 
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """Return ln(v - 1) estimated from its limits for weak and strong damping and from b = 1."""
+    """Return an estimate of ln(v - 1), with which the search for the speed starts.
+
+    It follows from the limits of weak and strong damping and, under rule "total", from b = 1.
+    """
     distance_to_1 = 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).
     one_minus_square = distance_to_1 * (1.0 + tau)

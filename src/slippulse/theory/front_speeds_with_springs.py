@@ -87,15 +87,16 @@ def lattice_front_speed(
             f" waves at gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
         )
     if damping_ratio == drag == 0.0:
+        # The closed form, solved for v.
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
         return float(np.sqrt(springs) / (2.0 * tau0 * np.arcsin(argument)))
     return float(speeds_into(np.array([float(tau0)]), lattice, slowest)[0])
 
 
 def _speed_nearly_one(tau0: float, lattice: Lattice) -> float | None:
-    """Return the speed next to tau_0 = 1, to first order in the leaf springs.
+    """Return the speed of a front next to tau_0 = 1, to first order in the leaf springs.
 
-    It is None if tau_0 is not that near to 1, or if leaf springs or drag are not small.
+    The result is None if tau_0 is not so near to 1, or if leaf springs or drag are not small.
     """
     springs, release = lattice.springs, lattice.release
     damping_ratio = float(lattice.ratio[0])
@@ -107,7 +108,8 @@ def _speed_nearly_one(tau0: float, lattice: Lattice) -> float | None:
     has_weak_drag = abs(lattice.drag) < SMALL_CORRECTION * speed
     if not (has_weak_springs and has_weak_drag):
         return None
-    # The coefficient of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
+    # The relative decrease of the speed is proportional to g/v^2. The coefficient is 1/24 without
+    # damping and, by quadrature, 1/6 for b v >> 1.
     strength = damping_ratio * speed if release == "total" else 0.0
     coefficient = strength / 6.0 + 1.0 / 24.0
     slowed = springs / speed**2 * coefficient / (strength + 1.0)

@@ -43,8 +43,11 @@ class Knots(NamedTuple):
     @property
     def slope(self) -> np.ndarray:
         """Derivative of the stick time by position; NaN where du/dt does not change."""
-        fall = self.velocity_by_xi + self.velocity_by_eta
-        return (self.velocity_by_xi - self.velocity_by_eta) / np.where(fall == 0.0, np.nan, fall)
+        # du/dt is 0 all along the edge: velocity_by_xi (dt - dx) + velocity_by_eta (dt + dx) = 0.
+        # The sum of the two derivatives is the acceleration.
+        acceleration = self.velocity_by_xi + self.velocity_by_eta
+        divisor = np.where(acceleration == 0.0, np.nan, acceleration)
+        return (self.velocity_by_xi - self.velocity_by_eta) / divisor
 
     def at(self, chosen: slice | np.ndarray) -> "Knots":
         """Return some of the knots, chosen by a slice or by their numbers."""
@@ -142,6 +145,7 @@ class Knots(NamedTuple):
         """
         is_one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         half = middle.x - self.x[k]
+        # The slope of the cubic in the middle of the interval.
         cubic_slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
         time_error = np.abs(middle.stick - self.interpolate(k, middle.x))
@@ -150,6 +154,7 @@ class Knots(NamedTuple):
         # must be.
         steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
         largest_slope_error = np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
+        # The length of the interval is twice its half.
         cubic_agrees = time_error <= 2.0 * STICK_TIME_TOLERANCE * half
         cubic_agrees &= slope_error <= largest_slope_error
         return is_one_kind & (cubic_agrees | (middle.kind != FASTER_THAN_WAVES))

@@ -139,6 +139,7 @@ def _zone_and_tail(
     has_stopped = zone.at(xi, 1) >= 0.0
     if not is_weak[first_weak] or has_stopped[:first_weak].any():
         return math.nan, zone
+    # The end of the zone is between the first sample beyond it and the sample before (or xi = 0).
     before = 0.0 if first_weak == 0 else float(xi[first_weak - 1])
     end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first_weak]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
@@ -204,7 +205,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
     """Return the final slip of an undamped pulse on a lattice under slip weakening.
 
-    Source: the layer releases tau_0 u - gamma u^2/2, the fracture energy d_c/2.
+    Source: the energy tau_0 u - gamma u^2/2 that the layer releases by the slip u equals the
+    fracture energy d_c/2.
     """
     return (tau0 + math.sqrt(tau0**2 - gamma * weakening)) / gamma
 

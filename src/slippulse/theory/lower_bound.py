@@ -128,8 +128,10 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
         outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
         return outside_c, integral[B_ENDS] - integral[A_BEGINS]
 
+    # At c, which is earlier by half of the span, w contains a smaller exponential.
     velocity_at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
     lost, negative_part = gains(-1.0)
+    # The two lower bounds of the module docstring, for k > 0 and for k <= 0.
     if k > 0.0:
         gained, _ = gains(1.0)
         by_springs = k * span**2 / 16.0 * (velocity_at_apex + gained)
@@ -140,4 +142,5 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     d_xi = time - left - curve.evaluate("t_minus_x", end.panel, end.s)
     d_eta = time + right - curve.evaluate("t_plus_x", begin.panel, begin.s)
     is_before_first_zero = (negative_part <= 0.0) & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)
+    # The second condition is sufficient whether or not c has slipped.
     return (apex_slides & (lowest > 0.0)) | is_before_first_zero

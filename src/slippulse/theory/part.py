@@ -75,6 +75,7 @@ class Part:
         """
         if not x.size:
             return np.zeros(0)
+        # The times at which waves from the marks arrive at the positions, [position, mark].
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
         step = SEARCH_STEP * self.scale / self.refinement

@@ -101,9 +101,10 @@ def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
 def _sign_changes(
     prestress: Prestress, background: Interval, samples: np.ndarray, value: float
 ) -> tuple[bool, list[float]]:
-    """Return if tau >= value at the left end of the background, and where this changes.
+    """Return a flag, and the positions at which it changes from left to right.
 
-    A position appears twice where tau only touches the value.
+    The flag is True if tau >= value at the left end of the interval. A position appears twice where
+    tau only touches the value.
     """
     left, right = background.left, background.right
     inner = samples[(samples > left) & (samples < right)]
@@ -112,7 +113,7 @@ def _sign_changes(
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
     x = np.concatenate([[first], inner, [last]])
 
-    def excess(position: float) -> float:
+    def difference(position: float) -> float:
         """Return tau - value at a position."""
         return float(continued_prestress(prestress, background, np.asarray(position))) - value
 
@@ -129,5 +130,5 @@ def _sign_changes(
         elif differences[k + 1] == 0.0:
             changes.append(float(x[k + 1]))
         else:
-            changes.append(root_between(excess, x[k], x[k + 1], xtol=1e-14))
+            changes.append(root_between(difference, x[k], x[k + 1], xtol=1e-14))
     return bool(is_above[0]), changes

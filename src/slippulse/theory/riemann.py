@@ -162,7 +162,8 @@ class DependenceDomains:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
     Every field is an integral over these domains (`_integrate`), whose integrand is a function of
-    `PanelNodes`.
+    `PanelNodes`. With the symbols of the module docstring, stiffness is k, and left and right are
+    the ends x_l and x_r of the integrals.
     """
 
     def __init__(
@@ -237,9 +238,9 @@ class DependenceDomains:
         """
         k, alpha = self.stiffness, self.alpha
         curve = self.curve
-        out = self._minus_mean_of_ends(static_solution, 1)
+        strain = self._minus_mean_of_ends(static_solution, 1)
         if k == alpha == 0.0:
-            return out
+            return strain
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return the derivative of the expression in braces, per unit of s."""
@@ -260,8 +261,8 @@ class DependenceDomains:
         d_xi = self.xi - curve.evaluate("t_minus_x", self.right.panel, self.right.s)
         d_eta = self.eta - curve.evaluate("t_plus_x", self.left.panel, self.left.s)
         by_motion_of_ends = 0.125 * k * (d_xi * at_right - d_eta * at_left)
-        out += by_motion_of_ends - 0.25 * alpha * (at_right - at_left)
-        return out + 0.5 * self._integrate(integrand)
+        strain += by_motion_of_ends - 0.25 * alpha * (at_right - at_left)
+        return strain + 0.5 * self._integrate(integrand)
 
     def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
         """Return p or p' at the points, less its decayed mean at both ends of their integrals."""
@@ -295,7 +296,7 @@ class DependenceDomains:
         """
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
-        curve, out = self.curve, np.empty((*components, self.xi.size))
+        curve, integrals = self.curve, np.empty((*components, self.xi.size))
         # Points whose integrals cover similar panels are computed together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, order.size, POINTS_PER_CHUNK):
@@ -328,9 +329,9 @@ class DependenceDomains:
             weights_high, weights_low = weights.reshape(2, -1, NODE_COUNT)
             in_high = np.add.reduce(by_panel[..., row, high, :] * weights_high, axis=-1)
             in_low = np.add.reduce(by_panel[..., row, low, :] * weights_low, axis=-1)
-            out[..., points] = total + in_high - in_low
+            integrals[..., points] = total + in_high - in_low
         # A point on the curve at the end of a panel has an empty domain.
-        return np.where(self.left.panel > self.right.panel, 0.0, out)
+        return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
     def _integrate_without_kernel(
         self, integrand: Callable[[PanelNodes], np.ndarray]
@@ -393,11 +394,11 @@ def riemann_kernel(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -
     scaled.clip(-1.0, 1.0, out=scaled)
     # Horner's rule, in place.
     coefficients = _polynomial(lower, upper, order)
-    out = coefficients[0] * scaled
+    value = coefficients[0] * scaled
     for coefficient in coefficients[1:-1]:
-        out += coefficient
-        out *= scaled
-    return out + coefficients[-1]
+        value += coefficient
+        value *= scaled
+    return value + coefficients[-1]
 
 
 def _power_of_two(bound: float) -> float:

@@ -292,7 +292,10 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def delay(position: float) -> float:
-            """Return how much later than the given time a position sticks."""
+            """Return how much later than the given time a position sticks.
+
+            A position that never sticks counts as if it stuck after the end of the rupture.
+            """
             stick = np.nan_to_num(
                 self._stick_time_beyond_end(np.array(position)), nan=2.0 * self.duration
             )
@@ -384,14 +387,14 @@ class Rupture(ExplainsRemovedNames):
         x, time = broadcast_numbers(x=x, time=time)
         time = self._limited_to_duration(time)
         positions, index = self._distinct_positions(x)
-        out = {name: np.zeros(x.shape) for name in fields}
+        values_by_name = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved:
-            part.fill_fields(out, x=positions, index=index, time=time)
-        if "strain" in out and self.prestress.symmetric:
+            part.fill_fields(values_by_name, x=positions, index=index, time=time)
+        if "strain" in values_by_name and self.prestress.symmetric:
             # The fields are those at |x|. Only the strain is different, by its sign, at x < 0.
-            out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
+            values_by_name["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
-        return {name: np.where(unknown, np.nan, values) for name, values in out.items()}
+        return {name: np.where(unknown, np.nan, values) for name, values in values_by_name.items()}
 
     def _checked_time(self, time: float) -> float:
         """Return a time, checked to be positive and not later than the duration."""

@@ -253,13 +253,14 @@ class FreeBoundary:
         if not np.all(slope_of_integral < 0.0):
             return None
         dx_ds = NODES_TO_DERIVATIVES @ x
-        excess = NODES_TO_INTEGRALS * (kernel[:, crossed:] - 1.0)
-        residual = known + prestress_integral + excess @ (tau * dx_ds)
+        # Each row integrates a function times the kernel minus 1 over the chunk up to its node.
+        kernel_minus_1 = NODES_TO_INTEGRALS * (kernel[:, crossed:] - 1.0)
+        residual = known + prestress_integral + kernel_minus_1 @ (tau * dx_ds)
         # The matrix is the derivative of the residual of each row with respect to the positions at
         # all nodes. A position changes tau and dX/ds at its node, the kernel of its own row, and
         # the kernel between its node and the other rows, by the opposite amount.
-        by_dx_ds = (excess * tau) @ NODES_TO_DERIVATIVES
-        by_tau = excess * (NODES_TO_DERIVATIVES @ tau)
+        by_dx_ds = (kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
+        by_tau = kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, crossed:] * (tau * dx_ds)
         matrix = by_dx_ds + by_tau - by_kernel
         matrix += np.diag(slope_of_integral + by_kernel.sum(axis=1))
@@ -460,7 +461,7 @@ class SlowFront:
 
     @property
     def min_motion(self) -> float:
-        """The smallest motion of the front that is taken into account."""
+        """The smallest motion of the front that is taken into account, a tenth of rounding."""
         return 0.1 * NEGLIGIBLE_MOTIONS[0] * self.size
 
     @property
@@ -509,8 +510,8 @@ class SlowFront:
         be another panel.
         """
         xi = self.t0 - self.x0
-        offset = SEARCH_OFFSET * max(self.size, abs(xi))
-        now_and_later = np.array([xi, xi + offset])
+        small_delay = SEARCH_OFFSET * max(self.size, abs(xi))
+        now_and_later = np.array([xi, xi + small_delay])
         entries, _ = self.curve.crossings(
             y=np.full(2, self.x0), xi=now_and_later, eta=now_and_later + 2.0 * self.x0
         )
@@ -518,13 +519,14 @@ class SlowFront:
         s_now, s_later = entries.s.tolist()
         if not entries.meets_curve[1]:
             return None
-        # The offset would leave a gap, so that an entry near the right end of a panel is moved to
-        # this end.
+        # The delay would leave a gap of entries, so that an entry near the right end of a panel is
+        # moved to this end.
         columns = self.curve.columns("t_minus_x", entries.panel)
         _, xi_at_right_end = self.curve.end_values[1, columns].tolist()
-        if abs(xi_at_right_end - xi) < 10.0 * offset:
+        if abs(xi_at_right_end - xi) < 10.0 * small_delay:
             return Entry(panel, 1.0)
         s = s_now if panel_now == panel else s_later
+        # A remainder as small as rounding errors is left to the next panel.
         if s + 1.0 < MIN_REMAINDER and panel > 0:
             return Entry(panel - 1, 1.0)
         return Entry(panel, s)

@@ -74,12 +74,13 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     # slowly.
     s = np.where(tau <= 0.0, -1.0, s)
     psi = edges[panel] + 0.5 * (edges[panel + 1] - edges[panel]) * (1.0 + s)
-    out = np.cos(psi)
+    inverse_speed = np.cos(psi)
     # The end of the last panel may be a double root too, and the expansion in 1/v is more accurate
-    # there.
-    near = (1.0 - tau < NEARLY_ONE_DISTANCE) & ((release == "total") | (damping_ratio < 1e3))
-    out[near] = slowness_nearly_one(tau[near], damping_ratio, release)
-    return out.reshape(shape)
+    # there. Under rule "elastic" it holds only for fronts that are much faster than the ratio.
+    may_be_expanded = (release == "total") | (damping_ratio < 1e3)
+    is_nearly_one = (1.0 - tau < NEARLY_ONE_DISTANCE) & may_be_expanded
+    inverse_speed[is_nearly_one] = slowness_nearly_one(tau[is_nearly_one], damping_ratio, release)
+    return inverse_speed.reshape(shape)
 
 
 @lru_cache(maxsize=32)
@@ -92,8 +93,9 @@ def _make_panels(damping_ratio: float, release: str) -> FrontLawPanels:
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
         return np.exp(log_prestress_in_chunks(excess, np.full(excess.size, damping_ratio), release))
 
-    quarter = 0.5 * np.pi
-    unresolved = [(0.0, 0.5 * quarter), (0.5 * quarter, quarter)]
+    # psi runs from 0 (v = 1) to pi/2 (infinite speed).
+    last_psi = 0.5 * np.pi
+    unresolved = [(0.0, 0.5 * last_psi), (0.5 * last_psi, last_psi)]
     # Legendre series of the resolved panels, by the left end of each panel.
     all_series = {}
     while unresolved:
@@ -106,7 +108,7 @@ def _make_panels(damping_ratio: float, release: str) -> FrontLawPanels:
             middle = 0.5 * (left + right)
             unresolved += [(left, middle), (middle, right)]
     left_ends = sorted(all_series)
-    edges = np.array([*left_ends, quarter])
+    edges = np.array([*left_ends, last_psi])
     edge_tau = np.concatenate([[0.0], prestress(edges[1:-1]), [1.0]])
     powers = SERIES_TO_POWERS @ np.array([all_series[left] for left in left_ends]).T
     return FrontLawPanels(edges, edge_tau, powers)

@@ -81,6 +81,8 @@ class Stretch:
         """
         new = turned_to_right(side, panels)
         self.panels = self.panels + new if side > 0.0 else new + self.panels
+        # Both curves are extended, which is faster than to build them again from all panels. In the
+        # curve that has the other side turned to the right, the new panels come first, mirrored.
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
@@ -129,6 +131,7 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
             unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
     # The motion of a front beyond a point where another one has stopped for good is unknown.
     for (left, right), side in product(pairwise(stretches), SIDES):
+        # A front that runs to the left belongs to the right one of two neighbours.
         stopped, arriving = (left, right) if side == LEFT else (right, left)
         x = stopped.ends[-side].x
         if arriving.panels and side * arriving.ends[side].x > side * x:
@@ -158,6 +161,7 @@ def _nucleate(law: FastFront) -> list[Stretch]:
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
         stretch = Stretch(ends, next_start={LEFT: -before, RIGHT: after})
         if left < right:
+            # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
             panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         stretches.append(stretch)
@@ -217,11 +221,11 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
 
 def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
     """Return the stretches, with neighbours combined if their fronts have met."""
-    out = [stretches[0]]
+    joined = [stretches[0]]
     for right in stretches[1:]:
-        merged = _merge_if_met(out[-1], right)
-        out = [*out, right] if merged is None else [*out[:-1], merged]
-    return out
+        merged = _merge_if_met(joined[-1], right)
+        joined = [*joined, right] if merged is None else [*joined[:-1], merged]
+    return joined
 
 
 def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:

@@ -169,6 +169,7 @@ class PartWithEdge(Part):
         sticks = np.isfinite(stick)
         time = np.where(sticks, stick, self.until)
         domains = self.domains(x, time)
+        # The velocity is 0 at a stick, and has to be computed only if a position still slides.
         velocity = np.zeros(x.size) if sticks.all() else domains.slip_velocity()
         velocity[sticks] = 0.0
         by_xi, by_eta = domains.velocity_slopes()
@@ -236,6 +237,7 @@ class PartWithEdge(Part):
         # At the final time du/dt is 0 where the edge is then.
         has_edge = at_left * at_right < 0.0
         left, right = knots.x[k[has_edge]], knots.x[k[has_edge] + 1]
+        # The new knots are so near to each other that the interval between them is not divided.
         offset = 0.4 * MIN_INTERVAL_AT_END * self.scale
         x = roots_between(
             self._velocity_at_end,
@@ -333,16 +335,16 @@ class PartWithEdge(Part):
             return self.find_stick_times(x)
         k = knots.interval_of(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        out = self._stick_times_by_newton(
+        stick_times = self._stick_times_by_newton(
             knots, x=x, k=k, is_requested=inside & knots.outruns_waves(k)
         )
         # Where both neighbouring knots slide at the final time, a position whose du/dt is positive
         # then has not stuck before.
         slides = np.flatnonzero(inside & knots.has_end_kinds(k, SLIDING, SLIDING))
         slides = slides[self._velocity_at_end(x[slides]) > 0.0]
-        unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
-        out[unknown] = self.find_stick_times(x[unknown])
-        return np.where(out <= self.until, out, np.nan)
+        unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(stick_times)), slides)
+        stick_times[unknown] = self.find_stick_times(x[unknown])
+        return np.where(stick_times <= self.until, stick_times, np.nan)
 
     def _stick_times_by_newton(
         self, knots: Knots, x: np.ndarray, k: np.ndarray, is_requested: np.ndarray
@@ -355,9 +357,10 @@ class PartWithEdge(Part):
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
         guess = knots.interpolate(k, x)
+        # The acceleration at stick, interpolated linearly between the knots.
         at_knots = knots.velocity_by_xi + knots.velocity_by_eta
         acceleration = at_knots[k] * (1.0 - s) + at_knots[k + 1] * s
-        out, time = np.full(x.shape, np.nan), guess.copy()
+        stick_times, time = np.full(x.shape, np.nan), guess.copy()
         velocity, step = np.zeros(x.shape), np.zeros(x.shape)
         todo = np.flatnonzero(is_requested)
         for _ in range(MAX_NEWTON_STEPS):
@@ -377,9 +380,9 @@ class PartWithEdge(Part):
             next_size = size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
             done = (size < NEWTON_TOLERANCE) | (next_size < NEXT_STEP_TOLERANCE * span[todo])
             done &= is_near
-            out[todo[done]] = time[todo[done]]
+            stick_times[todo[done]] = time[todo[done]]
             todo = todo[is_near & ~done]
-        return out
+        return stick_times
 
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves.
@@ -434,19 +437,20 @@ class PartWithEdge(Part):
         if not stuck.any():
             return None
         error = self._stick_time_errors()
-        # If several positions stick first, the one nearest to x = 0 is returned.
+        # If several positions stick first (apart from rounding), the one nearest to x = 0 is
+        # returned.
         latest = np.where(stuck, knots.stick + error, np.inf)
         may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
-        out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
+        first = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         # An interval cannot contain a stick before this time.
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
-        for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < out.time)).tolist():
+        for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < first.time)).tolist():
             minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
             # A kink or an equal time does not count as a minimum.
-            if minimum and minimum.time < out.time - ROUNDING_ERROR:
-                out = minimum
-        return out
+            if minimum and minimum.time < first.time - ROUNDING_ERROR:
+                first = minimum
+        return first
 
     def _stick_time_errors(self) -> np.ndarray:
         """Return the errors of the stick times of knots, 0 where they are negligible.

@@ -103,17 +103,17 @@ def log_prestress(
         contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
     )
     # ln M_+(0): the two halves of the contour contribute complex conjugate integrals.
-    out = (log_values @ (contour.weight / contour.z)).imag / np.pi
+    log_tau = (log_values @ (contour.weight / contour.z)).imag / np.pi
     if springs > 0.0:
         # The factor 1 - rho at z = 0, where q = sqrt(g)/2 and r = sqrt(1 + g/4).
         q_at_0 = 0.5 * np.sqrt(springs)
         log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
         # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
         # residue.
-        out = (0.5 - angle / np.pi) * log_at_0 + out
+        log_tau = (0.5 - angle / np.pi) * log_at_0 + log_tau
     else:
         # The closed form at b = 1, whose ratio to the factor has been integrated.
-        out += np.log(excess / (1.0 + excess))
+        log_tau += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
         # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
         y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
@@ -123,8 +123,8 @@ def log_prestress(
             # The closed form at b = 1 is 1 - (1 - e^{-y})/(v y) there.
             numerator = excess * y + _exp_minus_two_terms(-y).real
             log_at_iy += np.log(numerator / ((1.0 + excess) * y))
-        out -= np.where(ratio > 0.0, log_at_iy, 0.0)
-    return out
+        log_tau -= np.where(ratio > 0.0, log_at_iy, 0.0)
+    return log_tau
 
 
 def _choose_contour(
