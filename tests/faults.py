@@ -56,6 +56,10 @@ def prepare(folder: Path) -> Path:
 def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subprocess.Popen:
     """Start a run in a new process group, as `make replicate` does, or by Snakemake."""
     command = [*SNAKEMAKE, "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
+    if not by_make and any((folder / ".snakemake/locks").glob("*.lock")):
+        # Snakemake asks the user to do this after a kill. `make replicate` does it itself.
+        unlock = [*SNAKEMAKE, "--configfile", "overlay.yaml", "--unlock"]
+        subprocess.run(unlock, cwd=folder, check=True, capture_output=True)
     if by_make:
         command = [sys.executable, "workflow/run.py", "replicate"]
     options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
