@@ -81,7 +81,10 @@ def test_every_link_leads_somewhere(site, opened):
         assert not fragment or path not in anchors or fragment in anchors[path], (name, link)
 
 
-@pytest.mark.parametrize(("word", "title"), [("barrier", "A barrier"), ("Slurm", "A million runs")])
+@pytest.mark.parametrize(
+    ("word", "title"),
+    [("barrier", "Which barriers does a pulse pass"), ("Slurm", "A million runs")],
+)
 def test_the_search_works_without_a_network(word, title, site, opened):
     with opened(site / "search.html") as page:
         page.goto(f"{(site / 'search.html').absolute().as_uri()}?q={word}")
