@@ -111,7 +111,7 @@ def refined_lines(runs: pd.DataFrame) -> pd.DataFrame:
         if beta_is_fixed and release == "elastic":
             speed = continuum_front_speed(level, gamma, line["fixed"])
             rows.append(line | {"panel": "limit", "speed": speed})
-        # The points of a line are evenly spaced in the logarithm. The spacings of the runs are added.
+        # The points are evenly spaced in the logarithm of dx, and those of the runs are added.
         even_spacings = np.geomspace(spacings.min(), spacings.max(), SPACING_COUNT)
         for dx in np.union1d(even_spacings, spacings):
             damping_ratio = line["fixed"] / dx if beta_is_fixed else line["fixed"]
