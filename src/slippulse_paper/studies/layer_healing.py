@@ -1,12 +1,13 @@
-"""Test whether a held top makes pulses steady that are unstable in a thick layer.
+"""Test whether pulses that are unstable in a thick layer are steady in a thin one.
 
-The strength recovers while a point slows down (`rate` of `slippulse.solver.layer.LayerScene`), so
-that friction alone can end a pulse. The same pulses run in a layer that is so thick that no wave
-returns from its top before they have passed, and in a thin layer. Lengths, times and slips of both
-are in units of the thickness of the thin layer.
+The strength of the fault recovers while a point slows down (see `rate` of
+`slippulse.solver.layer.LayerScene`), so that friction alone can end a pulse. The thick layer is so
+thick that no wave returns from its held top before the pulses have passed. Lengths, times and slips
+in both layers are in units of the thickness of the thin layer.
 """
 
 import math
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -18,59 +19,67 @@ from slippulse.solver.layer import LayerScene, simulate_layer
 NEEDS = {"settings": ()}
 
 GAMMA = 2.0 / 3.0
-CASE = ["thickness", "tau0", "before", "patch_half_length"]
+# Columns that name a run.
+RUN_COLUMNS = ["thickness", "tau0", "before", "patch_half_length"]
 # Slip velocity at which the strength is halved, and the slip over which it changes.
 RATE, WEAKENING = 0.05, 0.1
-# Thickness of the thick layer. Each of its pulses has a level of pre-stress and a half-length of
-# the region without friction; longer regions start wider pulses.
-THICKNESS, THICK_DURATION, THICK_CELLS = 36.0, 80.0, 10
-THICK_PULSES = ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5), (0.41, 5.0), (0.44, 2.5))
+# Thick layer: its thickness, the duration, the number of cells per unit of height, and the
+# positions at which the slip is recorded.
+THICKNESS = 36.0
+THICK_DURATION = 80.0
+THICK_CELLS = 10
 THICK_POSITIONS = tuple(range(16, 49, 4))
+# Each pulse of the thick layer has a level of pre-stress, and a half-length of the region without
+# friction in which it starts. Longer regions start wider pulses.
+THICK_PULSES = ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5), (0.41, 5.0), (0.44, 2.5))
 # Nothing that happens this far behind the compressional wave can affect the pulses.
 THICK_TRAIL = 30.0
-# Levels of the thin layer, and those at |x| < STEP_POSITION relative to them.
-THIN_LEVELS, RELATIVE_LEVELS_BEFORE, STEP_POSITION = (0.52, 0.56), (0.94, 1.0, 1.1), 10.0
-THIN_DURATION, THIN_CELLS, THIN_HALF_LENGTH = 44.0, 40, 2.0
+# Thin layer: levels, the pre-stress at |x| < STEP_POSITION divided by the level, and the same
+# parameters as above.
+THIN_LEVELS = (0.52, 0.56)
+RELATIVE_LEVELS_BEFORE = (0.94, 1.0, 1.1)
+STEP_POSITION = 10.0
+THIN_DURATION = 44.0
+THIN_CELLS = 40
 THIN_POSITIONS = (9.0, *range(12, 33, 4))
+THIN_HALF_LENGTH = 2.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of two parts of the study, which the column part names.
+    """Return the rows of two parts of the study. The column ``part`` is one of:
 
-    position : the slip that each pulse leaves (pulse_slip), one row for each position
-    run : one row for each pulse, with its slip at the last position, the relative change of slip
-        since the first position (change), and the largest relative difference between the slips of
-        the pulses at one level (spread)
+    position : the final slip behind a pulse, one row for each pulse and position
+    run : the final slip at the last position, one row for each pulse. The column change has the
+        relative change of slip since the first position. The column spread has the largest relative
+        difference between the slips of all pulses in the same layer and pre-stress.
 
-    A pulse that has died leaves no slip.
+    The slip is 0 where a pulse has died before.
     """
     rows = []
     for level, half_length in THICK_PULSES:
         rows += slips(THICKNESS, level, level, half_length)
-    for level in THIN_LEVELS:
-        for ratio in RELATIVE_LEVELS_BEFORE:
-            rows += slips(1.0, level, ratio * level, THIN_HALF_LENGTH)
-    positions = pd.DataFrame(rows)
-    slip = positions.groupby(CASE, sort=False)["pulse_slip"]
+    for level, relative_level in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE):
+        rows += slips(1.0, level, relative_level * level, THIN_HALF_LENGTH)
+    positions = pd.DataFrame(rows).assign(part="position")
+    slip = positions.groupby(RUN_COLUMNS, sort=False)["pulse_slip"]
     runs = slip.last().to_frame().assign(change=slip.last() / slip.first() - 1.0)
-    at_level = runs.groupby(["thickness", "tau0"])["pulse_slip"]
-    runs["spread"] = at_level.transform("max") / at_level.transform("min") - 1.0
-    runs = runs.reset_index().assign(part="run")
-    return pd.concat([positions.assign(part="position"), runs], ignore_index=True)
+    slip_at_level = runs.groupby(["thickness", "tau0"])["pulse_slip"]
+    runs["spread"] = slip_at_level.transform("max") / slip_at_level.transform("min") - 1.0
+    return pd.concat([positions, runs.reset_index().assign(part="run")], ignore_index=True)
 
 
 def slips(
     thickness: float, level: float, before: float, half_length: float, refinement: int = 1
 ) -> list[dict[str, Any]]:
-    """Simulate one pulse, and return its slip at each position.
+    """Simulate one pulse, and return one row for each position with the slip there.
 
     thickness : THICKNESS for the thick layer, 1 for the thin one
-    level, before : pre-stress, and pre-stress at distances up to STEP_POSITION
+    level, before : pre-stress beyond STEP_POSITION, and pre-stress before it
     half_length : half-length of the region without friction
     refinement : factor of the number of cells
 
-    Raises ValueError if a point still slides when waves may have returned from the top of the thick
-    layer, or at the end in the thin one.
+    Raises ValueError if the pulse has not passed a position in time. In the thick layer it must
+    pass before waves may return from the top, and in the thin layer before the end.
     """
     is_thick = thickness > 1.0
     duration, cells = (THICK_DURATION, THICK_CELLS) if is_thick else (THIN_DURATION, THIN_CELLS)
@@ -89,7 +98,7 @@ def slips(
         trail=THICK_TRAIL / thickness if is_thick else math.inf,
     )
     run = simulate_layer(scene)
-    case = dict(zip(CASE, (thickness, level, before, half_length), strict=True))
+    names = dict(zip(RUN_COLUMNS, (thickness, level, before, half_length), strict=True))
     rows = []
     for position in THICK_POSITIONS if is_thick else THIN_POSITIONS:
         node = int(np.argmin(np.abs(thickness * run.x - position)))
@@ -99,6 +108,6 @@ def slips(
         end = math.hypot(position, 2.0 * thickness) if is_thick else duration
         has_stuck_in_time = stick_time < end
         if slip > 0.0 and not has_stuck_in_time:
-            raise ValueError(f"{case}: still slides at {position}")
-        rows.append(case | {"sample_position": float(position), "pulse_slip": slip})
+            raise ValueError(f"{names}: still slides at {position}")
+        rows.append(names | {"sample_position": float(position), "pulse_slip": slip})
     return rows
