@@ -121,7 +121,7 @@ def is_stable(
     scene = Scene(
         boundary="stress",
         prestress=prestress,
-        # The blocks stick for a physical reason when a wave has come back from the walls, so the
+        # When waves from the walls have crossed the blocks, these stick for a physical reason. The
         # run ends before.
         duration=min(STEP_COUNT * step, 0.8 * BLOCK_COUNT),
         dx=1.0,
