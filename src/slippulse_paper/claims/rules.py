@@ -1,4 +1,4 @@
-"""Define the verdicts, and the rules that turn a deviation and its uncertainty into a verdict."""
+"""Define the verdicts, and the rules by which a deviation and its uncertainty give a verdict."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -14,8 +14,9 @@ FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
 VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NOT_TESTABLE)
-# Among several verdicts the one that comes first in this list decides; pages use the same order.
+# Of several verdicts on one claim, the first one in this list decides. Pages use the same order.
 WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
+# Whether the claim holds, by its verdict. The other verdicts leave this open.
 HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 
 
@@ -33,8 +34,14 @@ class Spread(NamedTuple):
     largest: float
 
 
-def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Return the verdict on one number, from its deviation and its uncertainty."""
+def verdict_on_number(deviation: float, uncertainty: float, tolerance: float) -> str:
+    """Return the verdict on one number, from its deviation and its uncertainty.
+
+    The true deviation lies between ``deviation`` minus ``uncertainty`` and ``deviation`` plus
+    ``uncertainty``. The claim fails if this whole interval is above the tolerance, and holds if it
+    is below. If the tolerance lies inside the interval, the claim holds with a caveat, or is
+    inconclusive if the uncertainty alone is larger than the tolerance.
+    """
     if not np.isfinite([deviation, uncertainty]).all():
         return NOT_TESTABLE
     if deviation - uncertainty > tolerance:
@@ -55,6 +62,10 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 
 
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
-    """Return the verdict on a claim from its verdicts at all combinations of open choices."""
-    held = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
-    return DEPENDS if {True, False} <= held else worst_tested(verdicts)
+    """Return one verdict on a claim from its verdicts at all combinations of open choices.
+
+    It depends on a choice if the claim holds at one combination and fails at another.
+    """
+    answers = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
+    holds_and_fails = True in answers and False in answers
+    return DEPENDS if holds_and_fails else worst_tested(verdicts)

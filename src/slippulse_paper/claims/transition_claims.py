@@ -373,9 +373,11 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         """Judge the runs of three lattices; the extra verdict covers the gap and the exponent."""
         median_gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
         gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
-        gap_verdict = rules.within(gap, gap_uncertainty, MAX_ARREST_GAP)
+        gap_verdict = rules.verdict_on_number(gap, gap_uncertainty, MAX_ARREST_GAP)
         power, power_uncertainty = exponent(tables, covered, predicted, ("left", "width"))
-        power_verdict = rules.within(abs(power - 1.0), power_uncertainty, exponent_tolerance)
+        power_verdict = rules.verdict_on_number(
+            abs(power - 1.0), power_uncertainty, exponent_tolerance
+        )
         extra_verdict = rules.worst([gap_verdict, power_verdict])
         return replace(
             evidence.approximate(id, tables, covered, predicted),
