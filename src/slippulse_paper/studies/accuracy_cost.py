@@ -111,7 +111,7 @@ class Setting(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of two parts of the figure. The column ``part`` is one of:
+    """Return the rows of two parts of the figure. The column ``part`` has these values:
 
     trade : one row for each setting, with its cost and its errors
     locking : one row for each scheme and step, with the front speed

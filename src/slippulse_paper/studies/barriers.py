@@ -47,7 +47,7 @@ DURATION_IN_CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of three parts of the study. The column ``part`` is one of:
+    """Return the rows of three parts of the study. The column ``part`` has these values:
 
     map : exact depths and the paper's estimates, by the levels before the barrier and in it
     depth : depth of a barrier without end, exact and on lattices, by spacing
@@ -63,36 +63,36 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         # The gammas take turns, so that each of them occurs with each barrier level.
         index = LEVELS.index(tau0) + BARRIERS.index(barrier)
         gamma = GAMMAS[index % len(GAMMAS)]
-        exact = exact_row(tau0, barrier, gamma, damping_ratio)
+        case = exact_row(tau0, barrier, gamma, damping_ratio)
         pulse = steady_pulse(tau0, gamma, damping_ratio=damping_ratio)
-        depth_rows += rows_by_spacing(exact, pulse)
-        passing_rows += rows_by_length(exact, pulse)
+        depth_rows += rows_by_spacing(case, pulse)
+        passing_rows += rows_by_length(case, pulse)
     return pd.DataFrame(map_rows + depth_rows + passing_rows)
 
 
-def rows_by_spacing(exact: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
+def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
     """Return the depth to which a pulse enters a barrier without end, for each spacing.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
+    case : a row of `exact_row`, with the parameters and the exact depth
     """
     rows = []
     for dx in SPACINGS:
-        depth = depth_on_lattice(exact, pulse, dx, [(0.0, exact["barrier"])])
-        rows.append(exact | {"part": "depth", "dx": dx, "measured": depth})
+        depth = penetration_on_lattice(case, pulse, dx, [(0.0, case["barrier"])])
+        rows.append(case | {"part": "depth", "dx": dx, "measured": depth})
     return rows
 
 
-def rows_by_length(exact: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
+def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
     """Return one row for each length of a barrier, which has 1 if a pulse passes it, else 0.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
+    case : a row of `exact_row`, with the parameters and the exact depth
     """
     rows = []
     for relative_length in RELATIVE_LENGTHS:
-        has_passed = passes(exact, pulse, relative_length)
+        has_passed = passes(case, pulse, relative_length)
         row = {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
         row |= {"length": relative_length, "measured": float(has_passed)}
-        rows.append(exact | row)
+        rows.append(case | row)
     return rows
 
 
@@ -115,28 +115,28 @@ def exact_row(tau0: float, barrier: float, gamma: float, damping_ratio: float) -
     }
 
 
-def passes(exact: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> bool:
+def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> bool:
     """Return True if a pulse on a lattice passes a barrier.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
+    case : a row of `exact_row`, with the parameters and the exact depth
     relative_length : length of the barrier divided by the exact depth
     """
-    exact_depth = exact["exact"]
+    exact_depth = case["exact"]
     length = relative_length * exact_depth
-    steps = [(0.0, exact["barrier"]), (length, exact["tau0"])]
-    distance = depth_on_lattice(exact, pulse, PASSING_SPACING, steps)
+    steps = [(0.0, case["barrier"]), (length, case["tau0"])]
+    distance = penetration_on_lattice(case, pulse, PASSING_SPACING, steps)
     # A pulse that has passed goes on beyond the end of the barrier.
     return distance > length + 0.5 * exact_depth
 
 
-def depth_on_lattice(
-    exact: dict[str, Any], pulse: SteadyPulse, dx: float, steps: Sequence[tuple[float, float]]
+def penetration_on_lattice(
+    case: dict[str, Any], pulse: SteadyPulse, dx: float, steps: Sequence[tuple[float, float]]
 ) -> float:
     """Return how far a pulse on a lattice goes on after it has met a barrier.
 
     The rupture ends half a block beyond the last released block.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
+    case : a row of `exact_row`, with the parameters and the exact depth
     steps : pairs of a distance from the beginning of the barrier and the pre-stress from there on
     """
     # The pulse must have forgotten its nucleation before it meets the barrier. A pulse remembers
@@ -147,17 +147,17 @@ def depth_on_lattice(
     start = (math.floor(steady_from / dx) + 0.5) * dx
     steps_on_the_right = [(start + distance, level) for distance, level in steps]
     steps_on_the_left = [(-position, level) for position, level in steps_on_the_right]
-    tau0 = exact["tau0"]
+    tau0 = case["tau0"]
     prestress = Prestress(
         tau0, tau0, GAUSSIAN_WIDTH, steps=(*steps_on_the_right, *steps_on_the_left)
     )
     scene = Scene(
         boundary="displacement",
         prestress=prestress,
-        duration=start + DURATION_IN_CROSSINGS * exact["exact"] + pulse.width,
+        duration=start + DURATION_IN_CROSSINGS * case["exact"] + pulse.width,
         dx=dx,
-        gamma=exact["gamma"],
-        beta=exact["damping_ratio"] * dx,
+        gamma=case["gamma"],
+        beta=case["damping_ratio"] * dx,
         max_step=0.5,
         order=4,
     )

@@ -16,7 +16,7 @@ STIFFNESS_RATIO = 0.2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of three parts of the figure. The column ``role`` is one of:
+    """Return the rows of three parts of the figure. The column ``role`` has these values:
 
     curve : stress drop as a function of the stiffness ratio, for several thicknesses of the rock
     before, after : displacement at heights y in the example of the sketch, before and after slip

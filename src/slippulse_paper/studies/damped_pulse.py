@@ -20,7 +20,7 @@ RELATIVE_DAMPING_RATIOS = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each pulse and quantity. The column ``role`` is one of:
+    """Return one row for each pulse and quantity. The column ``role`` has these values:
 
     curve : a quantity of a pulse at the spacing of the sweep, divided by the paper's formula
     limit : a quantity of the pulse in the limit dx -> 0, or its front speed

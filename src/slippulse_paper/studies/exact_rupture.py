@@ -40,7 +40,7 @@ Values = dict[str, np.ndarray]
 
 
 def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of the parts of the figure. The column ``role`` is one of:
+    """Return the rows of the parts of the figure. The column ``role`` has these values:
 
     scene : parameters of the lattice that is shown, one row for each scene
     exact, lattice : release time, stick time and slip, by exact theory and on the lattice

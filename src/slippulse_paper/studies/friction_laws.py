@@ -70,7 +70,7 @@ cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of four parts of the figure. The column ``role`` is one of:
+    """Return the rows of four parts of the figure. The column ``role`` has these values:
 
     plane : runs of all laws at all levels, with the regime of each run
     selection : front speeds under slip weakening, by spacing and d_c, and the exact front speed

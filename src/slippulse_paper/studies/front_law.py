@@ -37,7 +37,7 @@ LINE_COLUMNS = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the points of theoretical lines in four panels. The column ``panel`` is one of:
+    """Return the points of theoretical lines in four panels. The column ``panel`` has these values:
 
     prestress : front speed as a function of the pre-stress
     springs : front speed as a function of gamma dx^2

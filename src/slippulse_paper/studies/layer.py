@@ -83,7 +83,7 @@ Rows = list[dict[str, Any]]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each run, grid and station. The column ``part`` is one of the following.
+    """Return one row for each run, grid and station. The column ``part`` has the following values.
 
     Under a displacement boundary:
 

@@ -46,7 +46,7 @@ THIN_HALF_LENGTH = 2.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of two parts of the study. The column ``part`` is one of:
+    """Return the rows of two parts of the study. The column ``part`` has these values:
 
     position : the final slip behind a pulse, one row for each pulse and position
     run : the final slip at the last position, one row for each pulse. The column change has the

@@ -92,7 +92,7 @@ class Fit(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each fit and reading. The column ``part`` is one of:
+    """Return one row for each fit and reading. The column ``part`` has these values:
 
     profile, arrows : fits of the left panel, to all readings except its arrows, and to all readings
     notebook : the fit without arrows, with the settings of the authors' notebook

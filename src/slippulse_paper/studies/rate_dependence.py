@@ -69,7 +69,7 @@ class Front(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of the parts of the figure. The column ``role`` is one of the following.
+    """Return the rows of the parts of the figure. The column ``role`` has the following values.
 
     With leaf springs:
 

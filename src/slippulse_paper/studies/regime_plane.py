@@ -52,7 +52,7 @@ class Series(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of three parts of the figure. The column ``role`` is one of:
+    """Return the rows of three parts of the figure. The column ``role`` has these values:
 
     area : corners of the area of a regime in the plane of both levels
     line : ends of a line along which one level is 0
@@ -94,6 +94,7 @@ def areas_and_lines(damping_ratio: float, release: str, still_fraction: float) -
     for boundary, gamma in GAMMAS.items():
         for left_sign, right_sign in product((-1.0, 1.0), repeat=2):
             signs = np.array([left_sign, right_sign])
+            # The corners of the quadrant in which the levels have these signs.
             corners = np.where(QUADRANT > 0.0, signs, 0.0)
             yield outline("area", boundary, corners, inside=0.5 * signs)
         # The plane is symmetric: the order (1, 0) exchanges the left and the right level.

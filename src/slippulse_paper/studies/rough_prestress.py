@@ -74,7 +74,7 @@ class Ensemble(NamedTuple):
 
 
 def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of all parts of the study. The column ``part`` is one of:
+    """Return the rows of all parts of the study. The column ``part`` has these values:
 
     ensemble : one row for each ensemble, with its death rate and its other numbers
     survival : the survival curve of each ensemble, one row for each distance
@@ -331,7 +331,7 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
         wave that meets the crest left the right front
     is_crack : True if the blocks near the nucleation still slide
 
-    integral : integral of the pre-stress up to each of CELL_MIDDLES
+    The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
     crest = crest_position(run, integral)
     integral_at_origin = float(np.interp(origin_on_front(run, crest), CELL_MIDDLES, integral))

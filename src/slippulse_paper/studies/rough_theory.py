@@ -68,7 +68,10 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 @cache
 def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: float) -> float:
-    """Return the exact critical depth of a barrier, computed once for ensembles of equal level."""
+    """Return the exact depth to which a pulse enters a barrier.
+
+    It is computed only once for all ensembles that have the same level.
+    """
     return barrier_depth(level, barrier, gamma, damping_ratio)
 
 

@@ -139,6 +139,7 @@ def is_stable(
     lattice.call_steps = CHECK_INTERVAL
 
     def stop_at_first_stick(_progress: float) -> None:
+        """Stop the run if a block has stuck."""
         if lattice.tally.sticks > 0:
             raise UnstableRun
 
