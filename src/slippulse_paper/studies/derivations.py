@@ -54,10 +54,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     # All numbers are for the damping ratio and the release rule of the published space-time figure.
     published = scenes["space_time_displacement"][0]
     damping_ratio, release = published.damping_ratio, published.release
-    # Most numbers are for the level and gamma at which the simulated pulses start that then enter
-    # another pre-stress.
-    scene_with_step = scenes["pulses_across_a_step"][0]
-    level, gamma = scene_with_step.prestress.left, scene_with_step.gamma
+    # Most numbers are for the level before the step, and the gamma, of these pulses.
+    across_a_step = scenes["pulses_across_a_step"][0]
+    level, gamma = across_a_step.prestress.left, across_a_step.gamma
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
     # The rupture is computed once, and only when a number needs it.
     rupture = cache(lambda: exact_rupture(published))
@@ -133,8 +132,10 @@ def one_way_numbers(level: float, gamma: float, damping_ratio: float, release: s
 def transition_numbers(level: float, levels: Sequence[float]) -> Numbers:
     """Return exact transition times divided by the paper's formula.
 
-    The rupture begins at a single point (names with point), or at a Gaussian of width W = 1 (names
-    with peak). The pre-stress is ``level``, or the lowest or highest of ``levels``.
+    transition_point_... : the rupture begins at a single point
+    transition_peak_... : the rupture begins at a Gaussian of width W = 1
+
+    The pre-stress is ``level``, or the lowest or the highest of ``levels``.
     """
     lowest, highest = levels[0], levels[-1]
     return {

@@ -40,6 +40,7 @@ FLAGGED = "flagged"
 REFUSED = "refused"
 STOPPED = "stopped"
 NOT_OFFERED = "not offered"
+# The type checker must not see that parameters of this type are no Python floats.
 SINGLE_PRECISION: Any = np.float32
 # Duration, divided by the exact transition time, of a run that measures the transition.
 JUST_LONG_ENOUGH = 1.02

@@ -200,10 +200,10 @@ def stretch(gamma: float) -> float:
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
     """Return a scene in uniform pre-stress, whose rupture starts in a region without friction."""
     return LayerScene(
-        boundary,
-        gamma,
-        Prestress(tau0, tau0, peak=tau0),
-        weakening,
+        boundary=boundary,
+        gamma=gamma,
+        prestress=Prestress(tau0, tau0, peak=tau0),
+        weakening=weakening,
         duration=OTHER_DURATION * stretch(gamma),
         nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
     )

@@ -19,7 +19,7 @@ from slippulse.solver.layer import LayerScene, simulate_layer
 NEEDS = {"settings": ()}
 
 GAMMA = 2.0 / 3.0
-# Columns that name a run.
+# Columns with the parameters of a run.
 RUN_COLUMNS = ["thickness", "tau0", "before", "patch_half_length"]
 # Slip velocity at which the strength is halved, and the slip over which it changes.
 RATE, WEAKENING = 0.05, 0.1
@@ -82,32 +82,42 @@ def slips(
     pass before waves may return from the top, and in the thin layer before the end.
     """
     is_thick = thickness > 1.0
-    duration, cells = (THICK_DURATION, THICK_CELLS) if is_thick else (THIN_DURATION, THIN_CELLS)
-    # The layer is simulated in units of its own thickness.
-    step = STEP_POSITION / thickness
-    steps = ((step, level), (-step, level)) if before != level else ()
-    scene = LayerScene(
-        "displacement",
-        GAMMA,
-        Prestress(before, before, width=None, steps=steps),
-        WEAKENING / thickness,
-        duration / thickness,
-        round(refinement * cells * thickness),
-        half_length / thickness,
-        rate=RATE,
-        trail=THICK_TRAIL / thickness if is_thick else math.inf,
-    )
+    scene = scene_in_own_units(thickness, level, before, half_length, refinement)
     run = simulate_layer(scene)
-    names = dict(zip(RUN_COLUMNS, (thickness, level, before, half_length), strict=True))
+    parameters = dict(zip(RUN_COLUMNS, (thickness, level, before, half_length), strict=True))
     rows = []
     for position in THICK_POSITIONS if is_thick else THIN_POSITIONS:
         node = int(np.argmin(np.abs(thickness * run.x - position)))
         slip = thickness * float(run.slip[node])
         stick_time = thickness * float(run.stick_time[node])
         # In the thick layer, a wave from the nucleation returns from the top after this time.
-        end = math.hypot(position, 2.0 * thickness) if is_thick else duration
+        end = math.hypot(position, 2.0 * thickness) if is_thick else THIN_DURATION
         has_stuck_in_time = stick_time < end
         if slip > 0.0 and not has_stuck_in_time:
-            raise ValueError(f"{names}: still slides at {position}")
-        rows.append(names | {"sample_position": float(position), "pulse_slip": slip})
+            raise ValueError(f"{parameters}: still slides at {position}")
+        rows.append(parameters | {"sample_position": float(position), "pulse_slip": slip})
     return rows
+
+
+def scene_in_own_units(
+    thickness: float, level: float, before: float, half_length: float, refinement: int
+) -> LayerScene:
+    """Return the scene of a run, with lengths, times and slips in units of its own thickness.
+
+    The arguments are those of `slips`.
+    """
+    is_thick = thickness > 1.0
+    duration, cells = (THICK_DURATION, THICK_CELLS) if is_thick else (THIN_DURATION, THIN_CELLS)
+    step = STEP_POSITION / thickness
+    steps = ((step, level), (-step, level)) if before != level else ()
+    return LayerScene(
+        boundary="displacement",
+        gamma=GAMMA,
+        prestress=Prestress(before, before, width=None, steps=steps),
+        weakening=WEAKENING / thickness,
+        duration=duration / thickness,
+        cells=round(refinement * cells * thickness),
+        nucleation=half_length / thickness,
+        rate=RATE,
+        trail=THICK_TRAIL / thickness if is_thick else math.inf,
+    )

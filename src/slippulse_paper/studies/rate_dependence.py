@@ -153,17 +153,16 @@ def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[s
     front_speed_at_level, critical_alpha = _front(level)
     alpha, dx = fraction * critical_alpha, SPACING_OVER_LEVEL * level
     duration = MIN_DURATION + MEMORY_TIMES / (front_speed_at_level - 1.0)
-    prestress, friction = Prestress(level, level), LinearRate(alpha)
     scene = Scene(
-        "displacement",
-        prestress,
-        duration,
-        dx,
-        GAMMA,
+        boundary="displacement",
+        gamma=GAMMA,
+        friction=LinearRate(alpha),
+        prestress=Prestress(level, level),
+        dx=dx,
         beta=DAMPING_RATIO * dx,
+        duration=duration,
         order=ORDER,
         max_step=MAX_STEP,
-        friction=friction,
     )
     run = simulate_on_lattice(scene)
     regime, pulse = _regime_and_pulse(run, duration, still_fraction)
