@@ -2,6 +2,7 @@
 
 The table `layer` has one row for each run, grid and station. A station is a position on the fault
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
+A function that judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable

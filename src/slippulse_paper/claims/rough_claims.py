@@ -1,4 +1,8 @@
-"""Claims and numbers about pulses on a rough pre-stress, over ensembles."""
+"""Judge claims about pulses on a rough pre-stress, and compute the numbers of our finding on them.
+
+An ensemble is a set of runs whose pre-stress has the same statistics, with different seeds. A
+function that judges a claim takes the evidence and the id of the claim, and returns the result.
+"""
 
 import pandas as pd
 

@@ -2,6 +2,7 @@
 
 Numbers that were read off the figure are called readings. The study `published_figure` fits the
 exact solution to them. A pull is a fitted value minus the reading, divided by the reading error.
+A function that judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 import math

@@ -7,6 +7,8 @@ boundary. The tables of all of them have the same columns:
 time, length : time and length of the transition, or of the arrest
 estimated_time, estimated_length : the paper's estimates
 covered : distance that the left front has covered (arrests only)
+
+A function that judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -68,8 +68,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     numbers |= pulse_numbers(level, gamma, damping_ratio, release)
     numbers |= one_way_numbers(level, gamma, damping_ratio, release)
     numbers |= transition_numbers(level, levels)
-    # The size of the strain term of the equation of motion at the nucleation point, divided by the
-    # pre-stress there, which is 1.
+    # The strain term of the equation of motion at the nucleation point, divided by the pre-stress
+    # there, which is 1.
     numbers["strain_term"] = lambda: abs(curvature_at_nucleation(rupture()))
     numbers |= front_numbers()
     rows = [(name, math.nan, value_or_nan(compute)) for name, compute in numbers.items()]

@@ -94,13 +94,9 @@ def displacement(runs: pd.DataFrame, damping_ratio: float, release: str) -> pd.D
         reach = max(float(latest_sticks.max()), 2.0 * GAUSSIAN_REACH * width)
         prestress = Prestress(level, level, width)
         fronts = fast_fronts(prestress, damping_ratio, release, reach, gammas.max())
-        times = []
-        for gamma, latest_stick in zip(gammas, latest_sticks, strict=True):
-            rupture = Part(fronts, gamma, until=latest_stick)
-            (stick_time_of_centre,) = rupture.find_stick_times(np.array([0.0]))
-            times.append(float(stick_time_of_centre))
+        times = stick_times_of_centre(fronts, gammas, latest_sticks)
         speed = float(front_speed(level, damping_ratio, release))
-        positions = front_positions(fronts, np.array(times), speed, GAUSSIAN_REACH * width)
+        positions = front_positions(fronts, times, speed, GAUSSIAN_REACH * width)
         rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
         rows["gamma"] = gammas
         rows["transition_time"] = times
@@ -108,6 +104,21 @@ def displacement(runs: pd.DataFrame, damping_ratio: float, release: str) -> pd.D
         rows[PAPER_COLUMNS] = [paper_transition_displacement(level, gamma) for gamma in gammas]
         parts.append(rows)
     return pd.concat(parts)
+
+
+def stick_times_of_centre(
+    fronts: Curve, gammas: np.ndarray, latest_sticks: np.ndarray
+) -> np.ndarray:
+    """Return the stick time of x = 0 in ruptures that differ only in gamma.
+
+    latest_sticks : times until which a stick is searched, one for each gamma
+    """
+    times = []
+    for gamma, latest_stick in zip(gammas, latest_sticks, strict=True):
+        rupture = Part(fronts, gamma, until=latest_stick)
+        (stick_time,) = rupture.find_stick_times(np.array([0.0]))
+        times.append(float(stick_time))
+    return np.array(times)
 
 
 def front_positions(
@@ -162,9 +173,12 @@ def stress(
 
 
 def tent_arrest(left: float, damping_ratio: float, release: str) -> Arrest:
-    """Return the arrest for nucleation by a tent with W = 1."""
-    # On the right the pre-stress falls evenly from 1 to 0 over the distance 1. So the time in which
-    # the right front crosses the tent is the mean of 1/speed over the levels from 0 to 1.
+    """Return the arrest for nucleation by a tent with W = 1.
+
+    The pre-stress of a tent falls linearly from 1 at x = 0 to 0 at x = 1 and to ``left`` at x = -1.
+    """
+    # The time in which the right front crosses the tent is the mean of 1/speed over the levels from
+    # 0 to 1, because the tent falls evenly over the distance 1.
     levels = 0.5 + 0.5 * TENT_NODES
     slownesses = 1.0 / front_speed(levels, damping_ratio, release)
     crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
@@ -172,8 +186,8 @@ def tent_arrest(left: float, damping_ratio: float, release: str) -> Arrest:
     # the left. The negative level between the tent and x_minus balances it.
     tent_integral = 1.0 + 0.5 * left
     distance = 1.0 + tent_integral / -left
-    # The last wave that drives the left front starts at the right end of the tent, x = 1, when the
-    # right front arrives there. Both the wave and the right front then run at speed 1.
+    # The last wave that drives the left front starts at x = 1 when the right front arrives there,
+    # and runs to x_minus. In the same time the right front runs as far. Both have speed 1.
     return Arrest(
         nucleation="tent",
         fraction=1.0,

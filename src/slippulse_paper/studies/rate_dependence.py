@@ -251,7 +251,9 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     """Return the theoretical left front and largest velocity at late times, in the same columns.
 
     At late times the slip at the distance y from x_minus is U erfc(y sqrt(alpha/t)/2), because it
-    spreads by diffusion. The final slip U is the integral of y times the pre-stress over y.
+    spreads by diffusion. The final slip U is the integral of y times the pre-stress over y. The
+    largest velocity is the largest time derivative of the slip. The gap is so long that the
+    pre-stress in it balances the strain at x_minus, U sqrt(alpha/(pi t)).
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
     x = np.linspace(x_minus, 12.0, 20_001)
