@@ -18,7 +18,7 @@ from slippulse_paper.claims.evidence import Evidence, agreed_answers, exponent
 from slippulse_paper.claims.findings import findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
-from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, written
+from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, fields_of_claim
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 
 YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
@@ -117,7 +117,7 @@ def over_all(project):
     entry = ESTIMATED | {"why": "{{ runs }} runs.", "doubt": "{{ unsure.reason }}"}
 
     def write(combinations: list[Combination]) -> dict:
-        return written("length", over_choices(combinations), entry, "", common)
+        return fields_of_claim("length", over_choices(combinations), entry, "", common)
 
     return write
 
@@ -307,21 +307,21 @@ def test_the_extra_verdict_decides_at_every_tolerance():
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     sweep = evidence()
     claim = sweep.equation("equation", sweep.finest("sweep"), "number", "paper")
-    entry = written("equation", claim, ENTRIES["equation"], "III A")
+    entry = fields_of_claim("equation", claim, ENTRIES["equation"], "III A")
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
     assert entry == entry | expected | {"figure_or_section": "III A", "why": ""}
     failing = replace(claim, extra_verdict=lambda _: NO, counts={"held": 1, "failed": 1})
-    entry = written("equation", failing, ENTRIES["equation"], "III A")
+    entry = fields_of_claim("equation", failing, ENTRIES["equation"], "III A")
     assert (entry["verdict"], entry["held"], entry["failed"]) == (NO, 1, 1)
     beside = sweep.deviation_from_exact("sweep", "number")
     assert beside == pytest.approx((0.1, 0.1))
     table = pd.DataFrame({"a": [np.nan], "b": 1.0})
     nothing = replace(sweep.approximate("estimate", [table], "a", "b"), from_exact=beside)
-    entry = written("estimate", nothing, ENTRIES["estimate"], "")
+    entry = fields_of_claim("estimate", nothing, ENTRIES["estimate"], "")
     assert entry["verdict"] == NONE and entry["measured"] is None and not entry["counted"]
     assert (entry["exact_median"], entry["exact_largest"]) == beside
     estimate = sweep.approximate("estimate", sweep.lattices("sweep"), "1.05 * paper", "paper")
-    entry = written("estimate", estimate, ENTRIES["estimate"], "")
+    entry = fields_of_claim("estimate", estimate, ENTRIES["estimate"], "")
     assert (entry["verdict"], entry["at_earlier"]) == (YES, NO)
     json.dumps(entry, allow_nan=False)
 

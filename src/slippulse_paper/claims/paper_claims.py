@@ -151,7 +151,7 @@ def all_claims(
     results = []
     for id, entry in evidence.entries.items():
         claim = claim_of(evidence, id)
-        result = written(id, claim, entry, places[id], explanations)
+        result = fields_of_claim(id, claim, entry, places[id], explanations)
         if result["verdict"] == NOT_TESTABLE:
             # The reason may be that runs are flagged.
             sentence_on_flags = evidence.flags_behind(result["source"])
@@ -175,7 +175,7 @@ def claim_of(evidence: Evidence, id: str) -> Claim:
         raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 
-def written(
+def fields_of_claim(
     id: str, claim: Claim, entry: Mapping, place: str, explanations: Mapping[str, str] = {}
 ) -> dict:
     """Return the fields of one claim in claims.json: its texts, its numbers and its verdict.
@@ -205,7 +205,7 @@ def final_texts(
     """Return the note and the reason (why) of a claim, with all expressions evaluated.
 
     fields : all fields of the claim, with the expressions not evaluated
-    claim, entry, explanations : see `written`
+    claim, entry, explanations : see `fields_of_claim`
     """
     # The expressions may use all fields, and some values that are not written to claims.json.
     values = {**fields, **claim.sentence_values()}

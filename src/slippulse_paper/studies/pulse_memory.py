@@ -37,6 +37,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def rows_of_scene(scene: Scene) -> pd.DataFrame:
     """Return the rows of one scene, in which a pulse passes from one level to another at a step."""
+    # The last step is on the right.
     position, level = scene.prestress.steps[-1]
     before = scene.prestress.right
     # In the limit dx -> 0 damping acts only through the front speed.
