@@ -3,12 +3,11 @@
 The strength of the fault recovers while a point slows down (see `rate` of
 `slippulse.solver.layer.LayerScene`), so that friction alone can end a pulse. The thick layer is so
 thick that no wave returns from its held top before the pulses have passed. Lengths, times and slips
-in both layers are in units of the thickness of the thin layer.
+in both layers are in units of the thickness of the thin layer. Each pulse runs on two grids.
 """
 
-import math
+from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,105 +18,169 @@ from slippulse.solver.layer import LayerScene, simulate_layer
 NEEDS = {"settings": ()}
 
 GAMMA = 2.0 / 3.0
-# Columns with the parameters of a run.
-RUN_COLUMNS = ["thickness", "tau0", "before", "patch_half_length"]
 # Slip velocity at which the strength is halved, and the slip over which it changes.
 RATE, WEAKENING = 0.05, 0.1
-# Thick layer: its thickness, the duration, the number of cells per unit of height, and the
-# positions at which the slip is recorded.
-THICKNESS = 36.0
-THICK_DURATION = 80.0
-THICK_CELLS = 10
-THICK_POSITIONS = tuple(range(16, 49, 4))
-# Each pulse of the thick layer has a level of pre-stress, and a half-length of the region without
-# friction in which it starts. Longer regions start wider pulses.
-THICK_PULSES = ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5), (0.41, 5.0), (0.44, 2.5))
-# Nothing that happens this far behind the compressional wave can affect the pulses.
-THICK_TRAIL = 30.0
-# Thin layer: levels, the pre-stress at |x| < STEP_POSITION divided by the level, and the same
-# parameters as above.
+# Pulses of the thick layer: their pre-stress, and the half-length of the region without friction in
+# which each of them starts. Longer regions start wider pulses.
+THICK_LEVEL = 0.41
+THICK_HALF_LENGTHS = (1.5, 2.5, 5.0)
+# Pulses of the thin layer: their pre-stress, the pre-stress at |x| < STEP_POSITION divided by it,
+# and the half-length of the region without friction.
 THIN_LEVELS = (0.52, 0.56)
 RELATIVE_LEVELS_BEFORE = (0.94, 1.0, 1.1)
 STEP_POSITION = 10.0
-THIN_DURATION = 44.0
-THIN_CELLS = 40
-THIN_POSITIONS = (9.0, *range(12, 33, 4))
 THIN_HALF_LENGTH = 2.0
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer, and what all its runs have in common.
+
+    trail : length behind the compressional wave in which the layer is computed. All pulses are
+        nearer to the wave while they pass the positions.
+    positions : positions on the fault at which the slip is recorded
+    coarse_cells, fine_cells : number of cells per unit of length on each grid
+    """
+
+    thickness: float
+    duration: float
+    trail: float
+    positions: tuple[float, ...]
+    coarse_cells: int
+    fine_cells: int
+
+
+THICK = Layer(
+    thickness=22.0,
+    duration=58.0,
+    trail=24.0,
+    positions=tuple(range(12, 37, 4)),
+    coarse_cells=10,
+    fine_cells=20,
+)
+THIN = Layer(
+    thickness=1.0,
+    duration=44.0,
+    trail=12.0,
+    positions=(9.0, *range(12, 33, 4)),
+    coarse_cells=20,
+    fine_cells=40,
+)
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """The pre-stress of a pulse, and how it starts.
+
+    tau0, before : pre-stress beyond STEP_POSITION, and pre-stress before it
+    patch_half_length : half-length of the region without friction
+    """
+
+    tau0: float
+    before: float
+    patch_half_length: float
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of two parts of the study. The column ``part`` has these values:
 
-    position : the final slip behind a pulse, one row for each pulse and position
-    run : the final slip at the last position, one row for each pulse. The column change has the
-        relative change of slip since the first position. The column spread has the largest relative
-        difference between the slips of all pulses in the same layer and pre-stress.
+    position : final slip behind a pulse, one row for each pulse and position
+    run : final slip at the last position, one row for each pulse, with `numbers_of_run`. The column
+        spread has the largest relative difference between the slips of all pulses in the same layer
+        and pre-stress.
 
-    The slip is 0 where a pulse has died before.
+    The slip is 0 where a pulse has died before. It is given on the fine grid (pulse_slip) and on
+    the coarse grid (coarse_slip).
     """
-    rows = []
-    for level, half_length in THICK_PULSES:
-        rows += slips(THICKNESS, level, level, half_length)
-    for level, relative_level in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE):
-        rows += slips(1.0, level, relative_level * level, THIN_HALF_LENGTH)
-    positions = pd.DataFrame(rows).assign(part="position")
-    slip = positions.groupby(RUN_COLUMNS, sort=False)["pulse_slip"]
-    runs = slip.last().to_frame().assign(change=slip.last() / slip.first() - 1.0)
+    thick_pulses = [Pulse(THICK_LEVEL, THICK_LEVEL, length) for length in THICK_HALF_LENGTHS]
+    thin_pulses = [
+        Pulse(level, relative_level * level, THIN_HALF_LENGTH)
+        for level, relative_level in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE)
+    ]
+    rows_by_pulse = [slips_on_both_grids(THICK, pulse) for pulse in thick_pulses]
+    rows_by_pulse += [slips_on_both_grids(THIN, pulse) for pulse in thin_pulses]
+    runs = pd.DataFrame([numbers_of_run(rows) for rows in rows_by_pulse])
     slip_at_level = runs.groupby(["thickness", "tau0"])["pulse_slip"]
     runs["spread"] = slip_at_level.transform("max") / slip_at_level.transform("min") - 1.0
-    return pd.concat([positions, runs.reset_index().assign(part="run")], ignore_index=True)
+    positions = pd.concat(rows_by_pulse).assign(part="position")
+    return pd.concat([positions, runs.assign(part="run")], ignore_index=True)
 
 
-def slips(
-    thickness: float, level: float, before: float, half_length: float, refinement: int = 1
-) -> list[dict[str, Any]]:
-    """Simulate one pulse, and return one row for each position with the slip there.
+def slips_on_both_grids(layer: Layer, pulse: Pulse) -> pd.DataFrame:
+    """Return one row for each position, with the parameters and the slip on both grids."""
+    return pd.DataFrame(
+        {
+            "thickness": layer.thickness,
+            **vars(pulse),
+            "rate": RATE,
+            "weakening": WEAKENING,
+            "cells": layer.fine_cells,
+            "sample_position": layer.positions,
+            "pulse_slip": slips(layer, pulse, layer.fine_cells),
+            "coarse_slip": slips(layer, pulse, layer.coarse_cells),
+        }
+    )
 
-    thickness : THICKNESS for the thick layer, 1 for the thin one
-    level, before : pre-stress beyond STEP_POSITION, and pre-stress before it
-    half_length : half-length of the region without friction
-    refinement : factor of the number of cells
+
+def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
+    """Return the row of the last position, with the changes of slip since the first position.
+
+    first_slip : slip at the first position, on the fine grid
+    change, coarse_change : relative change of slip from the first to the last position, on the fine
+        and on the coarse grid
+    """
+    first, last = rows.iloc[0], rows.iloc[-1]
+    changes = {
+        "first_slip": first["pulse_slip"],
+        "change": last["pulse_slip"] / first["pulse_slip"] - 1.0,
+        "coarse_change": last["coarse_slip"] / first["coarse_slip"] - 1.0,
+    }
+    return pd.concat([last, pd.Series(changes)])
+
+
+def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
+    """Simulate one pulse, and return its slip at each position of the layer.
+
+    cells : number of cells per unit of length
 
     Raises ValueError if the pulse has not passed a position in time. In the thick layer it must
     pass before waves may return from the top, and in the thin layer before the end.
     """
-    is_thick = thickness > 1.0
-    scene = scene_in_own_units(thickness, level, before, half_length, refinement)
-    run = simulate_layer(scene)
-    parameters = dict(zip(RUN_COLUMNS, (thickness, level, before, half_length), strict=True))
-    rows = []
-    for position in THICK_POSITIONS if is_thick else THIN_POSITIONS:
-        node = int(np.argmin(np.abs(thickness * run.x - position)))
-        slip = thickness * float(run.slip[node])
-        stick_time = thickness * float(run.stick_time[node])
-        # In the thick layer, a wave from the nucleation returns from the top after this time.
-        end = math.hypot(position, 2.0 * thickness) if is_thick else THIN_DURATION
-        has_stuck_in_time = stick_time < end
-        if slip > 0.0 and not has_stuck_in_time:
-            raise ValueError(f"{parameters}: still slides at {position}")
-        rows.append(parameters | {"sample_position": float(position), "pulse_slip": slip})
-    return rows
+    thickness = layer.thickness
+    # A run of the layer has units of its own thickness, so its results are converted here.
+    run = simulate_layer(scene_in_own_units(layer, pulse, cells))
+    positions = np.array(layer.positions)
+    distances = np.abs(thickness * run.x - positions[:, np.newaxis])
+    nearest_nodes = distances.argmin(axis=1)
+    slip = thickness * run.slip[nearest_nodes]
+    stick_times = thickness * run.stick_time[nearest_nodes]
+    # A wave from the nucleation returns from the top of the thick layer at these times.
+    latest_times = np.hypot(positions, 2.0 * thickness) if layer is THICK else layer.duration
+    has_stuck_in_time = stick_times < latest_times
+    still_sliding = positions[(slip > 0.0) & ~has_stuck_in_time]
+    if still_sliding.size:
+        raise ValueError(
+            f"{pulse} in a layer of {thickness:g}: still slides at {still_sliding[0]:g}"
+        )
+    return slip
 
 
-def scene_in_own_units(
-    thickness: float, level: float, before: float, half_length: float, refinement: int
-) -> LayerScene:
+def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
     """Return the scene of a run, with lengths, times and slips in units of its own thickness.
 
-    The arguments are those of `slips`.
+    cells : number of cells per unit of length
     """
-    is_thick = thickness > 1.0
-    duration, cells = (THICK_DURATION, THICK_CELLS) if is_thick else (THIN_DURATION, THIN_CELLS)
+    thickness = layer.thickness
     step = STEP_POSITION / thickness
-    steps = ((step, level), (-step, level)) if before != level else ()
+    steps = ((step, pulse.tau0), (-step, pulse.tau0)) if pulse.before != pulse.tau0 else ()
     return LayerScene(
         boundary="displacement",
         gamma=GAMMA,
-        prestress=Prestress(before, before, width=None, steps=steps),
+        prestress=Prestress(pulse.before, pulse.before, width=None, steps=steps),
         weakening=WEAKENING / thickness,
-        duration=duration / thickness,
-        cells=round(refinement * cells * thickness),
-        nucleation=half_length / thickness,
+        duration=layer.duration / thickness,
+        cells=round(cells * thickness),
+        nucleation=pulse.patch_half_length / thickness,
         rate=RATE,
-        trail=THICK_TRAIL / thickness if is_thick else math.inf,
+        trail=layer.trail / thickness,
     )
