@@ -49,7 +49,7 @@ DURATION_IN_CROSSINGS = 4.0
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the study. The column ``part`` has these values:
 
-    map : exact depths and the paper's estimates, by the levels before the barrier and in it
+    map : exact and estimated depths, by the levels before the barrier and in it
     depth : depth of a barrier without end, exact and on lattices, by spacing
     passing : barriers of several lengths; measured is 1 if the pulse has passed, else 0
     """
@@ -97,9 +97,10 @@ def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, A
 
 
 def exact_row(tau0: float, barrier: float, gamma: float, damping_ratio: float) -> dict[str, Any]:
-    """Return the depth of a barrier by exact theory (exact) and by the paper's estimate (paper).
+    """Return the depth to which a pulse enters a barrier, as a row of the map.
 
-    This is a row of the map. Rows of the other parts begin with the same columns.
+    Rows of the other parts begin with the same columns. The column exact has the depth by exact
+    theory. The column paper has an estimate that the authors of the paper use in later code.
 
     tau0 : pre-stress before the barrier, in which the pulse is steady
     barrier : negative pre-stress in the barrier
