@@ -10,7 +10,7 @@ from typing import Any
 
 from ..records.provenance import changes
 from ..text.numerals import MISSING, number, percent, rounded, setting, with_uncertainty
-from .rules import FAILED, NOT_TESTABLE, REPRODUCED, VERDICTS
+from .rules import FAILED, NOT_TESTABLE, VERDICTS, WITHOUT_RESERVATION
 
 # A claim reports the tolerances at which its verdict changes if they are within this factor of its
 # own tolerance.
@@ -43,8 +43,8 @@ class Entry(SimpleNamespace):
         return MISSING if self.deviation is None else self._deviation_and_tolerance()
 
     def why_text(self) -> str:
-        """Return the reason for any verdict other than "reproduced"; otherwise empty."""
-        if self.verdict == REPRODUCED or self.why:
+        """Return the reason for the verdict; empty if the claim holds without reservation."""
+        if self.verdict in WITHOUT_RESERVATION or self.why:
             return self.why
         if self.verdict == NOT_TESTABLE:
             return "This run has no number that could be judged."

@@ -32,7 +32,7 @@ from .claim_texts import places_of
 from .evidence import Evidence
 from .kinds import Claim
 from .ledger import with_texts
-from .rules import NOT_TESTABLE
+from .rules import NOT_TESTABLE, VERDICTS_BEYOND
 
 # Simulations that the claims use, each with the topics of the predictions with which it is
 # compared.
@@ -191,6 +191,8 @@ def fields_of_claim(
         # Only estimates have these fields. They are None if the result does not set them.
         fields |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     fields |= {"id": id} | claim.json_fields()
+    if fields["beyond"]:
+        fields["verdict"] = VERDICTS_BEYOND.get(fields["verdict"], fields["verdict"])
     fields["figure_or_section"] = place or "beyond the paper"
     fields["counted"] = not (fields["follows_from"] or fields["beyond"] or fields["remark"])
     if "earlier_tolerance" in entry:

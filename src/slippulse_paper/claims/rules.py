@@ -9,13 +9,33 @@ REPRODUCED = "reproduced"
 CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
 UNMET = "premise not met"
-BEYOND = "different beyond the paper"
 FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
-VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NOT_TESTABLE)
+# Verdicts on claims that the paper does not make.
+HOLDS_BEYOND = "holds beyond the paper"
+HOLDS_BEYOND_WITH_CAVEAT = "holds beyond the paper with caveat"
+BEYOND = "different beyond the paper"
+VERDICTS_ON_THE_PAPER = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, INCONCLUSIVE, NOT_TESTABLE)
+VERDICTS = (*VERDICTS_ON_THE_PAPER, HOLDS_BEYOND, HOLDS_BEYOND_WITH_CAVEAT, BEYOND)
 # Of several verdicts on one claim, the first one in this list decides. Pages use the same order.
-WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
+WORST_FIRST = (
+    FAILED,
+    UNMET,
+    DEPENDS,
+    INCONCLUSIVE,
+    NOT_TESTABLE,
+    BEYOND,
+    CAVEAT,
+    HOLDS_BEYOND_WITH_CAVEAT,
+    REPRODUCED,
+    HOLDS_BEYOND,
+)
+# Verdict on a claim that the paper does not make, by the verdict that it would have as a claim of
+# the paper.
+VERDICTS_BEYOND = {REPRODUCED: HOLDS_BEYOND, CAVEAT: HOLDS_BEYOND_WITH_CAVEAT, FAILED: BEYOND}
+# A claim with one of these verdicts needs no reason.
+WITHOUT_RESERVATION = (REPRODUCED, HOLDS_BEYOND)
 # Whether the claim holds, by its verdict. The other verdicts leave this open.
 HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 

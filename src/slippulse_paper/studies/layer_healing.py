@@ -23,7 +23,7 @@ RATE, WEAKENING = 0.05, 0.1
 # Pulses of the thick layer: their pre-stress, and the half-length of the region without friction in
 # which each of them starts. Longer regions start wider pulses.
 THICK_LEVEL = 0.41
-THICK_HALF_LENGTHS = (1.5, 2.5, 5.0)
+THICK_HALF_LENGTHS = (1.5, 5.0)
 # Pulses of the thin layer: their pre-stress, the pre-stress at |x| < STEP_POSITION divided by it,
 # and the half-length of the region without friction.
 THIN_LEVELS = (0.52, 0.56)
@@ -51,10 +51,10 @@ class Layer:
 
 
 THICK = Layer(
-    thickness=22.0,
-    duration=58.0,
-    trail=24.0,
-    positions=tuple(range(12, 37, 4)),
+    thickness=20.0,
+    duration=52.0,
+    trail=22.0,
+    positions=tuple(range(12, 33, 4)),
     coarse_cells=10,
     fine_cells=20,
 )
