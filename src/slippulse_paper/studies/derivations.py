@@ -54,7 +54,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     # All numbers are for the damping ratio and the release rule of the published space-time figure.
     published = scenes["space_time_displacement"][0]
     damping_ratio, release = published.damping_ratio, published.release
-    # Most numbers are for the level before the step, and the gamma, of these pulses.
+    # In this simulation pulses enter another pre-stress at a step. Most numbers are for its gamma,
+    # and for the level before the step.
     across_a_step = scenes["pulses_across_a_step"][0]
     level, gamma = across_a_step.prestress.left, across_a_step.gamma
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
@@ -164,11 +165,11 @@ def front_numbers() -> Numbers:
 
 
 def curvature_at_nucleation(rupture: Rupture) -> float:
-    """Return the second derivative of slip with respect to x at x = 0, halfway to the transition.
+    """Return the second derivative of slip by x, at x = 0 and at half the transition time.
 
     The strain du/dx is 0 at x = 0 by symmetry. So its derivative there is the strain at a small
     distance, divided by this distance.
     """
-    halfway = 0.5 * rupture.transition.time
-    strain = rupture.map([halfway], [DIFFERENCE_STEP], ("strain",))["strain"].item()
+    time = 0.5 * rupture.transition.time
+    strain = rupture.map([time], [DIFFERENCE_STEP], ("strain",))["strain"].item()
     return strain / DIFFERENCE_STEP
