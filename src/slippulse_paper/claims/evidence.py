@@ -1,4 +1,4 @@
-"""Give the functions that judge claims access to all result tables.
+"""Provide all result tables to the functions that judge claims.
 
 `Evidence` has the tables, and selects runs on three lattices of different spacing. Some of its
 methods compare measured and predicted values. The functions of this module evaluate expressions

@@ -55,7 +55,7 @@ def change(rows: pd.DataFrame, part: str, quantity: str) -> pd.Series:
 
 
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
-    """Return how far behind a front the shear waves arrive that start above it, at the top.
+    """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
     Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
     the speed v have a straight wave front. It meets the fault at the distance sqrt(2 v^2/gamma - 1)
@@ -197,10 +197,9 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 
 
 def largest_spread(pulses: pd.DataFrame) -> float:
-    """Return the largest relative change of the pulse width by a change of the fracture energy.
+    """Return the largest relative difference between widths if only the fracture energy differs.
 
-    This is the largest width divided by the smallest, minus 1, among pulses that differ only in
-    fracture energy.
+    This is the largest width divided by the smallest, minus 1.
     """
     widths = pulses["pulse_width"].groupby(level=["gamma", "tau0"]).agg(["max", "min", "count"])
     with_several_energies = widths[widths["count"] > 1]

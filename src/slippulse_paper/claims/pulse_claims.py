@@ -194,9 +194,9 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
 
 
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether a pulse that enters another pre-stress becomes the steady pulse of it.
+    """Judge whether a pulse that enters another pre-stress becomes a steady pulse there.
 
-    Its final slip must be that of a steady pulse in the same pre-stress, within the tolerance.
+    Its final slip must be that of a steady pulse in this pre-stress, within the tolerance.
     """
     # Slips of steady pulses: simulated, exact, and by the paper's formula without damping. The keys
     # are words for the table of claims.

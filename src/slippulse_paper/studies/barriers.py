@@ -1,4 +1,4 @@
-"""Measure how deep pulses enter barriers, and how long a barrier may be to be passed.
+"""Measure how deep pulses enter barriers, and which barriers they pass.
 
 A barrier is a stretch of negative pre-stress. Depths come from exact theory and from lattices.
 """

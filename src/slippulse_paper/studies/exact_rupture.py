@@ -1,4 +1,4 @@
-"""Compare ruptures on lattices with the exact solution, everywhere and at all times.
+"""Compare ruptures on lattices with the exact solution in space and time.
 
 The compared quantities are release time, stick time, slip and slip velocity.
 """

@@ -140,7 +140,7 @@ class Case:
 
 
 def levels_near_1() -> Iterator[Case]:
-    """Yield cases of undamped fronts at 7 to 70 wave speeds, which are exact at any spacing."""
+    """Yield cases of undamped fronts at 7 to 70 wave speeds; theory is exact at any spacing."""
     for level in (0.99, 0.999, 0.9999):
         yield Case(
             family="level near 1",

@@ -29,7 +29,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     before, level : pre-stress before the step and beyond it
     steady_before, steady : slip of a steady pulse in each of the two levels of pre-stress
-    memory : distance beyond the step at which the pulse has forgotten the step
+    memory : distance beyond the step from which on the pulse is steady again
     """
     scenes, _ = expand(settings["sweeps"]["pulses_across_a_step"])
     return pd.concat([rows_of_scene(scene) for scene in scenes], ignore_index=True)

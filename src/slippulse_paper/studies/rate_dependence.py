@@ -1,7 +1,8 @@
-"""Study ruptures with friction that is linear in slip rate, which stick up to a critical slope.
+"""Study ruptures under friction that is linear in the slip rate.
 
 The equation of motion has an additional term -alpha du/dt, where alpha is the rate strengthening.
-Ruptures with and without leaf springs come from lattices and from the exact solution.
+Beyond a critical alpha, pulses do not stick. Ruptures with and without leaf springs come from
+lattices and from the exact solution.
 """
 
 from functools import cache

@@ -141,7 +141,7 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def with_longer_track(profile: Profile) -> Profile:
-    """Return a profile whose rough pre-stress reaches farther by LENGTH_FACTOR on both sides."""
+    """Return a profile whose rough pre-stress reaches LENGTH_FACTOR times as far on both sides."""
     rough = profile["rough"]
     ends = {name: LENGTH_FACTOR * rough[name] for name in ("start", "stop")}
     return {**profile, "rough": {**rough, **ends}}

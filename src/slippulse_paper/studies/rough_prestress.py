@@ -360,10 +360,12 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
 
 
 def origin_on_front(run: Recorded, position: float) -> float:
-    """Return where the wave that is at a position at the end left the right front.
+    """Return the position at which a wave has left the right front.
 
     The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
     the end.
+
+    position : position of the wave at the end
     """
     is_on_front = (run["x"] > 0.0) & np.isfinite(run["release_time"])
     x, time = run["x"][is_on_front], run["release_time"][is_on_front]
