@@ -150,8 +150,9 @@ def with_longer_track(profile: Profile) -> Profile:
 def balance_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Compare deaths on lattices with the balance of the pre-stress, one row for each spacing.
 
-    A pulse on a lattice dies before it reaches the balance position; the column change has the
-    median distance between them, over all pulses that die within BALANCE_DURATION.
+    By theory a pulse dies at its balance position, up to which the integral of the pre-stress is 0.
+    On a lattice it dies before it gets there. The column change has the median of the distance that
+    is left, over all pulses that die within BALANCE_DURATION.
     """
     profiles = ensemble[:BALANCE_SEEDS]
     integrals = [prestress_integral(profile) for profile in profiles]
