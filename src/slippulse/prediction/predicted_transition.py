@@ -105,7 +105,7 @@ def _half_width(crack: ArrestingCrack) -> float:
         """Return twice the slip velocity at the characteristic from x, less the peak velocity."""
         return integral(crack.prestress, x, crack.end) - crack.peak_velocity
 
-    ahead = root_between(above_half, crack.zero, crack.end, xtol=1e-12)
-    rear = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)
+    ahead = root_between(above_half, crack.slow_start, crack.end, xtol=1e-12)
+    rear = root_between(above_half, crack.balance_position, crack.slow_start, xtol=1e-12)
     # The width is the distance of the two characteristics x - t = const.
     return float((ahead - float(crack.fronts.arrival(ahead))) - (rear - crack.time_at(rear)))
