@@ -72,7 +72,7 @@ class Stretch:
             self.curves[side] = Curve(turned_to_right(side, self.panels))
         left_restarts = [side * x for x in self.restarts[-side]]
         right_restarts = [side * x for x in self.restarts[side]]
-        return self.curves[side].restarted((left_restarts, right_restarts))
+        return self.curves[side].with_restarts((left_restarts, right_restarts))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels to the front on one side.
@@ -102,7 +102,7 @@ class Stretch:
                 # The parameter s goes from -1 to 1 along the panel. It can be -1 by rounding.
                 _, (s,) = Curve([panel]).locate(np.array([x_of_cut]))
                 if s > -1.0:
-                    kept.append(panel.until(float(s), x_of_cut))
+                    kept.append(panel.left_part(float(s), x_of_cut))
         time = kept[-1].time_ends[1] if kept else 0.0
         self.panels, self.curves = turned_to_right(side, kept), {}
         self.ends[side] = Point(x, time)
