@@ -90,8 +90,12 @@ def _make_panels(damping_ratio: float, release: str) -> FrontLawPanels:
     def prestress(psi: np.ndarray) -> np.ndarray:
         """Return the pre-stress of fronts with 1/v = cos(psi)."""
         # v - 1 = (1 - cos psi)/cos psi, written without cancellation.
-        excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
-        return np.exp(log_prestress_in_chunks(excess, np.full(excess.size, damping_ratio), release))
+        excess_speed = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
+        return np.exp(
+            log_prestress_in_chunks(
+                excess_speed, np.full(excess_speed.size, damping_ratio), release
+            )
+        )
 
     # psi runs from 0 (v = 1) to pi/2 (infinite speed).
     last_psi = 0.5 * np.pi

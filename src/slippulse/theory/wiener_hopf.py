@@ -84,11 +84,11 @@ class Roots(NamedTuple):
 
 
 def log_prestress(
-    excess: np.ndarray,
-    ratio: np.ndarray,
-    springs: float = 0.0,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float = 0.0,
     release: str = "total",
-    drag: float = 0.0,
+    alpha_dx: float = 0.0,
 ) -> np.ndarray:
     """Return ln tau_0 of steady fronts at speeds v = 1 + excess.
 
@@ -98,37 +98,43 @@ def log_prestress(
     M_+(0)/M_+(i/(b v)) = tau_0. Both hold with leaf springs as without: a block ahead of the front
     has not slipped, so that its leaf spring is relaxed.
     """
-    contour, angle = _choose_contour(excess, ratio=ratio, springs=springs, drag=drag)
+    contour, angle = _choose_contour(
+        excess_speed, damping_ratio=damping_ratio, gamma_dx2=gamma_dx2, alpha_dx=alpha_dx
+    )
     log_values = log_factor(
-        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
+        contour,
+        excess_speed=excess_speed[:, None],
+        damping_ratio=damping_ratio[:, None],
+        gamma_dx2=gamma_dx2,
+        alpha_dx=alpha_dx,
     )
     # ln M_+(0): the two halves of the contour contribute complex conjugate integrals.
     log_tau = (log_values @ (contour.weight / contour.z)).imag / np.pi
-    if springs > 0.0:
+    if gamma_dx2 > 0.0:
         # The factor 1 - rho at z = 0, where q = sqrt(g)/2 and r = sqrt(1 + g/4).
-        q_at_0 = 0.5 * np.sqrt(springs)
+        q_at_0 = 0.5 * np.sqrt(gamma_dx2)
         log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
         # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
         # residue.
         log_tau = (0.5 - angle / np.pi) * log_at_0 + log_tau
     else:
         # The closed form at b = 1, whose ratio to the factor has been integrated.
-        log_tau += np.log(excess / (1.0 + excess))
-    if release == "elastic" and np.any(ratio > 0.0):
+        log_tau += np.log(excess_speed / (1.0 + excess_speed))
+    if release == "elastic" and np.any(damping_ratio > 0.0):
         # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
-        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
+        y = 1.0 / np.maximum(damping_ratio * (1.0 + excess_speed), 1e-300)
         distance = contour.z - 1j * y[:, None]
         log_at_iy = np.sum(log_values * (contour.weight / distance), axis=1).imag / np.pi
-        if springs == 0.0:
+        if gamma_dx2 == 0.0:
             # The closed form at b = 1 is 1 - (1 - e^{-y})/(v y) there.
-            numerator = excess * y + _exp_minus_two_terms(-y).real
-            log_at_iy += np.log(numerator / ((1.0 + excess) * y))
-        log_tau -= np.where(ratio > 0.0, log_at_iy, 0.0)
+            numerator = excess_speed * y + _exp_minus_two_terms(-y).real
+            log_at_iy += np.log(numerator / ((1.0 + excess_speed) * y))
+        log_tau -= np.where(damping_ratio > 0.0, log_at_iy, 0.0)
     return log_tau
 
 
 def _choose_contour(
-    excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+    excess_speed: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_dx: float
 ) -> tuple[Nodes, float]:
     """Return a contour that serves all fronts, and the angle of its ray below the real axis.
 
@@ -137,51 +143,55 @@ def _choose_contour(
     """
     # At a zero or branch point |w| is at least this divided by 1 + b. The limits are the branch
     # points of q (with leaf springs) or the zero of M next to 0 (without), and those of r.
-    smallest_w = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
-    if drag:
-        smallest_w = min(smallest_w, springs / abs(drag))
+    smallest_w = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
+    if alpha_dx:
+        smallest_w = min(smallest_w, gamma_dx2 / abs(alpha_dx))
     # As w = v z, this is the smallest |z|.
-    smallest_z = np.min(smallest_w / ((1.0 + ratio) * (1.0 + excess)))
+    smallest_z = np.min(smallest_w / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
     panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
-    angle = _contour_angle(excess, springs, drag)
+    angle = _contour_angle(excess_speed, gamma_dx2, alpha_dx)
     return nodes(panels, angle), angle
 
 
-def _contour_angle(excess: np.ndarray, springs: float, drag: float) -> float:
+def _contour_angle(excess_speed: np.ndarray, gamma_dx2: float, alpha_dx: float) -> float:
     """Return the angle below the real axis at which the contour leaves 0.
 
     If waves grow behind the front (drag < 0), the contour must pass below them. It then leaves 0
     halfway between the waves of the slowest front and the imaginary axis, if that is steeper than
     CONTOUR_ANGLE.
     """
-    if drag >= 0.0:
+    if alpha_dx >= 0.0:
         return CONTOUR_ANGLE
-    slowest = float(np.min(excess))
+    slowest = float(np.min(excess_speed))
     # The sine of the angle between the real axis and the growing waves, with v^2 - 1 written in
     # terms of v - 1.
-    sine = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+    sine = -0.5 * alpha_dx * (1.0 + slowest) / np.sqrt(gamma_dx2 * slowest * (2.0 + slowest))
     halfway = 0.5 * (np.arcsin(min(sine, 1.0)) + 0.5 * np.pi)
     return max(CONTOUR_ANGLE, halfway)
 
 
 def log_factor(
-    contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+    contour: Nodes,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float,
+    alpha_dx: float,
 ) -> np.ndarray:
     """Return ln(1 - rho e^{iz}) at the nodes, [front, node]; for g = 0 less its value at b = 1.
 
     excess and ratio are columns.
     """
     z = contour.z
-    iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio=ratio, springs=springs, drag=drag)
+    iw = 1j * z * (1.0 + excess_speed)
+    q, r = roots(iw, damping_ratio=damping_ratio, gamma_dx2=gamma_dx2, alpha_dx=alpha_dx)
     # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where rho = (r^2 - q^2)/(r + q)^2 and
     # r^2 - q^2 = 1 + i b w.
     r_plus_q = r + q
-    rho = (1.0 + ratio * iw) / r_plus_q**2
+    rho = (1.0 + damping_ratio * iw) / r_plus_q**2
     factor = 2.0 * q / r_plus_q - rho * contour.exp_minus_1
     # Near 0 the two terms cancel as v -> 1.
     quotient = q / r
-    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess < 1.0)
+    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess_speed < 1.0)
     if np.any(is_close):
         # Only the first nodes, up to the last one that is close for some front, are computed again.
         last = int(np.flatnonzero(is_close.any(axis=0))[-1]) + 1
@@ -191,18 +201,18 @@ def log_factor(
             iw=iw[first_nodes],
             q_and_r=Roots(q[first_nodes], r[first_nodes]),
             is_close=is_close[first_nodes],
-            excess=excess,
-            ratio=ratio,
-            springs=springs,
-            drag=drag,
+            excess_speed=excess_speed,
+            damping_ratio=damping_ratio,
+            gamma_dx2=gamma_dx2,
+            alpha_dx=alpha_dx,
         )
         factor[first_nodes] = np.where(
             is_close[first_nodes], -np.expm1(exponent), factor[first_nodes]
         )
-    if springs > 0.0:
+    if gamma_dx2 > 0.0:
         return log(factor)
     # The factor at b = 1, i z (v - 1) - (e^{iz} - 1 - i z), divided by 1 + i w.
-    reference = (1j * excess * z - contour.exp_minus_2_terms) / (1.0 + iw)
+    reference = (1j * excess_speed * z - contour.exp_minus_2_terms) / (1.0 + iw)
     return log(factor / reference)
 
 
@@ -211,10 +221,10 @@ def _exponent_near_zero(
     iw: np.ndarray,
     q_and_r: Roots,
     is_close: np.ndarray,
-    excess: np.ndarray,
-    ratio: np.ndarray,
-    springs: float,
-    drag: float,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float,
+    alpha_dx: float,
 ) -> np.ndarray:
     """Return i z + ln rho near z = 0, computed without cancellation; 0 where it is not close.
 
@@ -225,10 +235,10 @@ def _exponent_near_zero(
     """
     q, r = q_and_r
     wave = -2j * q
-    r_minus_1 = (ratio * iw - 0.25 * wave**2) / (r + 1.0)
-    lag = -excess * z + wave * r_minus_1 / r
-    if springs > 0.0:
-        w_minus_wave = (springs + drag * iw) / (-1j * iw + wave)
+    r_minus_1 = (damping_ratio * iw - 0.25 * wave**2) / (r + 1.0)
+    lag = -excess_speed * z + wave * r_minus_1 / r
+    if gamma_dx2 > 0.0:
+        w_minus_wave = (gamma_dx2 + alpha_dx * iw) / (-1j * iw + wave)
         lag = lag + w_minus_wave
     h = np.where(is_close, q / r, 0.0)
     square, is_large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
@@ -242,7 +252,7 @@ def log(z: np.ndarray) -> np.ndarray:
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
-def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> Roots:
+def roots(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_dx: float) -> Roots:
     """Return q and r (see the module docstring).
 
     Both are square roots of quadratic polynomials in i w, and are computed as products of the
@@ -250,20 +260,20 @@ def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> Roo
     points. With c = b + a/4, 4 r^2 = (i w)^2 + 4 c i w + 4 + g = (i w + c_1)(i w + c_2), where
     c_1 and c_2 are 2 c +- sqrt(4 c^2 - 4 - g).
     """
-    product = 4.0 + springs
-    half_sum = 2.0 * (ratio + 0.25 * drag)
-    discriminant = 4.0 * (ratio + 0.25 * drag) ** 2 - product
+    product = 4.0 + gamma_dx2
+    half_sum = 2.0 * (damping_ratio + 0.25 * alpha_dx)
+    discriminant = 4.0 * (damping_ratio + 0.25 * alpha_dx) ** 2 - product
     are_real = discriminant >= 0.0
     root = np.sqrt(np.abs(discriminant))
     c_1 = half_sum + np.where(are_real, root, 1j * root)
     # The smaller real one follows from the product, without cancellation.
     c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
-    if springs == 0.0:
+    if gamma_dx2 == 0.0:
         return Roots(0.5 * iw, r)
     # Likewise 4 q^2 = (i w)^2 + a i w + g.
-    root_of_q = np.sqrt(complex(0.25 * drag**2 - springs))
-    q = 0.5 * np.sqrt(iw + 0.5 * drag - root_of_q) * np.sqrt(iw + 0.5 * drag + root_of_q)
+    root_of_q = np.sqrt(complex(0.25 * alpha_dx**2 - gamma_dx2))
+    q = 0.5 * np.sqrt(iw + 0.5 * alpha_dx - root_of_q) * np.sqrt(iw + 0.5 * alpha_dx + root_of_q)
     return Roots(q, r)
 
 
