@@ -105,7 +105,7 @@ class PartWithEdge(Part):
             return knots
         # Every second knot lies in the middle between its neighbours. If these do not predict it,
         # the two halves of the interval between them are refined.
-        outer, middle = knots.at(np.s_[::2]), knots.at(np.s_[1::2])
+        outer, middle = knots.select(np.s_[::2]), knots.select(np.s_[1::2])
         is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
         left_ends_of_halves = x[:-1]
         unresolved = left_ends_of_halves[~np.repeat(is_predicted, 2)]
@@ -274,7 +274,7 @@ class PartWithEdge(Part):
         if not x.size:
             return knots, x
         new = self._make_knots(x, self._stick_time(x, knots))
-        is_predicted = knots.predicts_middle(halved, new.at(np.s_[between_pieces.size :]))
+        is_predicted = knots.predicts_middle(halved, new.select(np.s_[between_pieces.size :]))
         refined = knots.joined(new)
         self._mark_steep_pieces(refined, pieces)
         halves = np.append(knots.x[halved], middles)
