@@ -112,8 +112,8 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     # Where the past of a begins on the curve, and where that of b ends.
     a_begins, b_ends = curve.crossings(middle, time - left, time + right)
     crossings = (a_begins, past_of_c.left, past_of_c.right, b_ends)
-    # w and F are divided by exp(alpha t/2) at the time of a and b. At c, which is earlier by half of
-    # the distance, w contains a smaller exponential.
+    # w and F are divided by exp(alpha t/2) at the time of a and b. At c, which is half of the
+    # distance earlier, w contains a smaller exponential.
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
     half_exponential = 0.5 * np.exp(exponent)
     w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
