@@ -14,9 +14,9 @@ from .prestress_pieces import nucleation_intervals
 class ExactTransition(NamedTuple):
     """The transition from crack to pulse: its time T_trans and its length L_trans.
 
-    Under a displacement boundary T_trans is the time of the first stick. Under a stress boundary it
-    is the time at which the left front has covered a given fraction of its way. L_trans is the
-    distance between the two fronts at that time.
+    T_trans is the time of the first stick. Only for an `ArrestingCrack` it is the time at which the
+    left front has covered a given fraction of its way. L_trans is the distance between the two
+    fronts at that time.
     """
 
     time: float
