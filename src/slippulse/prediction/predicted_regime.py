@@ -81,12 +81,14 @@ def final_regime(
     is negative, du/dt never falls, and the rupture is a crack. If both levels are negative, the
     rupture is arrested when the integral of tau over it is 0, which happens at a finite size.
 
-    In the remaining case there is a level -n < 0 on one side and a level p >= 0 on the other. The
-    front into -n moves such that the integral of tau over a part of the rupture is 0
-    (`theory.arrest`). So it never stops if p > 0, but is slower than the waves: its speed tends to
-    1/(1 + (n/p)(1 + 1/v)), where v is the speed of the front into p. After a long time, du/dt at
-    the nucleation point divided by its largest value in the rupture tends to r/(1 + 1/v + 2 r),
-    where r = p/n. This is less than ``still_fraction`` if r is below `largest_pulse_ratio`.
+    There remains a level -n < 0 on one side and a level p >= 0 on the other. If p is 0, a pulse
+    runs there that keeps its shape. If p > 0, a wave that starts on the front into p, at a distance
+    e from the nucleation point, moves the other front to the distance (p/n) e, because the integral
+    of tau between these two positions is 0 (`theory.arrest`). So the front into -n never stops, but
+    is slower than the waves: its speed tends to 1/(1 + (n/p)(1 + 1/v)), where v is the speed of the
+    front into p. After a long time, du/dt at the nucleation point divided by its largest value in
+    the rupture tends to r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less
+    than ``still_fraction``, that is, if r is below `largest_pulse_ratio`.
     """
     low, high = sorted((left, right))
     if high < 0.0:

@@ -41,7 +41,7 @@ def _row(run: Run, fraction: float) -> dict[str, float]:
 
 
 def _gaussian_width(profile: Prestress) -> float | None:
-    """Return the width of a profile that is a single Gaussian of peak 1; None for other profiles."""
+    """Return the width of a profile that is one Gaussian with the peak 1; None for any other."""
     has_other_parts = profile.steps or profile.bumps or profile.points
     return profile.width if profile.peak == 1.0 and not has_other_parts else None
 
