@@ -63,10 +63,10 @@ class Knots(NamedTuple):
         Where both have a knot at one position, that of these knots is kept.
         """
         fields = zip(self, other, strict=True)
-        both = Knots._make(np.append(own, of_other) for own, of_other in fields)
+        all_knots = Knots._make(np.append(own, of_other) for own, of_other in fields)
         # `np.unique` sorts the positions, and returns the first of equal ones.
-        _, first_of_equal = np.unique(both.x, return_index=True)
-        return both.select(first_of_equal)
+        _, first_of_equal = np.unique(all_knots.x, return_index=True)
+        return all_knots.select(first_of_equal)
 
     def interval_of(self, x: np.ndarray) -> np.ndarray:
         """Return the interval that contains each position; outside of the knots the nearest one."""
