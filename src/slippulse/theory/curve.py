@@ -32,15 +32,17 @@ from numpy.polynomial import legendre
 # Times and positions are equal if their relative difference is below this, which is a hundred times
 # the error of a stick time.
 EQUALITY_TOLERANCE = 1e-9
+# Nodes and weights of each panel, in its parameter s.
 NODE_COUNT = 12
 NODES, WEIGHTS = legendre.leggauss(NODE_COUNT)
+# The following matrices are multiplied by the values of a function at the nodes of a panel.
+# They give its Legendre series, and the series of its integral from the left end.
 NODES_TO_SERIES = np.linalg.inv(legendre.legvander(NODES, NODE_COUNT - 1))
-# Matrices that map values at the nodes of a panel: to the Legendre series of the function; to the
-# series of its integral from the left end; to the values at the nodes of that integral and of the
-# derivative with respect to s; and to the values at both ends.
 NODES_TO_INTEGRAL_SERIES = legendre.legint(NODES_TO_SERIES, lbnd=-1.0)
+# They give this integral, and the derivative by s, at the nodes.
 NODES_TO_INTEGRALS = legendre.legvander(NODES, NODE_COUNT) @ NODES_TO_INTEGRAL_SERIES
 NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legder(NODES_TO_SERIES)
+# They give the values at both ends of the panel.
 NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
 # longer curve computes only the requested ones, unless more than MAX_SEPARATE_COLUMNS are requested
@@ -279,11 +281,12 @@ class Curve:
         right, meets_right = _panels_of_crossings(
             self.edges, regions=exits_to_right, y=y, level=eta
         )
-        # The left side is searched as the right side of the mirrored curve.
-        mirrored, meets_left = _panels_of_crossings(
+        # The left side is searched as the right side of the mirrored curve, in which the order of
+        # the panels is reversed.
+        left_of_mirrored, meets_left = _panels_of_crossings(
             -self.edges[::-1], regions=exits_to_left, y=-y, level=xi
         )
-        left = len(self.panels) - 1 - mirrored
+        left = len(self.panels) - 1 - left_of_mirrored
         # Both sides are solved together. The first half of the results belongs to the left.
         columns = np.concatenate([self.columns("t_minus_x", left), self.columns("t_plus_x", right)])
         s = self._solve(columns, np.concatenate([xi, eta]))
@@ -295,10 +298,10 @@ class Curve:
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
         """For each panel, the lowest exit value of this panel and of those beyond it.
 
-        The first list is for characteristics that are traced to the right. They leave a panel at
-        its right end, and the exit value is T + x there. The second list is for those traced to the
-        left, whose exit value is T - x at the left end. A list has one array for each region
-        (`_lowest_exit_beyond`).
+        These values show on which panel a characteristic leaves the rupture. The first list is for
+        characteristics that are traced to the right. They leave a panel at its right end, and the
+        exit value is T + x there. The second list is for those traced to the left, whose exit value
+        is T - x at the left end. A list has one array for each region (`_lowest_exit_beyond`).
         """
         _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
         exits_at_right_ends, exits_at_left_ends = t_plus_x[1], t_minus_x[0]
@@ -319,7 +322,8 @@ class Curve:
         released_later = np.flatnonzero(is_on_side & (self.edge_times > time))
         if not released_later.size:
             return float(self.edges[-1] if side > 0.0 else self.edges[0])
-        # The front is on the panel that ends at the nearest edge that is released later.
+        # The front is on the panel that leads to the nearest of these edges. Panel k lies between
+        # the edges k and k + 1.
         panel = np.array([released_later[0] - 1 if side > 0.0 else released_later[-1]])
         s = self._solve(self.columns("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
