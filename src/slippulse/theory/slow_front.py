@@ -389,11 +389,11 @@ class SlowFront:
         The longest chunk of entries that next_length allows is tried first. It is halved until its
         solution can be used. If there is an event on it, it is changed to end at the event.
         """
-        last = max(entry.s - next_length, -1.0)
-        chunk, corrections = Chunk(entry.panel, entry.s, last), 0
+        last_s = max(entry.s - next_length, -1.0)
+        chunk, corrections = Chunk(entry.panel, entry.s, last_s), 0
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
-                return self.straight(mark)
+                return self.straight_to_mark(mark)
             x = self.solve(chunk)
             if x is not None and _runs_back(x):
                 if mark - self.x0 >= MARK_DISTANCE * self.size:
@@ -428,7 +428,9 @@ class SlowFront:
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
         progress = Progress(next_length, self.position(Entry(chunk.panel, chunk.stop)))
-        return Advance(self.panel(chunk, x, x_end), "mark" if reaches_mark else None, progress)
+        return Advance(
+            self.panel_of_chunk(chunk, x, x_end), "mark" if reaches_mark else None, progress
+        )
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Return the pre-stress at positions ahead of the front."""
@@ -620,7 +622,7 @@ class SlowFront:
         entries = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
         return self.x0 + min(max(ratio, 1e-3), 10.0) * (self.position(start) - entries)
 
-    def panel(self, chunk: Chunk, x: np.ndarray, x_end: float) -> Panel:
+    def panel_of_chunk(self, chunk: Chunk, x: np.ndarray, x_end: float) -> Panel:
         """Return the new panel of the curve for a chunk, with positions x at its nodes.
 
         The panel ends at x_end.
@@ -646,7 +648,7 @@ class SlowFront:
             time_ends=(self.t0, float(t_minus_x[-1]) + x_end),
         )
 
-    def straight(self, mark: float) -> Advance:
+    def straight_to_mark(self, mark: float) -> Advance:
         """Continue the front up to a near mark at the wave speed.
 
         This is used if no chunk is resolved, as it happens where tau rises to 0 at the mark. If the
