@@ -1,8 +1,8 @@
 """The measured table of a sweep, which has one row for each run.
 
-A row has the numbers that `measure_run` measures, and numbers that compare the run with theory: the
-state of the leading pulse (steady, unsteady, ...), its deviation from the shape of the paper's
-pulse, and the time T_trans and length L_trans of the transition by the paper's formulas.
+A row has the numbers that `measure_run` measures, and numbers that compare the run with theory. The
+latter are the state of the leading pulse (steady, unsteady, ...) and its deviation from the paper's
+pulse. The time and the length of the transition by the paper's formulas are added to them.
 """
 
 import math
@@ -27,8 +27,8 @@ from ..theory.closed_pulse import (
     pulse_at_speed,
 )
 
-# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed, or
-# if the slip behind it varies, by more than this fraction.
+# A pulse is unsteady if its width differs by more than this fraction from that of the steady pulse
+# at the measured speed, or if the slip behind it varies by more.
 MAX_RELATIVE_CHANGE = 0.05
 # The measured width may differ further by the width of the front: the thickness of the damped layer
 # and this number of blocks.
@@ -62,8 +62,8 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 def _paper_transition(run: AnyRun) -> tuple[float, float]:
     """Return the time and the length of the transition by the paper's formulas.
 
-    They are NaN where the formulas are not valid: with an extra term of the equation, and for the
-    length if the pre-stress levels on both sides differ.
+    They are NaN with an extra term of the equation, where the formulas are not valid. If the
+    pre-stress levels on the two sides differ, only the length is NaN.
     """
     if used_extra_terms(run.attrs):
         return math.nan, math.nan
@@ -79,9 +79,9 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """Return the state of the leading pulse, by the names that config/README.md explains.
 
     A steady pulse leaves uniform slip behind, and has the width of the exact steady pulse
-    (`theory.steady_pulse`). The state is "none" if there is no pulse to compare, or if no exact
-    pulse is known: under a stress boundary, with another friction law than "coulomb", or with an
-    extra term of the equation.
+    (`theory.steady_pulse`). The state is "none" if there is no pulse to compare. It is also "none"
+    if no exact pulse is known: under a stress boundary, with another friction law than "coulomb",
+    or with an extra term of the equation.
     """
     if run.attrs["boundary"] != "displacement":
         return "none"

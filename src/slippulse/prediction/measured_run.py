@@ -71,8 +71,8 @@ def measure(run: xr.Dataset) -> Any:
     Notes
     -----
     Source: sections III B and III C of the paper for the transition. Under a displacement boundary
-    T_trans is the first stick, and L_trans the distance between both fronts then; under a stress
-    boundary the left front has then covered 95 % of ``|x_minus|``.
+    T_trans is the time of the first stick. Under a stress boundary it is the time at which the left
+    front has covered 95 % of ``|x_minus|``. L_trans is the distance between both fronts at T_trans.
 
     Examples
     --------

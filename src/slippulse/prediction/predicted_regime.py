@@ -82,13 +82,13 @@ def final_regime(
     rupture is arrested when the integral of tau over it is 0, which happens at a finite size.
 
     There remains a level -n < 0 on one side and a level p >= 0 on the other. If p is 0, a pulse
-    runs there that keeps its shape. If p > 0, a wave that starts on the front into p, at a distance
-    e from the nucleation point, moves the other front to the distance (p/n) e, because the integral
-    of tau between these two positions is 0 (`theory.arrest`). So the front into -n never stops, but
-    is slower than the waves: its speed tends to 1/(1 + (n/p)(1 + 1/v)), where v is the speed of the
-    front into p. After a long time, du/dt at the nucleation point divided by its largest value in
-    the rupture tends to r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less
-    than ``still_fraction``, that is, if r is below `largest_pulse_ratio`.
+    runs there that keeps its shape. If p > 0, the front into -n is moved by waves that started on
+    the front into p (`theory.arrest`). A wave that started at a distance e from the nucleation
+    point moves it to the distance (p/n) e, so that the integral of tau between the two positions is
+    0. So the front into -n never stops. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where v is the
+    speed of the front into p, and is below 1. The slip velocity at the nucleation point, divided by
+    the largest one in the rupture, tends to r/(1 + 1/v + 2 r), where r = p/n. The rupture is a
+    pulse if this is less than ``still_fraction``, that is, if r is below `largest_pulse_ratio`.
     """
     low, high = sorted((left, right))
     if high < 0.0:

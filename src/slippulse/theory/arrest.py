@@ -17,8 +17,8 @@ from .two_fronts import ExactTransition, fast_fronts
 
 # At this number of widths from its centre, a Gaussian is smaller than any positive number.
 GAUSSIAN_END_IN_WIDTHS = 48.0
-# Number of characteristics that start on each of the three sections of the fronts: the right front,
-# and the fast and the slow section of the left front.
+# The fronts have three sections: the right front, and the fast and the slow part of the left front.
+# The far pulse is computed on this number of characteristics from each section.
 SAMPLES_PER_SECTION = 400
 
 
@@ -65,10 +65,10 @@ class ArrestingCrack(ExplainsRemovedNames):
         self.slow_start = float(self.fronts.edges[0])
 
     def _entry_of(self, position: float) -> float:
-        """Return where the wave that moves the left front at a position entered the rupture.
+        """Return where the wave entered the rupture that arrives at the left front at a position.
 
-        The wave runs to the left. It entered through a fast front, at a point with two properties:
-        it lies to the right of the position, and the integral of tau between the two is 0.
+        The wave runs to the left. So it entered on the right of the position, through a fast front.
+        The integral of tau between the two positions is 0.
         """
         integral_from_position_to = partial(integral, self.prestress, position)
         # The curve of the fast fronts ends at self.end.

@@ -26,9 +26,10 @@ MEMORY_FACTOR = 1.5
 MIN_PRESTRESS = 1e-4
 # The largest front speed, for which the pulse needs 12000 panels.
 MAX_SPEED = 5e3
-# The weakest and the strongest barrier in which slow fronts are known to be resolved: the size of
-# its pre-stress, as a fraction of the pre-stress before it, and in units of the strength drop.
+# Slow fronts are known to be resolved if the size of the negative pre-stress of a barrier is at
+# least this fraction of the pre-stress before it ...
 MIN_BARRIER_RATIO = 0.005
+# ... and at most this.
 MAX_BARRIER = 1e6
 
 
@@ -88,8 +89,8 @@ def _panels_before_barrier(tau0: float, speed: float) -> list[Panel]:
     The elasticity ratio is 1. The panels cover a little more than the memory length of the pulse,
     because what happened on the front before has no influence on the pulse.
     """
-    # A wave that starts on the front follows it at the speed 1, and remains in the pulse until the
-    # trailing edge overtakes it, after the time width/(v - 1). Meanwhile the front has run the
+    # A wave that starts on the front follows it at the speed 1. It remains in the pulse until the
+    # trailing edge overtakes it, after the time width/(v - 1). In this time the front runs over the
     # memory length.
     width = pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
     length = MEMORY_FACTOR * width / (speed - 1.0) * speed

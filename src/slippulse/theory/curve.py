@@ -45,8 +45,8 @@ NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legd
 # They give the values at both ends of the panel.
 NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
-# longer curve computes only the requested ones, unless more than MAX_SEPARATE_COLUMNS are requested
-# at a time: a slow front needs a few of them at each of its steps.
+# longer curve computes only the requested polynomials, because a slow front needs only a few at
+# each of its steps. If more than MAX_SEPARATE_COLUMNS are requested at a time, it computes all.
 MAX_EAGER_PANELS, MAX_SEPARATE_COLUMNS = 500, 32
 # The most steps of Newton's method for a parameter on a panel.
 MAX_NEWTON_STEPS = 40
@@ -85,8 +85,8 @@ def with_slopes(powers: np.ndarray) -> np.ndarray:
 
 
 NODES_TO_POWERS = with_slopes(power_basis(NODE_COUNT) @ NODES_TO_SERIES)
-# Matrix that maps the powers of a parameter to weights of the nodes, with which a function is
-# integrated from the left end of its panel to that parameter.
+# Matrix that gives weights of the nodes from the powers of a parameter. With these weights a
+# function is integrated from the left end of its panel to that parameter.
 POWERS_TO_WEIGHTS = power_basis(NODE_COUNT + 1) @ NODES_TO_INTEGRAL_SERIES
 
 

@@ -23,7 +23,7 @@ def exact_transition_displacement(
     """Return T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
 
     Raises ValueError: outside these ranges; if the rupture also nucleates away from x = 0; or if a
-    front needs more than 20000 panels, which does not happen if gamma times the square of the
+    front needs more than 20000 panels. This does not happen if gamma times the square of the
     Gaussian width is between 1e-17 and 1e6.
     Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
     `Rupture.transition` examines all positions.

@@ -53,9 +53,9 @@ class FastFront:
     alpha is the coefficient of the drag -alpha du/dt in the equation of motion. The integer
     refinement divides all lengths of panels.
 
-    Attributes: pieces are intervals of smooth pre-stress of one sign, from left to right. A panel
-    begins or ends at each of the features; narrow_features are those of narrow Gaussians.
-    kernel_rate is sqrt(gamma) unless drag is strong: the rate at which waves change.
+    Attributes: pieces are intervals of smooth pre-stress of one sign, from left to right. features
+    are positions where a panel begins or ends, and narrow_features are those of narrow Gaussians.
+    kernel_rate is the rate at which waves change; it is sqrt(gamma) unless drag is strong.
     """
 
     prestress: Prestress

@@ -11,8 +11,8 @@ and a constant load:
 The shift renumbers the blocks: block 0 becomes block 1, and a block at rest becomes block 0. In the
 steady state both sides are equal, which is one system of linear equations. It is solved for the
 pre-stress 1. Since everything is proportional to the pre-stress tau_0, the stress on a block at its
-release is then 1/tau_0. The front is admissible if the stress ahead of it remains below 1 until
-the release, and if the block released last still slides when the next one is released.
+release is then 1/tau_0. The front is admissible if two conditions hold: the stress ahead of it
+remains below 1 until the release, and the block released last slides until the next release.
 """
 
 from typing import NamedTuple
@@ -29,8 +29,8 @@ BLOCKS_BEHIND_FRONT = 100
 class SteadyFront(NamedTuple):
     """A front at one speed: the pre-stress into which it runs, and whether it is admissible.
 
-    ahead is the stress on the first stuck block, at SUBSTEPS_PER_PERIOD + 1 times from the last
-    release to the release of this block, where the stress is 1.
+    ahead is the stress on the first stuck block, at SUBSTEPS_PER_PERIOD + 1 times. They go from the
+    last release to the release of this block, where the stress is 1.
     """
 
     prestress: float

@@ -1,9 +1,9 @@
 """Front speeds on the damped lattice, without leaf springs.
 
 They follow from a relation between front speed and pre-stress (`wiener_hopf`). It assumes that the
-sliding part behind the front is infinitely long. Blocks that stick behind the front change its
-speed only if the pulse is hardly wider than the layer of damped waves and lattice waves at the
-front. This layer is a few blocks wide, unless the damping ratio is large.
+sliding part behind the front is infinitely long. A pulse is finite, but this changes its front
+speed only if it is hardly wider than a layer of damped waves and lattice waves at the front. This
+layer is a few blocks wide, unless the damping ratio is large.
 """
 
 from typing import NamedTuple

@@ -18,8 +18,8 @@ NEARLY_ONE_DISTANCE = 1e-7
 MIN_GAMMA_DX2, MIN_ALPHA_DX = 1e-30, 1e-15
 # With stronger leaf springs than this no front outruns the waves.
 MAX_GAMMA_DX2 = 1e30
-# Next to tau_0 = 1, leaf springs and drag are small corrections if gamma dx^2 (1 + beta/dx) is
-# below this fraction of v^2, and alpha dx below this fraction of v.
+# Next to tau_0 = 1, leaf springs are a small correction if gamma dx^2 (1 + beta/dx) is below this
+# fraction of v^2, where v is the front speed. Drag is one if alpha dx is below this fraction of v.
 SMALL_CORRECTION = 1e-5
 # Factor by which a front is at least faster than the speed at which slip runs away.
 SPEED_MARGIN = 1.0 + 1e-6

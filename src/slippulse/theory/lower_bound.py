@@ -7,8 +7,8 @@ terms, w = F - W. F is half the integral of tau exp(alpha T/2) along the front, 
 it lies in the past of a point. W is k/4 times the integral of w over xi and eta in the past of the
 point. If k > 0, W grows with xi and with eta as long as w > 0 there.
 
-Let a and b be two positions at the same time, a distance h apart, and c the point from which their
-characteristics went apart, at (a + b)/2 and h/2 earlier:
+Let a and b be two positions at the same time, and h the distance between them. c is the point from
+which their characteristics went apart, in the middle between them and h/2 earlier:
 
      a ------ b     time t
       \      /
@@ -22,8 +22,8 @@ For k > 0, w in the whole triangle is at least
 
 where J is the sum of the gains of F by positive pre-stress, from c to a and from c to b. For
 k <= 0, w is at least w(c) minus the loss of F by negative pre-stress. If c has not slipped, another
-condition is used. By Riemann's formula (`riemann`), w > 0 if all pre-stress in the past is positive
-and no argument of the Bessel function J0 lies beyond its first zero.
+condition is used. By Riemann's formula (`riemann`), w is an integral of tau and the Bessel function
+J0. So w > 0 if all pre-stress in the past is positive, and J0 does not reach its first zero.
 
 An interval is divided until the bound is positive, or until it is too short to change any result.
 """
@@ -45,8 +45,8 @@ PARTS_PER_CUT = 4
 MIN_INTERVAL = 1e-6
 # Shortest interval that is cut, in the same units, if one end does not move yet.
 MIN_INTERVAL_AT_REST = 1e-3
-# Within this distance of the first stick, in units of `Part.scale`, no interval is cut: there the
-# knots of the trailing edge show that no other position sticks before.
+# Within this distance of the first stick, in units of `Part.scale`, no interval is cut. There the
+# trailing edge, which is known at knots, shows that no other position sticks before.
 FIRST_STICK_DISTANCE = 0.2
 # Slip velocities below this are 0.
 ROUNDING_ERROR = 1e-12

@@ -17,10 +17,10 @@ def steady_pulse(
 ) -> SteadyPulse:
     """Return the steady pulse in uniform pre-stress behind a front.
 
-    Source: the slip U(xi), where xi = x - v t is the distance from the front, obeys
-    beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0. An exponential
-    that grows with the distance from the front is left out of the solution. With alpha = beta = 0
-    this is the pulse of appendix C of the paper, but for any front speed v.
+    Source: slip is a function U(xi) of the distance xi = x - v t from the front. It obeys
+    beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0, with U(0) = U'(0) = 0. In the
+    solution, an exponential that grows with the distance from the front is left out. With
+    alpha = beta = 0 it is the pulse of appendix C of the paper, but for any front speed v.
     Raises ValueError: outside these ranges, or where the numbers of the pulse are too large or
     small for a float.
 

@@ -190,9 +190,9 @@ class DependenceDomains:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        They are derivatives of 2 du/dt = Int tau E K dx. If xi changes, the left end of the
-        integral moves by dx/dg, the kernel K changes by k (eta - h) K', and the decay factor E by
-        -alpha/4 E. The derivative by eta is similar, with the right end.
+        They are derivatives of the formula 2 du/dt = Int tau E K dx. If xi changes, three things
+        change: the left end of the integral by dx/dg, the kernel K by k (eta - h) K', and the decay
+        factor E by -alpha/4 E. The derivative by eta is similar, with the right end.
         """
         decay_left, decay_right = self._decay_at_ends()
         by_left_end = self._source_at_end("t_minus_x", self.left, decay_left)
@@ -245,8 +245,8 @@ class DependenceDomains:
         """Return the strain du/dx at the points, the derivative by y of the formula for 2 u.
 
         If y increases at constant t, xi decreases and eta increases at the same rate. So the
-        argument z of the kernel changes by k [(xi - g) - (eta - h)], the last bracket by dg + dh,
-        and the decay factor E does not change.
+        argument z of the kernel changes by k [(xi - g) - (eta - h)], and the last bracket of the
+        formula by dg + dh. The decay factor E does not change.
         """
         k, alpha = self.stiffness, self.alpha
         curve = self.curve
@@ -356,8 +356,8 @@ class DependenceDomains:
         if self.alpha:
             values = values * decay(self.alpha, d_xi, d_eta)
         by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
-        # The integral is that over the panels from `low` to the one before `high`, plus the part of
-        # `high` in the domain, minus the part of `low` that lies outside of it.
+        # First the panels from `low` to the one before `high` are added. Then the part of `high` in
+        # the domain is added, and the part of `low` outside of the domain is subtracted.
         panel = np.arange(last - first)
         is_between = (panel >= low[:, None]) & (panel < high[:, None])
         over_panels = np.add.reduce((by_panel @ WEIGHTS) * is_between, axis=-1)

@@ -32,8 +32,8 @@ from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
 from .two_fronts import ExactTransition
 
-# The construction continues beyond the duration by this fraction of it, so that the end of the
-# construction does not coincide with the last time for which results are requested.
+# The construction continues beyond the duration by this fraction of it. So its end does not
+# coincide with the last time for which results are requested.
 EXTRA_DURATION = 1e-6
 # The largest product of alpha and the duration, for which exponentials are far from overflow.
 MAX_DECAY = 600.0
@@ -146,8 +146,8 @@ class Rupture(ExplainsRemovedNames):
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
         """Left and right front of each connected part, where they are at the end.
 
-        The reason is "stops" for a front that has stopped, "duration" for one that still moves at
-        the end, or another reason why it was not followed further.
+        The reason is "stops" for a front that has stopped, and "duration" for one that still moves
+        at the end. Any other reason says why the front was not followed further.
         """
         ends = []
         for part, stretch in zip(self._parts, self.stretches, strict=True):

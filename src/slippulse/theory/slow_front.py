@@ -240,8 +240,9 @@ class FreeBoundary:
     """The equation of the free boundary on one chunk, for the positions X of the front.
 
     It is one integral for each node of the chunk, from an entry to the front. Arrays have one row
-    for each of these integrals, and one column for each node that it covers: first the nodes of the
-    known curve from the panel of the entries on, then the nodes of the new panel.
+    for each of these integrals, and one column for each node of the curve. The first columns are
+    those of the known curve, from the panel of the entries on, and the last ones those of the new
+    panel.
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:

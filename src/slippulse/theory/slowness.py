@@ -2,10 +2,10 @@
 
 A formula in `front_speeds` gives the pre-stress for a speed. Here this function is interpolated and
 inverted, since a front needs the speed at many positions. The variable is an angle psi from 0 to
-pi/2, with 1/v = cos(psi). The pre-stress is a smooth function of psi at every damping ratio b:
-sin(psi) at b = 0, and for small b a function that differs from it only within a distance of about b
-from both ends of the range. It is interpolated on panels in psi, which are halved until they
-resolve it, and inverted by Newton's method.
+pi/2, with 1/v = cos(psi). The pre-stress is a smooth function of psi at every damping ratio b. At
+b = 0 it is sin(psi). For small b it differs from sin(psi) only within a distance of about b from
+both ends of the range. It is interpolated on panels in psi, which are halved until they resolve it,
+and inverted by Newton's method.
 """
 
 from functools import lru_cache
@@ -31,8 +31,8 @@ MAX_NEWTON_STEPS = 12
 # If 1 - tau is below this, the panels lose more digits than the neglected terms of the expansion in
 # 1/v.
 NEARLY_ONE_DISTANCE = 1e-8
-# Beyond this damping ratio, under rule "total", psi is so near to pi/2 that 1/v loses its digits: a
-# relative error of 5e-10 at this ratio, and no digits are left at 1e9.
+# Beyond this damping ratio, under rule "total", psi is so near to pi/2 that 1/v loses its digits.
+# At this ratio the relative error is 5e-10, and at 1e9 no digits are left.
 LARGEST_RATIO = 1e6
 
 

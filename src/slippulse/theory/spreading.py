@@ -43,8 +43,9 @@ MEETING_DISTANCE = 1e-6
 class Stretch:
     """A connected part of the rupture and its two fronts.
 
-    The dictionaries have a value for each side, LEFT or RIGHT. "With a side turned to the right"
-    means that the left side is mirrored at x = 0, so that both fronts are treated as right fronts.
+    The dictionaries have a value for each side, LEFT or RIGHT. If a value is given "with its side
+    turned to the right", the left side is mirrored at x = 0. So both fronts are treated as right
+    fronts.
     """
 
     # The outermost known point of each front.

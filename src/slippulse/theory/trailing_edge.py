@@ -4,12 +4,12 @@ At each position this is the first time after the release at which du/dt is 0. T
 valid as long as the edge runs faster than the waves. This is so if du/dt falls along both
 characteristics, that is, with xi = t - y and with eta = t + y. Then no stuck point lies in the past
 of a sliding one, and Riemann's formula is valid up to the stick. A block that has stuck is never
-released again, because the stress on it is negative: it is d2u/dt2 (1 - (dt/dx)^2), where the
-acceleration d2u/dt2 is that just before the stick, and dt/dx is the slope of the edge.
+released again, because the stress on it is negative. This stress is d2u/dt2 (1 - (dt/dx)^2), with
+the acceleration d2u/dt2 just before the stick, and the slope dt/dx of the edge.
 
 The edge is computed at knots and interpolated between them (`knots`). The first knots are the ends
-of the panels of the curve, the marks (positions from which waves come that change du/dt at once)
-and the middles between all of these. Then knots are added:
+of the panels of the curve, the marks, and the middles between all of these. (The marks are the
+positions from which waves come that change du/dt at once.) Then knots are added:
 
 1. on both sides of each point where the wave from a mark meets the edge, because the edge has a
    kink there;
@@ -256,9 +256,9 @@ class PartWithEdge(Part):
     def _refine(self, knots: Knots, left_ends: np.ndarray) -> tuple[Knots, np.ndarray]:
         """Add knots in some intervals, which are given by their left ends.
 
-        Return all knots, and the left ends of the intervals to refine next. These are the pieces of
-        a cut interval in which the edge jumps or reaches the final time, and both halves of a
-        halved interval whose interpolation did not predict its middle.
+        Return all knots, and the left ends of the intervals to refine next. A piece of a cut
+        interval is refined if the edge jumps or reaches the final time in it. Both halves of a
+        halved interval are refined if the interpolation did not predict the middle.
         """
         k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left_ends))
         cut, halved = self._intervals_to_divide(knots, k)
@@ -409,8 +409,9 @@ class PartWithEdge(Part):
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves.
 
-        They are the knots just before a jump of the edge, the knots of the kind SLOWER_THAN_WAVES,
-        and the stopped ends of fronts from which the edge does not run back faster than the waves.
+        They are the knots just before a jump of the edge, and the knots of the kind
+        SLOWER_THAN_WAVES. A point where a front has stopped is one of them if the edge does not run
+        back from there faster than the waves.
         """
         knots = self.knots
         before_jumps, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))

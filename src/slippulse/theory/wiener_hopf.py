@@ -1,15 +1,15 @@
 """The Wiener-Hopf factor of a front on the lattice, with leaf springs and damping.
 
-In the frame of a front at speed v, the equation of motion holds with unknown slip behind the front
-and unknown stress ahead of it. Its Fourier transform is one equation for both unknowns. The method
-of Wiener and Hopf solves it by writing the symbol M(k) of the equation as a product of two factors,
-one without zeros and poles in the upper and one in the lower half plane of k. (See Slepyan, Models
-and Phenomena in Fracture Mechanics, for fronts on lattices.) The factor at k = 0 gives the
-pre-stress of the front.
+In the frame of a front of speed v, the equation of motion has two unknowns: the slip behind the
+front, and the stress ahead of it. Its Fourier transform is one equation for both. The method of
+Wiener and Hopf solves it by splitting the symbol M(k) of the equation into two factors. One has
+neither zeros nor poles in the upper half plane of k, and the other one has none in the lower half
+plane. (See Slepyan, Models and Phenomena in Fracture Mechanics, for fronts on lattices.) The value
+of the first factor at k = 0 gives the pre-stress of the front.
 
-With the block spacing as unit of length, let w = v k, S(k) = 4 sin^2(k/2), b = beta/dx (the damping
-ratio), g = gamma dx^2 (leaf springs, `gamma_dx2` in the functions below) and a = alpha dx (drag,
-`alpha_dx`). The symbol is
+The unit of length is the block spacing. Let w = v k and S(k) = 4 sin^2(k/2). b = beta/dx is the
+damping ratio. Leaf springs enter by g = gamma dx^2 (`gamma_dx2` in the functions below), and drag
+by a = alpha dx (`alpha_dx`). The symbol is
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
@@ -166,8 +166,8 @@ def _choose_contour(
     Its panels begin at half of the smallest distance from 0 at which a zero or a branch point of
     the symbol can lie. From there to CONTOUR_REACH they have equal lengths in ln |z|.
     """
-    # At all these points (1 + b) |w| is at least 1 (branch points of r) or the following value:
-    # with leaf springs that of the branch points of q, and without them that of the zero next to 0.
+    # (1 + b) |w| is at least 1 at the branch points of r. With leaf springs the branch points of q
+    # may be nearer to 0, and without leaf springs a zero of the symbol.
     nearest_to_0 = np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed
     smallest_w = np.minimum(nearest_to_0, 1.0)
     if alpha_dx:
@@ -212,8 +212,8 @@ def log_factor(
     z = contour.z
     iw = 1j * z * (1.0 + excess_speed)
     q, r = q_and_r(iw, damping_ratio=damping_ratio, gamma_dx2=gamma_dx2, alpha_dx=alpha_dx)
-    # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where 1 - rho = 2 q/(r + q),
-    # rho = (r^2 - q^2)/(r + q)^2 and r^2 - q^2 = 1 + i b w.
+    # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where 1 - rho = 2 q/(r + q) and
+    # rho = (1 + i b w)/(r + q)^2.
     r_plus_q = r + q
     rho = (1.0 + damping_ratio * iw) / r_plus_q**2
     factor = 2.0 * q / r_plus_q - rho * contour.exp_minus_1
