@@ -110,7 +110,7 @@ class StaticSolution:
         self.node_values = np.stack([p, slope, *derivatives])
         self._powers = [NODES_TO_POWERS @ values.T for values in (p, slope)]
 
-    def on(self, panels: slice) -> StaticValues:
+    def values_on(self, panels: slice) -> StaticValues:
         """Return the values at the nodes of some panels, in flat arrays."""
         return StaticValues(*self.node_values[:, panels].reshape(len(self.node_values), -1))
 
@@ -231,7 +231,7 @@ class DependenceDomains:
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return the expression in braces of this formula, per unit of s."""
-            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
+            p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
             factor_of_kernel = -slope * d_time
             # alpha/2 p dx, where 2 dx = dh - dg.
             factor_of_kernel -= 0.25 * alpha * p * (d_h - d_g)
@@ -256,7 +256,7 @@ class DependenceDomains:
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return the derivative of the expression in braces of this formula, per unit of s."""
-            p, slope, d_time, d_g, d_h = static_solution.on(nodes.panels)
+            p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
             kernel_slope = nodes.kernel(1)
             # The derivative of K' in the second term.
             bracket = nodes.d_eta * (p * d_g) - nodes.d_xi * (p * d_h)

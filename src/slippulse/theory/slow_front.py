@@ -74,8 +74,8 @@ NEGLIGIBLE_MOTIONS = (1e-13, 1e-12, 1e-11, 1e-10)
 # The entries to skip are determined at samples between the first entry and the left end of its
 # panel, at these fractions of the way.
 ENTRY_FRACTIONS = np.linspace(0.0, 1.0, 65)
-# A front that speeds up towards the waves cannot be resolved up to the mark. At this distance from
-# it, as a fraction of the size of the rupture, it is continued at the wave speed.
+# A front that speeds up to the wave speed at the mark cannot be resolved up to there. If the mark
+# is nearer than this fraction of the size of the rupture, the front is continued at the wave speed.
 MARK_DISTANCE = 1e-5
 # Length of a panel in its parameter.
 PANEL_LENGTH = 2.0
@@ -184,11 +184,11 @@ class Chunk(NamedTuple):
 
 
 def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
-    """Return the first event of a front, whose positions at the nodes of a chunk are x.
+    """Return the first event of a front on a chunk of entries: it stops, or it reaches the mark.
 
-    The front stops where the derivative of its position by the parameter is 0. corrections is the
-    number of times that the end of the chunk was moved to an event. If it was moved, the event may
-    lie a little beyond the end.
+    x has the positions of the front at the nodes of the chunk. The front stops where the derivative
+    of its position by the parameter is 0. corrections is the number of times that the end of the
+    chunk was moved to an event. If it was moved, the event may lie a little beyond the end.
     """
     largest_s = SEARCH_LIMIT if corrections else 1.0
     stops = _roots_on_chunk(NODES_TO_DERIVATIVES @ x, largest_s)
@@ -198,7 +198,7 @@ def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
 
 
 def _must_be_corrected(event: Event, corrections: int) -> bool:
-    """Return True if there is an event, but the chunk does not end there yet.
+    """Return True if there is an event on a chunk of entries, but the chunk does not end there yet.
 
     corrections is the number of times that the end of the chunk was moved to an event. It is moved
     at least once, even if the event is at the end already.
@@ -210,7 +210,10 @@ def _must_be_corrected(event: Event, corrections: int) -> bool:
 
 
 def _runs_back(x: np.ndarray) -> bool:
-    """Return True if a front with positions x at the nodes runs back at the start of the chunk."""
+    """Return True if a front runs back at the start of a chunk of entries.
+
+    x has the positions of the front at the nodes of the chunk.
+    """
     slope = NODES_TO_DERIVATIVES @ x
     # The sign of the slope is examined halfway between the start, at s = -1, and the first stop of
     # the front.
@@ -438,11 +441,11 @@ class SlowFront:
         return continued_prestress(self.prestress, self.background, x)
 
     def next_entry(self, last_entry: float, negligible: float) -> Entry | None:
-        """Return the next entry after the position of the last one; None if it is not known.
+        """Return where the wave entered the rupture that moves the front next; None if unknown.
 
-        It follows the last one along the curve, from right to left. Entries are skipped as long as
-        all of them together move the front by no more than the fraction ``negligible`` of the size
-        of the rupture.
+        This entry follows the last one, whose position is given, along the curve from right to
+        left. Entries are skipped as long as all of them together move the front by no more than the
+        fraction ``negligible`` of the size of the rupture.
         """
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
@@ -467,7 +470,7 @@ class SlowFront:
         return NO_ENTRY if has_skipped else None
 
     def entry_next_to(self, last_entry: float) -> Entry:
-        """Return the first entry on the left of the position of the last entry.
+        """Return the point of the curve that follows the position of the last entry on its left.
 
         It is the right end of the curve if there was no entry yet (NaN).
         """
@@ -478,9 +481,11 @@ class SlowFront:
         return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, 1.0)
 
     def skip_entries(self, entry: Entry, skipped_motion: float, negligible: float) -> Skipped:
-        """Return which entries are skipped on a panel, from the given one to the left.
+        """Return which entries are skipped on a panel, from a given one to the left.
 
-        skipped_motion is the motion by entries on other panels that were skipped before.
+        Entries are skipped if they move the front by no more than the fraction ``negligible`` of
+        the size of the rupture. skipped_motion is the motion by entries on other panels that were
+        skipped before.
         """
         # Samples from the entry to the left end of its panel.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
@@ -498,10 +503,10 @@ class SlowFront:
         return Skipped(last, s=float(s[last]), motion=motion, moves_on=bool(moves_on))
 
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
-        """Return how far the front moves by the entries between the first parameter and each one.
+        """Return how far the front moves by the waves that entered on a part of a panel.
 
-        The parameters are those of entries on one panel of the curve. The motion times the
-        resistance of the front is the integral of the pre-stress over these entries.
+        The part goes from the first of the parameters to each of them. The motion times the
+        resistance of the front is the integral of the pre-stress over this part.
         """
         weights = partial_weights(parameters)
         return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
@@ -580,7 +585,7 @@ class SlowFront:
         return Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
-        """Return the positions of the front at the nodes of a chunk, by Newton's method.
+        """Return the positions of the front at the nodes of a chunk of entries, by Newton's method.
 
         It is None if the chunk is too long, so that the method fails or its result is not resolved.
         """
