@@ -194,7 +194,8 @@ class PartWithEdge(Part):
     def _positions_near_waves(self, knots: Knots) -> np.ndarray:
         """Return positions on both sides of each point where a wave from a mark meets the edge.
 
-        When the front arrives at a mark, one wave starts there to each side.
+        A mark is a position where the motion of a front changes suddenly. When the front arrives
+        there, one wave starts to each side.
         """
         sides = (-1.0, 1.0)
         return np.concatenate([self._positions_near_waves_to(knots, side) for side in sides])
@@ -306,16 +307,16 @@ class PartWithEdge(Part):
         The future of a jump is where a wave from the jump has arrived. Nothing is known there.
         """
         before_jumps, lengths = knots.ends_before_jumps(k)
-        # For each knot and jump, the latest time at which a wave must start at the knot before the
-        # jump to arrive at the stick. Of the two ends of an interval the earlier one counts. The
-        # axes are [left or right end, interval, jump].
+        # The axes are [left or right end, interval, jump].
         ends = np.array([k, k + 1])[..., None]
         travel_time = np.abs(knots.x[ends] - knots.x[before_jumps])
+        # A wave from a jump arrives at an end before its stick if it starts before this time. One
+        # end is not in the future of the jump if the smaller of both times is before the jump.
         latest_start = (knots.stick[ends] - travel_time).min(axis=0)
         # The jump is somewhere in its interval, so that twice the interval length is added to its
         # time.
-        is_before_wave = latest_start < knots.stick[before_jumps] + 2.0 * lengths
-        return k[is_before_wave.all(axis=1)]
+        is_before_jump = latest_start < knots.stick[before_jumps] + 2.0 * lengths
+        return k[is_before_jump.all(axis=1)]
 
     def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
         """Set the kind SLOWER_THAN_WAVES at knots of intervals all of whose pieces are steep.
