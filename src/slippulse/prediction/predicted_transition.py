@@ -52,7 +52,8 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
     The pre-stress must be a single Gaussian between these levels. Otherwise the numbers are NaN.
     """
     profile = run.prestress
-    if not (_gaussian_width(profile) and profile.left == profile.right > 0.0):
+    has_equal_levels = profile.left == profile.right and profile.left > 0.0
+    if not (_gaussian_width(profile) and has_equal_levels):
         return {**NO_TRANSITION}
     find_stick = partial(_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release)
     return NO_TRANSITION | value_or(find_stick, NO_TRANSITION)
@@ -103,7 +104,7 @@ def _arrest(left: float, damping_ratio: float, release: str, fraction: float) ->
     """
     crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
     # Very close to the balance position the left front is held by forces that the theory neglects.
-    # There it raises an error instead of returning a time.
+    # The theory then raises an error instead of returning a time.
     time, length = value_or(lambda: crack.transition(fraction), (math.nan, math.nan))
     return {
         "exact_largest_velocity": crack.peak_velocity,

@@ -120,8 +120,10 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> float(damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0)) / 1e6
     5.0
     """
-    zone = as_numbers("shear_modulus", shear_modulus, above=0.0)
-    rock = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
-    height = as_numbers("thickness", thickness, above=0.0)
+    zone_modulus = as_numbers("shear_modulus", shear_modulus, above=0.0)
+    rock_modulus = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
+    zone_height = as_numbers("thickness", thickness, above=0.0)
     rock_height = as_numbers("rock_thickness", rock_thickness, at_least=0.0)
-    return zone * as_numbers("slip", slip) / (height + zone / rock * rock_height)
+    # Height of a zone without rock that would be as stiff.
+    total_height = zone_height + zone_modulus / rock_modulus * rock_height
+    return zone_modulus * as_numbers("slip", slip) / total_height

@@ -48,7 +48,7 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
 
     count = BLOCKS_BEHIND_FRONT
     equation = _equation_of_motion(count, damping_ratio, springs)
-    # The state is extended by the constant 1, on which the load acts.
+    # A period takes the time 1/v. Its load is the column that belongs to the constant 1.
     substep = expm(equation / (speed * SUBSTEPS_PER_PERIOD))
     period = np.linalg.matrix_power(substep, SUBSTEPS_PER_PERIOD)
     period_matrix, period_load = period[:-1, :-1], period[:-1, -1]

@@ -22,6 +22,7 @@ it does not change the front speed. In the limit dx -> 0 at fixed beta/dx
 import math
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 
@@ -133,7 +134,7 @@ class _Exponentials:
         return not (grows or oscillates or overshoots)
 
 
-def _zone_and_tail(
+def _zone_and_slip_beyond(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
 ) -> tuple[float, _Exponentials]:
     """Return the end xi of the weakening zone behind a front of speed v, and the slip beyond it.
@@ -205,10 +206,12 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
 
         If it is too low, the slip stops before the first minimum of slip velocity.
         """
-        end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
-        if math.isnan(end):
+        zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+            v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
+        )
+        if math.isnan(zone_end):
             return -1.0
-        _, stops = tail.first_velocity_minimum()
+        _, stops = slip_beyond_zone.first_velocity_minimum()
         return -1.0 if stops else 1.0
 
     # The speed of the slowest rupture is between the first trial speed that is too high and the
@@ -221,15 +224,19 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         allowed = f"values with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
-    zone_end, tail = _zone_and_tail(speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
-    minimum, _ = tail.first_velocity_minimum()
-    if tail.creeps_forever() or not minimum.size:
+    zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+        speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
+    )
+    minimum, _ = slip_beyond_zone.first_velocity_minimum()
+    if slip_beyond_zone.creeps_forever() or not minimum.size:
         return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
     # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
     # rupture, slip velocity is 0 there too.
     nearer, farther = minimum.tolist()
-    stick = root_between(lambda xi: float(tail.evaluate(xi, 2)), farther, nearer)
-    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=float(tail.evaluate(stick)))
+    stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
+    final_slip = float(slip_beyond_zone.evaluate(stick))
+    # Both positions are negative: the end of the zone, and the stick as seen from there.
+    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=final_slip)
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
@@ -266,45 +273,12 @@ def rate_pulse(
     >>> round(rate_pulse(0.5, 2 / 3, 0.1, law).slip, 4)
     1.1605
     """
-    # This module is slow to import.
-    from scipy.integrate import solve_ivp
-
     check_domains(tau0=tau0, gamma=gamma)
-    parameters = friction.kernel_parameters
-    if friction.friction(0.0, 0.0, *parameters) != 0.0:
+    if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
         allowed = "laws that depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
-    inertia = (v - 1.0) * (v + 1.0)
-    half_period = math.pi * math.sqrt(inertia / gamma)
-    evaluations = count()
-
-    def slopes(distance: float, state: np.ndarray) -> list[float]:
-        """Return the derivatives of slip and strain by the distance behind the front."""
-        if next(evaluations) == MAX_EVALUATIONS:
-            place = f"{gamma!r}, where the pulse is not found in {MAX_EVALUATIONS} evaluations"
-            raise ValueError(f"gamma: {place}; allowed: larger values, or weaker friction")
-        slip, strain = state
-        resistance = friction.friction(slip, v * strain, *parameters)
-        return [strain, (tau0 - resistance - gamma * slip) / inertia]
-
-    def stick_event(distance: float, state: np.ndarray) -> float:
-        """Return the strain, which falls to 0 where the pulse sticks."""
-        _, strain = state
-        return strain
-
-    def peak_event(distance: float, state: np.ndarray) -> float:
-        """Return the derivative of the strain, which is 0 at the peak of slip velocity."""
-        _, strain_slope = slopes(distance, state)
-        return strain_slope
-
-    # The integration runs from the front backwards, and ends where the pulse sticks.
-    stick_event.terminal, stick_event.direction = True, -1.0  # type: ignore[attr-defined]
-    accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS_PER_HALF_PERIOD}
-    distances = (0.0, MAX_HALF_PERIODS * half_period)
-    at_front = [0.0, 0.0]
-    with np.errstate(over="ignore", invalid="ignore"):
-        path = solve_ivp(slopes, distances, at_front, events=[stick_event, peak_event], **accuracy)
+    path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
         allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
@@ -317,3 +291,45 @@ def rate_pulse(
     # The last values of the independent variable, the distance, and of the state.
     width, (final_slip, _) = float(path.t[-1]), path.y[:, -1]
     return SteadyRupture(speed=v, width=width, slip=float(final_slip), peak_velocity=peak)
+
+
+def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Friction) -> Any:
+    """Return slip and strain behind a front of speed v, as the result of scipy's `solve_ivp`.
+
+    The integration goes from the front backwards, and ends where the slip stops. Events of the
+    result are this stop, and the peaks of slip velocity.
+    """
+    # This module is slow to import.
+    from scipy.integrate import solve_ivp
+
+    parameters = friction.kernel_parameters
+    inertia = (v - 1.0) * (v + 1.0)
+    half_period = math.pi * math.sqrt(inertia / gamma)
+    evaluations = count()
+
+    def slopes(distance: float, state: np.ndarray) -> list[float]:
+        """Return the derivatives of slip and strain by the distance behind the front."""
+        if next(evaluations) == MAX_EVALUATIONS:
+            reason = f"the pulse is not found in {MAX_EVALUATIONS} evaluations"
+            allowed = "larger values, or weaker friction"
+            raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
+        slip, strain = state
+        resistance = friction.friction(slip, v * strain, *parameters)
+        return [strain, (tau0 - resistance - gamma * slip) / inertia]
+
+    def stick_event(distance: float, state: np.ndarray) -> float:
+        """Return the strain, which falls to 0 where the slip stops."""
+        _, strain = state
+        return strain
+
+    def peak_event(distance: float, state: np.ndarray) -> float:
+        """Return the derivative of the strain, which is 0 at the peak of slip velocity."""
+        _, strain_slope = slopes(distance, state)
+        return strain_slope
+
+    stick_event.terminal, stick_event.direction = True, -1.0  # type: ignore[attr-defined]
+    accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS_PER_HALF_PERIOD}
+    distances = (0.0, MAX_HALF_PERIODS * half_period)
+    at_front = [0.0, 0.0]
+    with np.errstate(over="ignore", invalid="ignore"):
+        return solve_ivp(slopes, distances, at_front, events=[stick_event, peak_event], **accuracy)

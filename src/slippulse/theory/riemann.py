@@ -226,11 +226,15 @@ class DependenceDomains:
         return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
 
     def slip(self, static_solution: StaticSolution) -> np.ndarray:
-        """Return the slip u at the points, by the formula for 2 u in the module docstring."""
+        """Return the slip u at the points (y, t), by the formula
+
+        2 u = 2 p(y) - E p(x_l) - E p(x_r)
+              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }.
+        """
         k, alpha = self.stiffness, self.alpha
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the expression in braces of this formula, per unit of s."""
+            """Return the expression in braces, per unit of the parameter s of the curve."""
             p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
             factor_of_kernel = -slope * d_time
             # alpha/2 p dx, where 2 dx = dh - dg.
@@ -242,11 +246,14 @@ class DependenceDomains:
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
-        """Return the strain du/dx at the points, the derivative by y of the formula for 2 u.
+        """Return the strain du/dx at the points (y, t), the derivative by y of the formula
+
+        2 u = 2 p(y) - E p(x_l) - E p(x_r)
+              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }.
 
         If y increases at constant t, xi decreases and eta increases at the same rate. So the
-        argument z of the kernel changes by k [(xi - g) - (eta - h)], and the last bracket of the
-        formula by dg + dh. The decay factor E does not change.
+        argument z of the kernel K changes by k [(xi - g) - (eta - h)], and the square bracket by
+        dg + dh. The decay factor E does not change.
         """
         k, alpha = self.stiffness, self.alpha
         curve = self.curve
@@ -255,13 +262,13 @@ class DependenceDomains:
             return strain
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the derivative of the expression in braces of this formula, per unit of s."""
+            """Return the derivative of the expression in braces, per unit of the parameter s."""
             p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
             kernel_slope = nodes.kernel(1)
-            # The derivative of K' in the second term.
+            # K' in the second term changes.
             bracket = nodes.d_eta * (p * d_g) - nodes.d_xi * (p * d_h)
             by_kernel_slope = k**2 * nodes.kernel(2) * bracket
-            # The derivative of K in the first term, and of the bracket in the second one.
+            # K in the first term changes, and so does the bracket in the second one.
             factor_of_kernel = slope * d_time + 0.25 * alpha * p * (d_h - d_g)
             by_kernel = kernel_slope * (k * factor_of_kernel)
             by_bracket = kernel_slope * (k * p * (d_g + d_h))
@@ -338,6 +345,7 @@ class DependenceDomains:
         own panels are then added up, of which the first and the last one count only in part.
         """
         curve = self.curve
+        # The last and the first panel in the domain of each point.
         high = self.right.panel[points]
         low = np.minimum(self.left.panel[points], high)
         first, last = int(low.min()), int(high.max()) + 1

@@ -67,14 +67,16 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
 
 
 def _angle_of_prestress(tau: np.ndarray, panels: FrontLawPanels) -> np.ndarray:
-    """Return the angle psi at each pre-stress, by Newton's method."""
+    """Return the angle psi of the front into each pre-stress tau, where 1/v = cos(psi).
+
+    On its panel, tau is a polynomial of a parameter s from -1 to 1. Newton's method finds s.
+    """
     edges, edge_tau, powers = panels
     panel = np.clip(np.searchsorted(edge_tau, tau, side="right") - 1, 0, edges.size - 2)
     fraction = (tau - edge_tau[panel]) / (edge_tau[panel + 1] - edge_tau[panel])
-    # On the first panel tau grows like psi^2 from psi = 0 on, and elsewhere nearly linearly. The
-    # parameter s runs from -1 to 1 on a panel.
-    guess = np.where(panel == 0, np.sqrt(fraction), fraction)
-    s = 2.0 * guess - 1.0
+    # On the first panel tau grows like psi^2 from psi = 0 on, and elsewhere nearly linearly.
+    fraction_of_panel = np.where(panel == 0, np.sqrt(fraction), fraction)
+    s = 2.0 * fraction_of_panel - 1.0
     coefficients = powers.take(panel, axis=-1)
     for _ in range(MAX_NEWTON_STEPS):
         value, slope = value_and_slope(coefficients, s)
