@@ -124,6 +124,6 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     rock_modulus = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
     zone_height = as_numbers("thickness", thickness, above=0.0)
     rock_height = as_numbers("rock_thickness", rock_thickness, at_least=0.0)
-    # Height of a zone without rock that would be as stiff.
+    # The height of an equally stiff zone without rock.
     total_height = zone_height + zone_modulus / rock_modulus * rock_height
     return zone_modulus * as_numbers("slip", slip) / total_height

@@ -1,10 +1,10 @@
 """The steady front, block by block: a check of front speeds that uses no Wiener-Hopf factor.
 
 The front moves by one block per period, the time 1/v. Assume that blocks are released one after
-another at this interval, whatever the stress on them is. The state is the slip and the velocity of
-the BLOCKS_BEHIND_FRONT blocks that were released last. Block 0 is the one released last, block 1
-the one before it, and so on. The state after a period follows from the state before it by a matrix
-and a constant load:
+another at this interval, whatever the stress on them is. The state consists of the slips and then
+the velocities of the BLOCKS_BEHIND_FRONT blocks that were released last. Block 0 is the one
+released last, block 1 the one before it, and so on. The state after a period follows from the state
+before it by a matrix and a constant load:
 
     state after = shift (period_matrix state before + period_load).
 

@@ -211,6 +211,7 @@ class PartWithEdge(Part):
         k, mark = np.nonzero((delay[1:] * delay[:-1] < 0.0) & is_fast[:, None])
         at_left, at_right = delay[k, mark], delay[k + 1, mark]
         left, right = knots.x[k], knots.x[k + 1]
+        # By linear interpolation of the delay, the wave meets the edge near this position.
         x = left + (right - left) * at_left / (at_left - at_right)
         # Two steps of Newton's method find where du/dt is 0 on the wave. If x on it changes by dx,
         # the time changes by side dx. So t + x changes by 2 dx on a wave to the right, and t - x by
