@@ -107,10 +107,10 @@ def nucleation_intervals(prestress: Prestress) -> list[tuple[float, float]]:
 def _crossings_of_value(
     prestress: Prestress, background: Interval, samples: np.ndarray, value: float
 ) -> tuple[bool, list[float]]:
-    """Return the positions in an interval of the background where tau crosses a value.
+    """Return a flag and the positions where tau crosses a value, in an interval of the background.
 
-    They are preceded by a flag, which is True if tau >= value at the left end of the interval. A
-    position appears twice where tau only touches the value.
+    The flag is True if tau >= value at the left end of the interval. A position appears twice where
+    tau only touches the value.
     """
     left, right = background.left, background.right
     inner_samples = samples[(samples > left) & (samples < right)]

@@ -466,6 +466,7 @@ def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
     The highest power comes first. The variable of the polynomial is -1 at the lower bound and 1 at
     the upper bound.
     """
+    # The degree 40 is sufficient for all bounds. Terms as small as rounding errors are dropped.
     points = chebyshev.chebpts1(41)
     values = _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * points, order)
     series = chebyshev.chebfit(points, values, 40)

@@ -117,6 +117,7 @@ class Rupture(ExplainsRemovedNames):
         self.duration = float(duration)
         # A later time than this is beyond the duration, apart from rounding.
         self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
+        # The construction goes a little beyond the duration.
         until = self.duration * (1.0 + EXTRA_DURATION)
         self.stretches, self._unknown_points = spread(self.law, until)
         self._parts = [self._make_part(stretch, until) for stretch in self.stretches]

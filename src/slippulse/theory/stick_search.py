@@ -174,21 +174,13 @@ class StickSearch:
         start, end = samples.time[rows, columns - 1], samples.time[rows, columns]
         at_start, at_end = samples.velocity[rows, columns - 1], samples.velocity[rows, columns]
         target = np.zeros(rows.size)
-        # In a quiet step du/dt is 0 at the start, which is the release. Then the step is shortened:
-        # it begins where du/dt has risen above QUIET_VELOCITY, and ends where it falls below again.
-        # Next to a point where a slow front stops it rises only briefly.
+        # If a step begins at the release, du/dt is 0 at its start. The step is then shortened, and
+        # the search is for the time at which du/dt falls to QUIET_VELOCITY.
         quiet = np.flatnonzero(at_start <= 0.0)
-        duration = (end - start)[quiet, None]
-        fine = self._sample(x[quiet], start[quiet, None] + duration * STEP_FRACTIONS)
-        # The columns go from the end of the step, where du/dt is not positive, to its start. This
-        # is the column of the last time at which du/dt has risen; the time after it is one column
-        # before.
-        risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        row = np.arange(quiet.size)
+        shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
-        start[quiet], end[quiet] = fine.time[row, risen], fine.time[row, risen - 1]
-        at_start[quiet] = fine.velocity[row, risen] - QUIET_VELOCITY
-        at_end[quiet] = fine.velocity[row, risen - 1] - QUIET_VELOCITY
+        start[quiet], end[quiet] = shortened.time.T
+        at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -205,3 +197,18 @@ class StickSearch:
             xtol=TIME_TOLERANCE,
         )
         return zeros
+
+    def _shorten_steps(self, x: np.ndarray, start: np.ndarray, end: np.ndarray) -> VelocitySamples:
+        """Return samples at both ends of shorter steps, in which du/dt falls to QUIET_VELOCITY.
+
+        In the given steps du/dt is 0 at the start, and not positive at the end. In between it may
+        rise, but next to a point where a slow front stops it does so only briefly. If it does not
+        rise, the first sample is at the end of the step, and the second one next to its start.
+        """
+        duration = end - start
+        fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
+        # The columns go back from the end of the step to its start. So this is the column of the
+        # last sample that has risen, and the sample after it is in the column before.
+        risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
+        row, column = np.arange(x.size)[:, None], np.stack([risen, risen - 1], axis=1)
+        return VelocitySamples(x, fine.time[row, column], fine.velocity[row, column])

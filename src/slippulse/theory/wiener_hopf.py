@@ -314,7 +314,7 @@ def make_contour(panel_count: int, angle: float) -> Contour:
     """Return the right half of the contour: its ray and its leg.
 
     The ray leaves 0 at an angle below the real axis. It has one panel next to 0, and then
-    panel_count panels of equal length in ln |z|.
+    panel_count panels of equal length in ln |z|. The leg rises from the end of the ray, the corner.
     """
     log_edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panel_count, -1.0, -1.0)
     log_distance, log_weight = _gauss_legendre(log_edges)
