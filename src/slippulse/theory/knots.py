@@ -63,7 +63,7 @@ class Knots(NamedTuple):
         Where both have a knot at one position, that of these knots is kept.
         """
         fields = zip(self, other, strict=True)
-        all_knots = Knots._make(np.append(own, of_other) for own, of_other in fields)
+        all_knots = Knots._make(np.append(first, second) for first, second in fields)
         # `np.unique` sorts the positions, and returns the first of equal ones.
         _, first_of_equal = np.unique(all_knots.x, return_index=True)
         return all_knots.select(first_of_equal)
