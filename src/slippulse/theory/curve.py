@@ -348,20 +348,37 @@ class Curve:
         # The sign of the slope is that of the rise, since the field is monotonic. A smallest slope
         # limits the steps.
         sign, min_slope = np.sign(rise), np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
-        s, level, sign, min_slope = np.array([parameters, level, sign, min_slope])[:, unsolved]
+        newton_arguments = np.array([parameters, level, sign, min_slope])[:, unsolved]
         coefficients = self.coefficients(columns[unsolved])
-        for _ in range(MAX_NEWTON_STEPS):
-            if not unsolved.size:
-                break
-            value, slope = value_and_slope(coefficients, s)
-            step = sign * (level - value) / np.maximum(sign * slope, min_slope)
-            next_s = (s + step).clip(-1.0, 1.0)
-            parameters[unsolved] = next_s
-            # Only parameters that still change are kept.
-            changes = np.abs(next_s - s) >= 1e-9
-            unsolved, coefficients = unsolved[changes], coefficients.compress(changes, axis=-1)
-            s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, changes]
+        parameters[unsolved] = _solve_by_newton(coefficients, *newton_arguments)
         return parameters
+
+
+def _solve_by_newton(
+    coefficients: np.ndarray,
+    s: np.ndarray,
+    level: np.ndarray,
+    sign: np.ndarray,
+    min_slope: np.ndarray,
+) -> np.ndarray:
+    """Return the parameters at which monotonic polynomials have given levels, by Newton's method.
+
+    s is where the search starts. sign is the sign of the slope of each polynomial, and min_slope
+    the smallest size of the slope that is used. coefficients are those of `value_and_slope`.
+    """
+    parameters, unsolved = s.copy(), np.arange(s.size)
+    for _ in range(MAX_NEWTON_STEPS):
+        if not unsolved.size:
+            break
+        value, slope = value_and_slope(coefficients, s)
+        step = sign * (level - value) / np.maximum(sign * slope, min_slope)
+        next_s = (s + step).clip(-1.0, 1.0)
+        parameters[unsolved] = next_s
+        # Only parameters that still change are kept.
+        changes = np.abs(next_s - s) >= 1e-9
+        unsolved, coefficients = unsolved[changes], coefficients.compress(changes, axis=-1)
+        s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, changes]
+    return parameters
 
 
 def _lowest_exit_beyond(
