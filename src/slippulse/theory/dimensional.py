@@ -15,8 +15,8 @@ from .pulse import steady_pulse
 PEAK_VELOCITY_NOTE = (
     "The paper prints the strength drop divided by sqrt(2 G rho). This is half of the value that"
     " follows with its own unit of slip under held displacement,"
-    " 2 H (mu_s - mu_k) sigma_n/(lambda + 2G). The printed value follows with the unit of slip under"
-    " held stress: it is the peak velocity of the mean slip over the height."
+    " 2 H (mu_s - mu_k) sigma_n/(lambda + 2G). The printed value follows with the unit of slip"
+    " under held stress: it is the peak velocity of the mean slip over the height."
 )
 STRESS_DROP_NOTE = (
     "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By its equation"
