@@ -1,4 +1,8 @@
-"""Figure 7: a fault with a damaged core, and its stress drop by contrast of stiffness."""
+"""Figure 7: a fault with a damage zone, and its stress drop as a function of the stiffness ratio.
+
+The damage zone is a layer of thickness H and shear modulus G between the fault and stiffer host
+rock, which has the thickness H_r and the shear modulus G_r.
+"""
 
 import matplotlib
 import numpy as np
@@ -23,12 +27,13 @@ from .shared.sketch import MUTED_GREY, TWO_HEADS, arrow, label
 NEEDS = {"studies": ["damage_zone"]}
 table = as_given
 
-# Width of the sketch and position of zero displacement, in thicknesses of the damage zone.
+# Width of the sketch and horizontal position of zero displacement, in thicknesses of the damage
+# zone.
 SKETCH_WIDTH, ZERO_DISPLACEMENT = 4.2, 1.95
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the sketch above, and below it the stress drop as a function of G/G_r."""
+    """Draw the sketch of the fault, and below it the stress drop as a function of G/G_r."""
     figure, (sketch_axes, curve_axes) = new_panels(
         COLUMN_WIDTH, 4.1, "a;b", height_ratios=[1.0, 1.1]
     )
@@ -38,7 +43,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
-    """Draw the stress drop for each thickness of the host rock, with its name at the right end."""
+    """Draw the stress drop for each thickness of the host rock, with a label at the right end."""
     groups = curves.groupby("thickness_ratio")
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):

@@ -1,4 +1,4 @@
-"""The steady pulse as a function of damping: formulas of the paper, exact theory, simulations."""
+"""The steady pulse as a function of damping: simulations, exact theory and the paper's formulas."""
 
 import numpy as np
 import pandas as pd
@@ -22,7 +22,7 @@ NEEDS = {
 }
 
 QUANTITY_LABELS = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
-# The measured columns on refined lattices.
+# The quantities that are compared on refined lattices, and their measured columns.
 REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
     "front_speed": "front_speed_right"
 }
@@ -31,9 +31,10 @@ REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each quantity of a pulse, in three parts, which the column role names.
 
-    theory : exact values divided by the paper's formula (over_paper), by damping ratio
-    simulation : measured values, with the exact ones (theory) and those of the paper's formula
-    refined : measured values on lattices of several spacings, with their limit (theory)
+    theory : exact values divided by the paper's formula (column over_paper) at each damping ratio
+    simulation : measured values (column value), exact ones (theory), and those by the paper's
+        formula (paper)
+    refined : measured values on lattices of several spacings (value), and their limit (theory)
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     curves = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
@@ -92,7 +93,10 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the relative deviation of each quantity from its exact limit, by block spacing."""
+    """Draw the relative error of each quantity on refined lattices, as a function of the spacing.
+
+    The error is measured from the exact limit for dx -> 0.
+    """
     for quantity, colour, marker in zip(REFINED_COLUMNS, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
