@@ -67,17 +67,19 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_quantity(axes, table[table["quantity"] == quantity])
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
-    first = quantity_panels[0]
-    first.plot([], [], "o", color=GREY, label="simulation")
-    style.legend_above(figure, first)
+    # The three panels share the legend of the first one.
+    first_axes = quantity_panels[0]
+    first_axes.plot([], [], "o", color=GREY, label="simulation")
+    style.legend_above(figure, first_axes)
     draw_errors_by_spacing(refined_axes, roles["refined"])
     return figure
 
 
 def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw a quantity divided by the paper's formula, by damping ratio, for each level.
+    """Draw a quantity, divided by the paper's formula, as a function of the damping ratio.
 
-    Theory is a line; runs are markers, which are open if the run is flagged.
+    Each level of the pre-stress has a colour. Exact theory is drawn as lines, and runs as markers,
+    which are open if the run is flagged.
     """
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
     for level, group in rows.groupby("left"):
@@ -86,10 +88,10 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
         label = None if theory.empty else rf"exact, $\tau_0 = {level:g}$"
         axes.plot(theory["damping_ratio"], theory["over_paper"], color=colour, label=label)
         runs = group[group["role"] == "simulation"]
-        for is_flagged, marks in runs.groupby(runs["run_flags"].notna()):
+        for is_flagged, drawn_runs in runs.groupby(runs["run_flags"].notna()):
             look: Look = OPEN_MARKER if is_flagged else {}
-            ratio = marks["value"] / marks["paper"]
-            axes.plot(marks["damping_ratio"], ratio, "o", color=colour, **look)
+            ratio = drawn_runs["value"] / drawn_runs["paper"]
+            axes.plot(drawn_runs["damping_ratio"], ratio, "o", color=colour, **look)
 
 
 def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
