@@ -66,7 +66,8 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     """
     top = float(after["y"].max())
     draw_layers(axes, top)
-    x_before, x_after = (ZERO_DISPLACEMENT + rows["displacement"] for rows in (before, after))
+    x_before = ZERO_DISPLACEMENT + before["displacement"]
+    x_after = ZERO_DISPLACEMENT + after["displacement"]
     axes.plot(x_before, before["y"], color=GREY, linewidth=1.2, linestyle="--", gid="before")
     axes.plot(x_after, after["y"], color=BLUE, linewidth=1.6, gid="after")
     axes.fill_betweenx(after["y"], x_before, x_after, color=BLUE, alpha=0.18, linewidth=0.0)
@@ -81,7 +82,10 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
 
 
 def draw_layers(axes: Axes, top: float) -> None:
-    """Draw the damage zone and the host rock up to a height, and the line of zero displacement."""
+    """Draw the damage zone, the host rock above it, and the line of zero displacement.
+
+    top : height of the upper end of the host rock
+    """
     axes.add_patch(Rectangle((0.0, 0.0), SKETCH_WIDTH, 1.0, facecolor="#f6d9b8"))
     axes.add_patch(Rectangle((0.0, 1.0), SKETCH_WIDTH, top - 1.0, facecolor="#d7dde4"))
     for y, linewidth in ((0.0, 1.8), (1.0, 0.7), (top, 1.0)):
@@ -93,7 +97,7 @@ def draw_layers(axes: Axes, top: float) -> None:
 
 
 def draw_dimensions(axes: Axes, top: float) -> None:
-    """Draw the thicknesses on the right, and the axis of y with its values on the left."""
+    """Draw the thicknesses of both layers on the right, and the axis of heights y on the left."""
     right = SKETCH_WIDTH + 0.16
     arrow(axes, (right, 0.0), (right, 1.0), MUTED_GREY, **TWO_HEADS)
     arrow(axes, (right, 1.0), (right, top), MUTED_GREY, **TWO_HEADS)
@@ -106,7 +110,10 @@ def draw_dimensions(axes: Axes, top: float) -> None:
 
 
 def label_displacements(axes: Axes, top: float, slip: float, imposed: float) -> None:
-    """Name the slip, the imposed displacement, and the displacements before and after slip."""
+    """Write names beside the arrows of slip and imposed displacement, and beside the curves.
+
+    slip, imposed : lengths of the two arrows
+    """
     zero = ZERO_DISPLACEMENT
     label(axes, zero + 0.5 * slip, -0.22, r"slip $\delta$", ORANGE, va="top")
     label(axes, zero + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")
