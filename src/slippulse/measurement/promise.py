@@ -52,17 +52,27 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}
+    names -= _numbers_without_limit(run, fraction)
+    return {name for name in names if math.isfinite(run.get(name, math.nan))}
+
+
+def _numbers_without_limit(run: Mapping, fraction: float) -> set[str]:
+    """Return the names of numbers that do not tend to a limit, or tend to it too slowly.
+
+    run, fraction : see `covered_numbers`
+    """
+    names: set[str] = set()
     if run.get("pulse_state") != "steady":
-        names.difference_update(PULSE_NUMBERS)
+        names.update(PULSE_NUMBERS)
     # The largest velocity grows without limit between two fronts that continue to run. It tends to
     # a limit only if the left front is arrested and the pulse runs into pre-stress 0.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
-        names.discard("largest_velocity")
+        names.add("largest_velocity")
     if run["boundary"] == "stress":
         is_resolved = run.get("transition_state") == "resolved" and fraction <= MAX_COVERED_FRACTION
         if not is_resolved or run["damping_ratio"] < MIN_DAMPING_RATIO:
-            names.difference_update(TRANSITION_NUMBERS)
-    return {name for name in names if math.isfinite(run.get(name, math.nan))}
+            names.update(TRANSITION_NUMBERS)
+    return names
 
 
 def fast_sides(run: Mapping) -> set[str]:

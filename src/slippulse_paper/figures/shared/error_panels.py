@@ -16,10 +16,11 @@ QUANTITIES = {
     "peak_velocity": ("peak velocity", r"$\Gamma = 1$"),
     "front_speed": ("front speed", r"$\Gamma = 1$"),
 }
-# Orders are drawn in the colours between these two points of a colour map.
-ORDER_MAP, FIRST_COLOUR, LAST_COLOUR = "viridis", 0.9, 0.0
-# Look of a text beside a marker.
-NAME: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
+# Orders are drawn in the colours between these two points of the colour map.
+ORDER_MAP = "viridis"
+FIRST_COLOUR, LAST_COLOUR = 0.9, 0.0
+# Look of a text beside a marker or a line.
+BESIDE: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
 
 
 def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) -> pd.DataFrame:
@@ -85,7 +86,7 @@ def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_lab
         look = {"color": ORANGE, "label": "presets"}
         axes.plot(presets[cost], presets["error"], "o", **look)
         for preset in presets.to_dict("records"):
-            axes.annotate(preset["preset"], (preset[cost], preset["error"]), (4, 5), **NAME)
+            axes.annotate(preset["preset"], (preset[cost], preset["error"]), (4, 5), **BESIDE)
         lattices = rows[rows["role"] != "exact"]
         axes.set(xscale="log", yscale="log", xlabel=axis_label)
         axes.set(ylabel=f"relative error of {title}", title=boundary)
@@ -120,5 +121,5 @@ def _draw_exact(axes: Axes, exact: Mapping, cost: str) -> None:
     axes.axvline(exact[cost], color=BLUE, linewidth=0.9, label="exact solution")
     digit, exponent = f"{exact['error']:.0e}".split("e")
     text = rf"error ${digit} \times 10^{{{int(exponent)}}}$"
-    look: Look = {"color": BLUE, "fontsize": SMALL_TEXT, "ha": "right"}
-    axes.annotate(text, (exact[cost], axes.get_ylim()[0]), (-3, 4), **look, **NAME)
+    look = BESIDE | {"color": BLUE, "fontsize": SMALL_TEXT, "ha": "right"}
+    axes.annotate(text, (exact[cost], axes.get_ylim()[0]), (-3, 4), **look)
