@@ -35,8 +35,8 @@ def front_path(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the path of a front (or trailing edge) on one side: its times, and its distances.
 
-    There is one time for each block that was released (or has stuck). The distance is that of the
-    block from x = 0. Both arrays are in the order of distance.
+    There is one time and one distance from x = 0 for each block that was released (or has stuck).
+    Both arrays are in the order of distance.
     """
     distances, times = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
@@ -93,7 +93,7 @@ def front_position(
     time = np.asarray(time, dtype=float)
     if block_times.size == 0:
         return np.full(time.shape, np.nan)
-    # A front does not move back: it reaches a block when the last block on the way is released.
+    # The front has reached a block when this block and all blocks before it have been released.
     arrivals = np.maximum.accumulate(block_times)
     # np.interp needs increasing times. Of several blocks with the same time, the farthest is kept.
     is_farthest = np.concatenate([np.diff(arrivals) > 0.0, [True]])
@@ -111,7 +111,7 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
     times, distances = front_path(run, side)
     if times.size == 0 or distances[-1] < distance:
         return np.nan, np.nan
-    # If a block is released after a block that is farther away, the front waits for the late one.
+    # The front has reached a block when this block and all blocks before it have been released.
     arrivals = np.maximum.accumulate(times)
     waits = np.diff(arrivals[: np.searchsorted(distances, distance) + 1])
     return float(np.interp(distance, distances, arrivals)), float(np.max(waits, initial=0.0))

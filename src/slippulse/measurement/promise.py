@@ -52,12 +52,14 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}
-    names -= _numbers_without_limit(run, fraction)
+    names -= _excluded_numbers(run, fraction)
     return {name for name in names if math.isfinite(run.get(name, math.nan))}
 
 
-def _numbers_without_limit(run: Mapping, fraction: float) -> set[str]:
-    """Return the names of numbers that do not tend to a limit, or tend to it too slowly.
+def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
+    """Return the names of numbers whose accuracy cannot be promised for this run.
+
+    As the spacing falls, they do not tend to a limit, or their errors fall too slowly.
 
     run, fraction : see `covered_numbers`
     """

@@ -60,25 +60,29 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     peak, peak_distance = parabola_peak(distance, leading_velocity)
     trailing_edge = _trailing_edge(run, peak_distance, speed) if pulses else np.nan
     width = front - trailing_edge
-    # The slip is measured at the stuck blocks behind the trailing edge. Those in the inner half of
-    # its path are left out, because they show remains of the nucleation.
+    # The slip is measured at stuck blocks behind the trailing edge. Those in the inner half of its
+    # path are left out, because the nucleation has influenced them.
     dx = run.attrs["dx"]
-    in_outer_half = (distance > 0.5 * trailing_edge) & (distance < trailing_edge - 2.0 * dx)
-    has_stuck = in_outer_half & (velocity <= 0.0)
-    final_slip = np.nan
-    if has_stuck.any():
-        farthest = distance[has_stuck].max()
-        is_near = distance > farthest - max(0.5 * width, 4.0 * dx)
-        final_slip = float(np.mean(slip[has_stuck & is_near]))
+    is_in_outer_half = (distance > 0.5 * trailing_edge) & (distance < trailing_edge - 2.0 * dx)
+    has_stuck = is_in_outer_half & (velocity <= 0.0)
+    slip_length = max(0.5 * width, 4.0 * dx)
     return LeadingPulse(
         front=front,
         speed=speed,
         width=width,
         peak_velocity=peak,
         peak_distance=peak_distance,
-        slip=final_slip,
+        slip=_mean_near_end(distance[has_stuck], slip[has_stuck], slip_length),
         pulses=len(pulses),
     )
+
+
+def _mean_near_end(distance: np.ndarray, values: np.ndarray, length: float) -> float:
+    """Return the mean of the values within a length from the largest distance; NaN if none."""
+    if not distance.size:
+        return np.nan
+    is_near_end = distance > distance.max() - length
+    return float(np.mean(values[is_near_end]))
 
 
 def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
@@ -129,8 +133,9 @@ def sliding_stretches(velocity: np.ndarray) -> list[slice]:
     The last stretch of sliding blocks is the leading pulse. Stretches that are much slower than it
     are left out.
     """
-    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False))
-    stretches = list(map(slice, edges[0::2].tolist(), edges[1::2].tolist()))
+    # Blocks at which a stretch begins, and blocks behind the end of a stretch, alternate.
+    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
+    stretches = list(map(slice, edges[0::2], edges[1::2]))
     if not stretches:
         return []
     least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])

@@ -140,8 +140,8 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
         are_allowed = left == right or bool(profile.points)
         return transition_displacement(run) if are_positive and are_allowed else {}
     if left < 0.0 and right == 0.0 and not profile.steps:
-        # If the integral of the pre-stress from x = 0 to the right is not positive, there is no
-        # balance position. A table with a barrier on the right can be such a case.
+        # A barrier on the right can make the integral of the pre-stress negative. Then there is no
+        # balance position.
         with suppress(ArithmeticError):
             return transition_stress(run, fraction)
     return {}
@@ -158,8 +158,8 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     peak = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
-    half = 0.5 * float(velocity[peak])
-    is_below = velocity < half
+    half_velocity = 0.5 * float(velocity[peak])
+    is_below = velocity < half_velocity
     below_left, below_right = np.flatnonzero(is_below[:peak]), np.flatnonzero(is_below[peak:])
     if not below_left.size or not below_right.size:
         return np.nan
@@ -167,8 +167,8 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     # value and its neighbour towards the peak.
     last_left, first_right = int(below_left[-1]), peak + int(below_right[0])
     left_pair, right_pair = [last_left, last_left + 1], [first_right, first_right - 1]
-    left = np.interp(half, velocity[left_pair], xi[left_pair])
-    right = np.interp(half, velocity[right_pair], xi[right_pair])
+    left = np.interp(half_velocity, velocity[left_pair], xi[left_pair])
+    right = np.interp(half_velocity, velocity[right_pair], xi[right_pair])
     return float(right - left)
 
 
