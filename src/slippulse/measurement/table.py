@@ -13,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import prestress_from
+from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
@@ -207,6 +207,17 @@ def sliding_at_once(run: AnyRun) -> float:
     return float(np.max(released_count - stuck_count))
 
 
+def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
+    """Return where the far field on the right begins, and a position one Gaussian width beyond.
+
+    The far field begins beyond the Gaussian, and beyond all steps and points of the pre-stress.
+    """
+    width = profile.width or 1.0
+    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
+    start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
+    return start, start + width
+
+
 def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes over the last third of a run with samples.
 
@@ -220,11 +231,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
 
     All are NaN if nothing slid in the far field at two thirds of the duration.
     """
-    profile = prestress_from(run.attrs)
-    width = profile.width or 1.0
-    # The far field begins beyond the Gaussian, and beyond all steps and points.
-    part_distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
-    start = max([GAUSSIAN_END_IN_WIDTHS * width, *part_distances])
+    start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
     times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     elapsed = float(times[-1] - times[early])
@@ -246,7 +253,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     stays_in_view = is_far & (x + elapsed <= x[-1])
     final_velocity = np.interp(x[stays_in_view] + elapsed, x, velocity[-1])
     largest_change = np.max(np.abs(final_velocity - velocity[early][stays_in_view]))
-    at_entry = x[is_far] <= start + width
+    at_entry = x[is_far] <= entry_end
     return {
         "profile_change": float(largest_change / early_peak),
         "energy_change": float(final_energy / early_energy - 1.0),

@@ -57,29 +57,44 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     """
     *collapse_panels, ratio_axes = panels
     # The columns of the level (tau_0 or left) and of the second varying parameter (gamma or width).
-    level, second = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
-    runs = runs.assign(**{level: runs["left"]})
-    colours = {"c": colour(level, runs[level]), "edgecolors": colour(second, runs[second])}
+    level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
+    runs = runs.assign(**{level_column: runs["left"]})
+    colours = {
+        "c": colour(level_column, runs[level_column]),
+        "edgecolors": colour(second_column, runs[second_column]),
+    }
     # Ratios are drawn for a few values of the second parameter.
-    few_runs = runs[runs[second].isin(spread_values(runs[second], LINE_COUNT))]
+    few_runs = runs[runs[second_column].isin(spread_values(runs[second_column], LINE_COUNT))]
+    box = (0.1, 0.6, 0.34, 0.31)
     for axes, quantity in zip(collapse_panels, QUANTITIES, strict=True):
         scaling.draw_collapse(axes, runs, quantity, colours)
-        scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few_runs, quantity, level, second)
-    scaling.draw_ratio(ratio_axes, few_runs, "length", level, second)
-    ratio_axes.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
-    # Leave room for the legend on the right.
-    span = np.ptp(runs[level])
-    ratio_axes.set_xlim(runs[level].min() - 0.05, runs[level].max() + 0.35 * span)
-    ratio_axes.legend(loc="center right", fontsize=SMALL_TEXT)
-    # An inset of the first panel shows the pre-stress of a few levels with the narrowest Gaussian.
-    has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
-    narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
-    narrow = narrow.assign(colour=[*colour(level, narrow[level])])
-    draw_prestress(panels[0], (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
+        scaling.ratio_inset(axes, box, few_runs, quantity, level_column, second_column)
+    draw_length_ratio(ratio_axes, few_runs, level_column, second_column)
+    draw_prestress_inset(panels[0], runs, level_column)
     panels[0].set_title(BOUNDARIES[boundary], loc="center")
-    for quantity in (level, second):
+    for column in (level_column, second_column):
         look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
         # The scale of left is stretched, and ticks at equal distances would overlap.
-        look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "left" else None
-        bar = figure.colorbar(colour_scale(quantity), ax=panels, **look)
-        bar.set_label(f"${SYMBOLS[quantity]}$")
+        look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
+        bar = figure.colorbar(colour_scale(column), ax=panels, **look)
+        bar.set_label(f"${SYMBOLS[column]}$")
+
+
+def draw_length_ratio(
+    axes: Axes, runs: pd.DataFrame, level_column: str, second_column: str
+) -> None:
+    """Draw the ratio of measured and predicted length as a function of the level."""
+    scaling.draw_ratio(axes, runs, "length", level_column, second_column)
+    axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
+    # Leave room for the legend on the right.
+    levels = runs[level_column]
+    axes.set_xlim(levels.min() - 0.05, levels.max() + 0.35 * np.ptp(levels))
+    axes.legend(loc="center right", fontsize=SMALL_TEXT)
+
+
+def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:
+    """Add an inset with the pre-stress of a few levels, for the narrowest Gaussian."""
+    has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
+    narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
+    narrow = narrow.assign(colour=[*colour(level_column, narrow[level_column])])
+    draw_prestress(axes, (0.68, 0.17, 0.28, 0.22), narrow, 6.0)

@@ -79,6 +79,7 @@ def _interpolated(
         # One row for each level and one column for each barrier. The columns are reversed, so that
         # |tau_b| rises from left to right.
         known_depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+        # The depths are interpolated first between the levels, and then between the barriers.
         at_levels = barycentric_interpolate(known_levels, np.log(known_depths), levels)
         log_depths = barycentric_interpolate(known_log_barriers, at_levels, log_barriers, axis=1)
         columns[name] = np.exp(log_depths).ravel() / gamma**power

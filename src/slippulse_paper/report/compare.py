@@ -28,7 +28,7 @@ from .compared_numbers import (
     read_runs,
     with_uncertainties,
 )
-from .joined_runs import describe_run, join_runs, varying_parameters
+from .joined_runs import JoinedRuns, describe_run, join_runs, varying_parameters
 
 MAX_SHOWN_LINES = 10
 # The files that are compared beside the tables, and the line about a difference in each of them.
@@ -177,14 +177,9 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
     old_table = read_runs(old / "measurements" / name)
     parameters = varying_parameters(new_table, old_table)
     joined = join_runs(new_table, old_table)
-    runs = TableRuns(
-        table=Path(name).stem,
-        same_count=len(joined.same_runs),
-        altered_count=len(joined.altered_runs),
-        altered_parameters=joined.altered_parameters,
-        only_new=_describe_rows(new_table, joined.only_new, parameters),
-        only_old=_describe_rows(old_table, joined.only_old, parameters),
-    )
+    only_new = _describe_rows(new_table, joined.only_new, parameters)
+    only_old = _describe_rows(old_table, joined.only_old, parameters)
+    runs = _table_runs(name, joined, only_new, only_old)
     result.runs.append(runs)
     differences = _differences_of_runs(runs) + _differences_of_columns(new_table, old_table)
     # Grid studies give the uncertainties of the numbers.
@@ -211,6 +206,24 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
     return numbers.assign(table=runs.table)[["table", *numbers.columns]]
 
 
+def _table_runs(
+    name: str, joined: JoinedRuns, only_new: list[str], only_old: list[str]
+) -> TableRuns:
+    """Return how the runs of a table are joined.
+
+    name : file name of the table
+    only_new, only_old : descriptions of the runs that are in one folder only
+    """
+    return TableRuns(
+        table=Path(name).stem,
+        same_count=len(joined.same_runs),
+        altered_count=len(joined.altered_runs),
+        altered_parameters=joined.altered_parameters,
+        only_new=only_new,
+        only_old=only_old,
+    )
+
+
 def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str]) -> list[str]:
     """Return a description of each run in some rows of a table.
 
@@ -221,14 +234,12 @@ def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str
 
 
 def _differences_of_runs(runs: TableRuns) -> list[str]:
-    """Return lines on the runs that are in one folder only, and on altered runs."""
+    """Return lines about the runs that are in one folder only, and about altered runs."""
     lines = [f"only in this folder: {run}" for run in runs.only_new]
     lines += [f"only in the other folder: {run}" for run in runs.only_old]
-    if runs.altered_count:
-        one_pair = runs.altered_count == 1
-        pairs = (
-            "1 pair of runs differs" if one_pair else f"{runs.altered_count} pairs of runs differ"
-        )
+    count = runs.altered_count
+    if count:
+        pairs = "1 pair of runs differs" if count == 1 else f"{count} pairs of runs differ"
         lines.append(f"{pairs} in {', '.join(runs.altered_parameters)}")
     return lines
 

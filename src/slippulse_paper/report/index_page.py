@@ -41,15 +41,7 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     """
     provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
-    config = provenance["config"]
-    # The texts are templates whose expressions may use these names.
-    names = {
-        "claim": ledger,
-        "found": ledger.found,
-        "config": config,
-        "misprints": read_errata(texts["errata"]),
-        "runs": partial(parameters, config),
-    }
+    names = _names_in_texts(provenance["config"], ledger, read_errata(texts["errata"]))
     filled = partial(fill, names=names)
     summary = read_text(texts["summary"])
     rows = statement_rows(summary, ledger, filled)
@@ -81,6 +73,17 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
         summary=ledger.summary(),
         signs=SIGNS,
     )
+
+
+def _names_in_texts(config: Mapping, ledger: Ledger, misprints: list) -> dict[str, object]:
+    """Return the values and functions that the expressions in the texts may use, by name."""
+    return {
+        "claim": ledger,
+        "found": ledger.found,
+        "config": config,
+        "misprints": misprints,
+        "runs": partial(parameters, config),
+    }
 
 
 def _caption_of(figure: str, captions: Mapping[str, Caption]) -> Caption:

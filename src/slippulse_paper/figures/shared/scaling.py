@@ -162,13 +162,13 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     """
     boundary = table["boundary"].iloc[0]
     # The columns of the level (tau_0 or left) and of the second varying parameter (gamma or width).
-    level, second = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
+    level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
     ratios = np.sort(table["damping_ratio"].unique())
-    table = table.assign(**{level: table["left"]}).sort_values("damping_ratio")
+    table = table.assign(**{level_column: table["left"]}).sort_values("damping_ratio")
     # The insets show a few levels, at a middle value of the second parameter.
-    middle = spread_values(table[second], LINE_COUNT)[1]
+    middle = spread_values(table[second_column], LINE_COUNT)[1]
     drawn_levels = spread_values(table["left"], LINE_COUNT)
-    few_runs = table[(table[second] == middle) & table["left"].isin(drawn_levels)]
+    few_runs = table[(table[second_column] == middle) & table["left"].isin(drawn_levels)]
     colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
     spacing = table["dx"] / table["width"]
     title = style.conditions(boundary == "displacement")
@@ -180,7 +180,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         axes.set_title(title, loc="center")
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
-        inset = ratio_inset(axes, box, few_runs, quantity, "damping_ratio", level)
+        inset = ratio_inset(axes, box, few_runs, quantity, "damping_ratio", level_column)
         # The scale is linear near 0, because there are runs without damping.
         inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         style.few_ticks(inset.xaxis, ticks)
@@ -188,7 +188,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
-    label = f"exact, ${SYMBOLS[second]}$ = {middle:g} (insets)"
+    label = f"exact, ${SYMBOLS[second_column]}$ = {middle:g} (insets)"
     handles.append(entry(label, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure
