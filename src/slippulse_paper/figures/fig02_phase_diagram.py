@@ -54,7 +54,7 @@ LOOKS = {
 # Numbers of the drawn velocity profiles.
 NUMBERS = "①②③④"
 MARK: Look = {"color": BLACK, "markersize": 4.0}
-# How many levels of the pre-stress on each side are drawn of each sweep.
+# Number of pre-stress levels on each side that are drawn, for each sweep.
 LEVEL_COUNTS = {
     "regimes_displacement": 3,
     "regimes_displacement_asymmetric": 3,

@@ -32,7 +32,7 @@ NEEDS = {
 # Colour, marker and name of each release rule.
 RULE_LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
 CONFIDENCE_LEVELS = (0.68, 0.95)
-# Of an interpolated curve, every point with a number divisible by this one is kept.
+# An interpolated curve keeps one in this number of its points.
 CURVE_STEP = 25
 READING_LABELS = {
     "front_speed": "front slope",

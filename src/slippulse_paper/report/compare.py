@@ -81,17 +81,17 @@ class Comparison:
 
     @property
     def agree(self) -> int:
-        """How many numbers agree."""
+        """Return how many numbers agree."""
         return self.count(AGREES)
 
     @property
     def unknown(self) -> int:
-        """How many numbers differ, but come from different lattices and have no uncertainty."""
+        """Return how many numbers differ between different lattices and have no uncertainty."""
         return self.count(UNKNOWN)
 
     @property
     def compared(self) -> int:
-        """How many numbers belong to runs that are in both folders."""
+        """Return how many numbers belong to runs that are in both folders."""
         return self.agree + self.unknown + self.count(DIFFERS)
 
     def older_files(self, name: str) -> str:

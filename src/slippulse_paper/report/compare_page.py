@@ -30,7 +30,10 @@ PICTURE_COLOURS = 128
 
 @dataclass(frozen=True)
 class ChangedVerdict:
-    """A claim whose verdict changed, with its entry in claims.json of both folders, or None."""
+    """A claim whose verdict changed, with its entries in the old and the new claims.json.
+
+    An entry is None if the folder does not have the claim.
+    """
 
     id: str
     statement: str
@@ -40,7 +43,7 @@ class ChangedVerdict:
 
 @dataclass(frozen=True)
 class ShownTable:
-    """What the page shows of one table.
+    """The part of the page about one table.
 
     runs : how many runs are in both folders, and descriptions of the others
     counts : how many numbers have each outcome
@@ -125,7 +128,7 @@ def changed_verdicts(result: Comparison, new: Path, old: Path) -> list[ChangedVe
 
 
 def shown_table(runs: TableRuns, numbers: pd.DataFrame) -> ShownTable:
-    """Return what the page shows of one table.
+    """Return the part of the page about one table.
 
     numbers : the compared numbers of all tables
     """

@@ -20,7 +20,7 @@ from ..text.numerals import setting
 # The keys of an erratum. The text of `alters` names what the misprint changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
 BOUNDARY_SYMBOLS = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}
-# Of more values than this, only the smallest and the largest are named.
+# If there are more values than this, only the smallest and the largest are named.
 MAX_LISTED_VALUES = 3
 
 

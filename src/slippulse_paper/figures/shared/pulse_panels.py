@@ -41,11 +41,11 @@ DISTANCE_LABELS = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/
 # The column that decides the line style of a run. The level of the pre-stress decides its colour.
 STYLED_COLUMN = {"displacement": "damping_ratio", "stress": "width"}
 LINE_STYLES = ("-", "--", ":", "-.")
-# How many levels of pre-stress are drawn.
+# Number of drawn levels of the pre-stress.
 LEVEL_COUNT = {"displacement": 2, "stress": 3}
 # Largest number of points of a simulated curve, and number of decimals of its values.
 CURVE_POINTS, VISIBLE_DECIMALS = 300, 4
-# How far a simulated pulse is drawn beyond its front and beyond its tail, in pulse widths.
+# A simulated pulse is drawn beyond its front and beyond its tail by these fractions of its width.
 MARGIN_AHEAD, MARGIN_BEHIND = 0.08, 0.25
 SIMULATION_LOOK: Look = {"linewidth": 2.6, "alpha": 0.3}
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
