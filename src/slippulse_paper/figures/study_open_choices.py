@@ -46,9 +46,10 @@ ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each claim and combination of choices; one row without open choices.
+    """Return one row for each claim and combination of choices.
 
-    The column over has the deviation divided by the tolerance.
+    A claim without open choices has one row. The column over has the deviation divided by the
+    tolerance.
     """
     names = ["id", "label", "verdict", "tolerance", "choice"]
     rows = []

@@ -21,7 +21,10 @@ RATE_LABEL = r"$\alpha/\sqrt{\gamma}$"
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) regimes, (b) width and slip of pulses, (c) maps, (d) the decay without springs."""
+    """Draw (a) regimes, (b) pulse width and slip, (c) two pulses in time and space, (d) an arrest.
+
+    Panels a to c have leaf springs (Gamma = 1), and panel d has none (Gamma = 0).
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     plane_axes, pulse_axes, map_axes, arrest_axes = panels
     table = table.assign(scaled_rate=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))

@@ -74,11 +74,7 @@ def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) slip across the step, (b) its deviation from the new steady slip, (c) velocity.
-
-    In units of the memory, the distance from the step at which a pulse has settled is 1. (See
-    `_draw_slip`.)
-    """
+    """Draw (a) slip across the step, (b) its deviation from the new steady slip, (c) velocity."""
     figure, (slip_axes, deviation_axes, velocity_axes) = style.new_panels(PAGE_WIDTH, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])].sort_values("x")
     for level, rows in slip.groupby("level"):
@@ -121,7 +117,10 @@ def _draw_slip(
 def _draw_deviation(
     axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray
 ) -> None:
-    """Draw the relative deviation from the new steady slip, by distance in units of the memory."""
+    """Draw the relative deviation from the new steady slip, by distance in units of the memory.
+
+    The memory is explained in `_draw_slip`.
+    """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     # Beyond the memory the exact deviation is 0. It is drawn up to the first such point.
     is_drawn = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
