@@ -18,13 +18,14 @@ from .selection import spaced_indices
 from .si_tables import with_unit
 from .style import BLACK, GREY, SMALL_TEXT, TEXT_OUTLINE, Look, conditions
 
-# At most this number of samples is drawn along each axis of a map,
+# Largest number of samples along each axis of a map.
 MAP_SAMPLES = 121
-# of blocks along each front,
+# Largest number of blocks along each front.
 FRONT_POINTS = 400
-# and of points of a table of pre-stress.
+# Largest number of points of a table of pre-stress.
 TABLE_POINTS = 1000
-# A jump of the pre-stress is drawn as a steep line, over this fraction of the drawn positions.
+# A jump of the pre-stress is drawn as a line from closely before it to closely beyond it. Both
+# distances are this fraction of the drawn range of positions.
 JUMP_WIDTH = 1e-6
 # The panel extends beyond the slipped part by this fraction of it on each side, which leaves room
 # for an arrow.

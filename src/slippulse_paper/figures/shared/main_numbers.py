@@ -29,7 +29,7 @@ LABELS = {
     "stress": COMMON_LABELS
     | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
 }
-# The names of the predictions of steady theory for the front and the pulse on a side begin so.
+# Beginnings of the names of predictions by steady theory: for the front and the pulse of each side.
 PREDICTION_PREFIXES = {
     "left": ("exact_front_speed_left", "exact_left_pulse"),
     "right": ("exact_front_speed_right", "exact_pulse"),
