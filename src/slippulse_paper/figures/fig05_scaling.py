@@ -3,7 +3,6 @@
 There is one marker for each run of one sweep for each boundary condition.
 """
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -43,7 +42,7 @@ def draw(table: pd.DataFrame) -> Figure:
     The first two rows show the measured length and time as functions of those by the formula, with
     the ratio of both in insets. The third row shows the ratio of the lengths at full size.
     """
-    figure, panels = new_panels(PAGE_WIDTH, 7.4, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.6))
+    figure, panels = new_panels(PAGE_WIDTH, 6.7, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.65))
     for column, boundary in enumerate(BOUNDARIES):
         runs = table[table["boundary"] == boundary]
         draw_boundary(figure, panels[column::2], runs, boundary)
@@ -69,7 +68,12 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     for axes, quantity in zip(collapse_panels, QUANTITIES, strict=True):
         scaling.draw_collapse(axes, runs, quantity, colours)
         scaling.ratio_inset(axes, box, few_runs, quantity, level_column, second_column)
-    draw_length_ratio(ratio_axes, few_runs, level_column, second_column)
+    scaling.draw_ratio(ratio_axes, few_runs, "length", level_column, second_column)
+    length = QUANTITIES["length"]
+    ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
+    # The legend is in the corner of the panel that has no curves.
+    legend_look: Look = {"loc": "upper left" if boundary == "displacement" else "upper right"}
+    ratio_axes.legend(fontsize=SMALL_TEXT, **legend_look)
     draw_prestress_inset(panels[0], runs, level_column)
     panels[0].set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
@@ -78,18 +82,6 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
         look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
         bar = figure.colorbar(colour_scale(column), ax=panels, **look)
         bar.set_label(f"${SYMBOLS[column]}$")
-
-
-def draw_length_ratio(
-    axes: Axes, runs: pd.DataFrame, level_column: str, second_column: str
-) -> None:
-    """Draw the ratio of measured and predicted length as a function of the level."""
-    scaling.draw_ratio(axes, runs, "length", level_column, second_column)
-    axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
-    # Leave room for the legend on the right.
-    levels = runs[level_column]
-    axes.set_xlim(levels.min() - 0.05, levels.max() + 0.35 * np.ptp(levels))
-    axes.legend(loc="center right", fontsize=SMALL_TEXT)
 
 
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:

@@ -34,29 +34,32 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw the slip as a function of position, in (a) the thick layer and (b) the thin layer."""
     figure, (thick_axes, thin_axes) = new_panels(PAGE_WIDTH, 2.6, "ab")
     positions = table[table["part"] == "position"]
-    thickness = positions["thickness"].max()
-    is_thick = positions["thickness"] == thickness
+    largest_thickness = positions["thickness"].max()
+    is_thick = positions["thickness"] == largest_thickness
     draw_slips(thick_axes, positions[is_thick])
-    thick_axes.set_title(rf"height ${thickness:g}\,H$, {conditions(True)}")
+    thick_axes.set_title(rf"height ${largest_thickness:g}\,H$, {conditions(True)}")
     draw_slips(thin_axes, positions[~is_thick])
     thin_axes.set_title(f"height $H$, {conditions(True)}")
     return figure
 
 
 def draw_slips(axes: Axes, positions: pd.DataFrame) -> None:
-    """Draw the slip that each run in a layer leaves, in the colour of its level of pre-stress."""
+    """Draw the slip that each pulse of one layer leaves, with the change from a coarser grid.
+
+    A line has the colour of its level of pre-stress. The changes are drawn as error bars.
+    """
     for colour, (level, runs) in zip(COLOURS, positions.groupby("tau0"), strict=False):
         # Runs at the same level differ in how the pulse starts.
         runs_by_start = runs.groupby(["before", "patch_half_length"])
         for marker, (_, run) in zip(MARKERS, runs_by_start, strict=False):
-            look: Look = {"color": colour, "marker": marker}
-            axes.plot(run["sample_position"], run["pulse_slip"], **look)
-        # The level is written beside the end of its highest curve.
+            changes = (run["pulse_slip"] - run["coarse_slip"]).abs()
+            look: Look = {"color": colour, "marker": marker, "capsize": 1.5}
+            axes.errorbar(run["sample_position"], run["pulse_slip"], changes, **look)
+        # The level is written beside the end of its highest line.
         end = runs["sample_position"].max()
         largest_at_end = runs.loc[runs["sample_position"] == end, "pulse_slip"].max()
         label = rf"$\tau_0 = {level:g}$"
-        axes.annotate(label, (end, largest_at_end), (4, -3), color=colour, **OFFSET)
-    axes.set(xlabel="position $x/H$", ylabel="slip")
-    largest = positions["pulse_slip"].max()
-    axes.set_ylim(-0.05 * largest, 1.12 * largest)
-    axes.set_xlim(None, 1.22 * positions["sample_position"].max())
+        axes.annotate(label, (end, largest_at_end), (5, -3), color=colour, **OFFSET)
+    axes.set(xlabel="position $x/H$", ylabel="slip $u/U$")
+    axes.set_ylim(0.0, 1.15 * positions["pulse_slip"].max())
+    axes.set_xlim(None, 1.25 * positions["sample_position"].max())

@@ -11,7 +11,7 @@ import pandas as pd
 
 from ..claims.claim_texts import REASONS, claims_of, coverage, places_of
 from ..claims.ledger import Ledger
-from ..claims.rules import WORST_FIRST
+from ..claims.rules import WITHOUT_RESERVATION, WORST_FIRST
 from ..text.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
 
@@ -110,12 +110,12 @@ def verdicts(lines: Iterable[Line]) -> str:
 
 
 def failures(ledger: Ledger) -> str:
-    """Return a table of the claims that are not simply reproduced, with the reason.
+    """Return a table of the claims whose verdict needs a reason, with this reason.
 
-    The worst verdicts come first.
+    The worst verdicts come first. Claims that are reproduced without reservation are left out.
     """
     worst_first = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
-    failed = [claim for claim in worst_first if claim.verdict != WORST_FIRST[-1]]
+    failed = [claim for claim in worst_first if claim.verdict not in WITHOUT_RESERVATION]
     rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
     return table("claim l34 | verdict l13 | why l53", rows)
 
