@@ -49,7 +49,9 @@ def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
 def _one_row_per_ratio(profile: pd.DataFrame) -> pd.DataFrame:
     """Return the fits with one row for each studied damping ratio.
 
-    Each reading has two columns: its pull, and with INDEPENDENT_PREFIX its independent pull.
+    Each reading has a column with its pull, and one with its independent pull, whose name begins
+    with INDEPENDENT_PREFIX. Independent pulls are combinations of pulls that are not correlated
+    with each other (see `independent_combinations`).
     """
     by_reading = partial(profile.pivot, index="damping_ratio", columns="reading")
     pulls = by_reading(values="pull")

@@ -31,6 +31,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
+    # The column work has the cost of all quantities.
     errors = error_rows(trade, "work", lambda quantity: "work").assign(part="trade")
     table = pd.concat([study[study["part"] == "locking"], errors], ignore_index=True)
     columns = ["part", "role", "quantity", "scheme", "order", "step", "dx", "work", "error"]

@@ -176,7 +176,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
 
     One limit is the speed without damping.
 
-    limit : the other one, the exact speed as dx -> 0 at fixed beta, under the elastic rule
+    limit : the other limit, the exact speed as dx -> 0 at fixed beta, under the elastic rule
     """
     symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])

@@ -121,7 +121,7 @@ def failures(ledger: Ledger) -> str:
 
 
 def whole_ledger(ledger: Ledger) -> str:
-    """Return a table of all claims: place in the paper, numbers, tolerance, verdict and note."""
+    """Return a table of all claims: place in the paper, numbers, tolerance, verdict, evidence."""
     rows = []
     for claim in ledger:
         row = (

@@ -97,7 +97,7 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
     if has_bumps and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
-    # If there is a transition time, it equals the time of the first stick, which is left out.
+    # The time of the first stick is left out if it is already in the table as the transition time.
     if (quantity == "transition_time").any():
         numbers = numbers[quantity != "first_stick_time"]
     promise_columns = [name for name in ("promised", "kept") if name in study]
