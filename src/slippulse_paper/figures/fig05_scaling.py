@@ -71,9 +71,9 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     scaling.draw_ratio(ratio_axes, few_runs, "length", level_column, second_column)
     length = QUANTITIES["length"]
     ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
-    # The legend is in the corner of the panel that has no curves.
-    legend_look: Look = {"loc": "upper left" if boundary == "displacement" else "upper right"}
-    ratio_axes.legend(fontsize=SMALL_TEXT, **legend_look)
+    # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
+    are_rising = boundary == "displacement"
+    ratio_axes.legend(loc="upper left" if are_rising else "upper right", fontsize=SMALL_TEXT)
     draw_prestress_inset(panels[0], runs, level_column)
     panels[0].set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
