@@ -7,7 +7,7 @@ profile is then a `Prestress`.
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import product
 from pathlib import Path
@@ -104,7 +104,7 @@ def _values_of(given: Any) -> Sequence:
     return given if isinstance(given, list) else [given]
 
 
-class ExpandedProfiles:
+class ExpandedProfiles(Collection[dict[str, Any]]):
     """The profiles of runs: one for each combination of the lists of a rough background.
 
     The last list, that of the seeds, varies fastest. The profiles are made when they are needed,
@@ -125,6 +125,9 @@ class ExpandedProfiles:
                     values_by_name = zip(ROUGH_LISTS, values, strict=True)
                     run_profile["rough"] = {**profile["rough"], **dict(values_by_name)}
                 yield run_profile
+
+    def __contains__(self, profile: object) -> bool:
+        return any(profile == run_profile for run_profile in self)
 
 
 def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
