@@ -102,6 +102,34 @@ def test_pulses_stop_where_an_independent_solver_stops_them(case):
     assert any(died)
 
 
+# Scenes under a stress boundary, in which waves of the undamped lattice move the left front. The
+# independent solver stops it six blocks farther in the first one, and with another fate in the
+# second one.
+RESTARTED = [(0.05, 0.02, 2.0, 1.0, 14169), (-0.02, 0.2, 2.0, 0.9, 14257)]
+
+
+@pytest.mark.parametrize("damping_ratio", [0.0, 0.1])
+@pytest.mark.parametrize("field", RESTARTED)
+def test_a_front_that_lattice_waves_move_is_flagged_and_sensitive(field, damping_ratio):
+    *shape, seed = field
+    x, tau = sp.rough(*shape, start=-30.0, stop=80.0, spacing=0.25, seed=seed)
+    dx, fates = 0.1, []
+    for moved in (0.0, -dx, dx):
+        # The table moves instead of the nucleation, which stays at x = 0.
+        bump = ((moved - 10.0, -4.0, 3.0),)
+        profile = sp.Prestress.through(np.round(x + moved, 9), tau, 1.0, 1.05, bump)
+        run = sp.simulate(sp.Scene("stress", profile, 80.0, dx, beta=damping_ratio * dx))
+        is_flagged = "front_restarted" in run.attrs["run_flags"]
+        assert is_flagged or damping_ratio > 0.0 or moved != 0.0
+        assert not is_flagged or damping_ratio == 0.0
+        distance, is_dead = arrest(run["x"] - moved, run["release_time"], run["stick_time"], -1)
+        fates.append((distance, is_dead))
+    changes = [abs(distance - fates[0][0]) / dx for distance, _ in fates[1:]]
+    has_another_fate = any(is_dead != fates[0][1] for _, is_dead in fates[1:])
+    is_sensitive = max(changes) > 2.5 or has_another_fate
+    assert is_sensitive == (damping_ratio == 0.0)
+
+
 def arrest(x, release_time, stick_time, side):
     """Return how far the front on one side has gone, and whether everything behind it is stuck."""
     x, release_time, stick_time = map(np.asarray, (x, release_time, stick_time))
