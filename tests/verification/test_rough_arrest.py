@@ -11,7 +11,7 @@ import slippulse as sp
 
 
 class Setting(NamedTuple):
-    """What all scenes under one boundary condition have in common."""
+    """Numbers that all scenes under one boundary condition have in common."""
 
     start: float
     stop: float
