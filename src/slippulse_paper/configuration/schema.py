@@ -226,7 +226,8 @@ class Profile(Block):
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: path of a CSV or netCDF file with such points, relative to the overlay",
+        "instead of levels: path of a CSV or netCDF file with such points, relative to the folder"
+        " of the overlay",
         None,
     )
     rough: Rough | None = key(
