@@ -1,8 +1,8 @@
 """Definition of every key of the configuration: type, range, default, meaning, [unit] and (origin).
 
 Refusals follow from these definitions (`refusals`), and docs/describe.py writes the JSON Schema and
-the tables of config/README.md from them. The description of a key also explains
-its class, if that has no docstring.
+the tables of config/README.md from them. A class without a docstring is explained by the
+description of its key.
 """
 
 from collections.abc import Iterable, Mapping
@@ -59,7 +59,7 @@ def key(description: str, default: Any = ..., words: str | None = None, **limits
 def require(condition: bool, given: str, allowed: str) -> None:
     """Raise ValueError unless a condition holds.
 
-    ``given`` names the key and its value, and ``allowed`` says what is allowed instead.
+    ``given`` names the key and its value, and ``allowed`` states the allowed values.
     """
     if not condition:
         raise ValueError(f"{given}; allowed: {allowed}")
@@ -264,7 +264,7 @@ class Profile(Block):
         return self
 
     def _given_keys(self, *names: str) -> list[str]:
-        """Return the names of those keys, among ``names``, that have a value."""
+        """Return the names, among ``names``, of keys that have a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
