@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import check_number
-from .prestress import MAX_TABLE_POINTS
+from .prestress_parts import MAX_TABLE_POINTS
 
 # Larger values of the field are replaced by this one, because a rupture would start wherever the
 # pre-stress is 1.

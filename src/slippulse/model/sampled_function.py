@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from .checks import check_number, check_that
-from .prestress import MAX_TABLE_POINTS
+from .prestress_parts import MAX_TABLE_POINTS
 
 # Number of equidistant samples at the start. Narrower features of the function may be missed.
 FIRST_SAMPLES = 257

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 from .checks import short_repr
-from .prestress import MAX_TABLE_POINTS
+from .prestress_parts import MAX_TABLE_POINTS
 
 # Default names of the columns, in upper or lower case.
 POSITION_NAMES = ("x", "position", "distance")
