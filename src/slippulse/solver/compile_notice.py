@@ -1,4 +1,4 @@
-"""One line on standard error when the kernels are compiled, which takes half a minute once."""
+"""A notice on standard error when the kernels are compiled, which takes half a minute once."""
 
 import sys
 from collections.abc import Iterator
@@ -20,9 +20,13 @@ class CompileNotice(event.Listener):
         self.printed = False
 
     def on_start(self, event: event.Event) -> None:
-        """Print the notice. Loading machine code from the cache does not start this event."""
+        """Print the notice if a function of this package begins to be compiled.
+
+        Loading machine code from the cache does not start such an event.
+        """
         function = getattr(event.data["dispatcher"], "py_func", None)
-        if not self.printed and getattr(function, "__module__", "").startswith(f"{PACKAGE_NAME}."):
+        module = getattr(function, "__module__", "")
+        if not self.printed and module.startswith(f"{PACKAGE_NAME}."):
             self.printed = True
             print(NOTICE_TEXT, file=sys.stderr, flush=True)
 

@@ -248,7 +248,8 @@ def solve_by_scheme(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
     """Solve a scene on the lattice by the scheme that it names."""
-    solution = solve_on_lattice(scene, samples, progress, kind=LATTICES[scene.scheme])
+    lattice_type = LATTICES[scene.scheme]
+    solution = solve_on_lattice(scene, samples, progress, lattice_type=lattice_type)
     if scene.scheme == "fixed_step" and has_locked_front(solution):
         solution.flags = ("locked_front",)
     return solution
