@@ -35,13 +35,13 @@ def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) ->
     """Return a sweep with additional numbers for each run.
 
     labels : the numbers by name, one mapping for each run; if empty, the sweep is returned as it is
-    record : the groups that the sweep has recorded
+    record : the groups that the sweep has recorded, see `combine`
     """
     if not labels:
         return data
-    runs = [*runs_in(data)]
-    for run, label in zip(runs, labels, strict=True):
-        run.attrs |= label
+    runs = list(runs_in(data))
+    for run, labels_of_run in zip(runs, labels, strict=True):
+        run.attrs |= labels_of_run
     return combine(runs, record)
 
 
