@@ -23,7 +23,8 @@ TEXTS = {unit: unit for unit in UNITS.values()}
 TEXTS |= {"m s-1": "m/s", "m s-2": "m/s\N{SUPERSCRIPT TWO}", "J m-1": "J/m"}
 TEXTS["m2 s-1"] = "m\N{SUPERSCRIPT TWO}/s"
 WITHOUT_PREFIX = ("m2 s-1",)
-# A number that is smaller than a power of ten by at most this relative amount counts as equal to it.
+# A number that is smaller than a power of ten by at most this relative amount counts as equal to
+# it.
 ROUNDING_TOLERANCE = 1e-12
 
 
