@@ -48,22 +48,14 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     sweep = over_points(sweep)
     numbers = _arrays_along(sweep, "point")
     numbers.pop("point", None)
-    sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    starts = numbers.pop("row_start", None)
     block_arrays = _arrays_along(sweep, "block")
-    sample_arrays = {}
-    for name in DIMENSIONS:
-        if name in sweep:
-            sample_arrays[str(name)] = sweep.variables[name].values
-    all_blocks = block_arrays.get("x", sizes[:0]).size
-    if starts is None:
-        starts = np.cumsum(sizes) - sizes
-        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == all_blocks
-    else:
-        # The runs may be a selection, whose blocks are only some of all blocks.
-        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= all_blocks)
-    allowed = "numbers of blocks whose sum is the length of x"
-    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
+    sample_arrays = {
+        str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
+    }
+    sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    recorded_starts = numbers.pop("row_start", None)
+    number_of_blocks = block_arrays.get("x", sizes[:0]).size
+    starts = _starts_of_runs(sizes, recorded_starts, number_of_blocks)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(sizes.size):
         blocks = slice(starts[index], starts[index] + sizes[index])
@@ -72,6 +64,29 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
         # A file may have its texts as Python objects, which have no method `item`.
         attrs = {name: np.asarray(values[index]).item() for name, values in numbers.items()}
         yield Recorded(arrays, attrs | versions)
+
+
+def _starts_of_runs(
+    sizes: np.ndarray, recorded_starts: np.ndarray | None, number_of_blocks: int
+) -> np.ndarray:
+    """Return the number of the first block of each run.
+
+    Raises ValueError if the blocks of the runs do not fit the arrays.
+
+    sizes : number of blocks of each run
+    recorded_starts : the result, if the sweep contains it; otherwise the runs follow one another
+    number_of_blocks : length of the arrays
+    """
+    if recorded_starts is None:
+        starts = np.cumsum(sizes) - sizes
+        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+    else:
+        # The runs may be a selection, whose blocks are only some of all blocks.
+        starts = recorded_starts
+        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
+    allowed = "numbers of blocks whose sum is the length of x"
+    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
+    return starts
 
 
 def over_points(sweep: xr.Dataset) -> xr.Dataset:

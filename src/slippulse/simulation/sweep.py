@@ -13,7 +13,8 @@ from ..model.scene import Scene
 from ..solver.solution import Solution, solve_on_lattice
 from .flags import flags_of
 
-# A function that solves a scene with its samples. It calls its last argument with the fraction done.
+# A function that solves a scene with its samples, and calls its last argument with the fraction
+# done.
 Solver = Callable[[Scene, Samples | None, Callable[[float], None]], Solution]
 
 
