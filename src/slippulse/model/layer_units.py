@@ -156,7 +156,7 @@ class Layer(LayerMaterial):
             check_that(beta is None, "beta", beta, "none, since damping_ratio is given")
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             parameters["beta"] = damping_ratio * dx
-        # Errors of the scene are about non-dimensional numbers, so that the units are added.
+        # Errors of the scene are about non-dimensional numbers. The units are added to the message.
         try:
             return Scene(
                 boundary=self.boundary,
@@ -200,7 +200,7 @@ class Layer(LayerMaterial):
         else:
             positions, stresses = _columns(given)
         tau = self.table_from_pascal(key, stresses)
-        # Errors of the profile are about non-dimensional numbers, so that the units are added.
+        # Errors of the profile are about non-dimensional numbers. The units are added to the message.
         try:
             x = self.convert_from_si(positions, "length")
             return Prestress.through(x, tau, width=width, peak=peak)

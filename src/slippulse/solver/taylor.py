@@ -193,26 +193,26 @@ def fill_derivatives(medium, motion, segments, alpha, top):
     w, is_mirrored = motion.w, medium.is_mirrored
     leaf_stiffness, damping = medium.leaf_stiffness, medium.damping
     for r in range(segments.count.n):
-        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        if is_mirrored and a == 1:
+        first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
+        if is_mirrored and first == 1:
             w[VELOCITY, 0] = w[VELOCITY, 2]
         strain, tau = motion.strain, motion.tau
         stencils.compute_accelerations(
-            w, strain, tau, a, b, medium.inverse_dx, leaf_stiffness, damping
+            w, strain, tau, first, last, medium.inverse_dx, leaf_stiffness, damping
         )
         if alpha != 0.0:
-            friction.subtract_rate_strengthening(w, 2, a, b, alpha)
-        friction.subtract_friction(motion, a, b, medium.law_kink)
+            friction.subtract_rate_strengthening(w, 2, first, last, alpha)
+        friction.subtract_friction(motion, first, last, medium.law_kink)
         for k in range(3, top + 1):
-            if is_mirrored and a == 1:
+            if is_mirrored and first == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            for i in stencils.block_range(a, b):
+            for i in stencils.block_range(first, last):
                 w[k, i] = stencils.next_derivative(
                     w, k, i, medium.inverse_dx2, leaf_stiffness, damping
                 )
             if alpha != 0.0:
-                friction.subtract_rate_strengthening(w, k, a, b, alpha)
-            friction.add_weakening(w, k, a, b, np.uint64(0), motion, medium.law_kink)
+                friction.subtract_rate_strengthening(w, k, first, last, alpha)
+            friction.add_weakening(w, k, first, last, np.uint64(0), motion, medium.law_kink)
     if is_mirrored:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
@@ -238,16 +238,19 @@ def predict_events(medium, motion, segments, prediction, tally, h, top):
     """
     prediction.event_count.n = 0
     for r in range(segments.count.n):
-        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        suspects = stencils.compute_velocities(motion.velocity, motion.w, a, b, h, top - 1)
+        first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
+        suspects = stencils.compute_velocities(motion.velocity, motion.w, first, last, h, top - 1)
         if suspects > 0 and not event_prediction.predict_sticks(
-            motion, prediction, a, b, suspects, 0.0, h, top
+            motion, prediction, first, last, suspects, 0.0, h, top
         ):
             return False
-        event_prediction.predict_law_kinks(motion, medium.law_kink, prediction, a, b, 0.0, h, top)
-    first, last = np.int64(0), motion.tau.shape[0]
+        event_prediction.predict_law_kinks(
+            motion, medium.law_kink, prediction, first, last, 0.0, h, top
+        )
+    # The whole lattice.
+    start, end = np.int64(0), motion.tau.shape[0]
     lowest_stress = event_prediction.predict_releases(
-        medium, motion, segments, prediction, first, last, 0.0, h
+        medium, motion, segments, prediction, start, end, 0.0, h
     )
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest_stress)
     return True
@@ -258,8 +261,8 @@ def set_velocities_at_early_end(motion, scratch, h, order):
     """Compute the velocities of all blocks that moved in a step that ends early, at the time h."""
     moved, step_events = scratch.moved, scratch.step_events
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.compute_velocities(motion.velocity, motion.w, a, b, h, order)
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        stencils.compute_velocities(motion.velocity, motion.w, first, last, h, order)
     for q in range(step_events.count.n):
         # The velocity of a block that was just released can be negative by rounding.
         for i in range(step_events.first[q], step_events.last[q]):
@@ -325,10 +328,11 @@ def finish_step(medium, motion, scratch, tally, order, h):
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.advance_slip(w, motion.velocity, a, b, h, order)
-        tally.block_updates += b - a
-        fastest = max(fastest, w[VELOCITY, a], w[VELOCITY, (a + b) // 2], w[VELOCITY, b - 1])
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        stencils.advance_slip(w, motion.velocity, first, last, h, order)
+        tally.block_updates += last - first
+        middle = (first + last) // 2
+        fastest = max(fastest, w[VELOCITY, first], w[VELOCITY, middle], w[VELOCITY, last - 1])
     # Events have changed the slip by the offset. It is added once to each block and then cleared.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
@@ -338,8 +342,8 @@ def finish_step(medium, motion, scratch, tally, order, h):
     # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment.
     first_bond = 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        for i in stencils.block_range(max(a - 1, first_bond), b):
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        for i in stencils.block_range(max(first - 1, first_bond), last):
             change = w[SLIP_INCREMENT, i + stencils.UNSIGNED_ONE] - w[SLIP_INCREMENT, i]
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
