@@ -200,7 +200,7 @@ class Layer(LayerMaterial):
         else:
             positions, stresses = _columns(given)
         tau = self.table_from_pascal(key, stresses)
-        # Errors of the profile are about non-dimensional numbers. The units are added to the message.
+        # Errors of the profile are about non-dimensional numbers. The units are added to them.
         try:
             x = self.convert_from_si(positions, "length")
             return Prestress.through(x, tau, width=width, peak=peak)
