@@ -101,8 +101,11 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
 
     drag : alpha dx, not negative
     """
-    modes = np.linspace(0.0, 4.0, 101)
-    derivatives = _mode_derivatives(order, modes + gamma_dx2, damping_ratio * modes + drag)
+    # The numbers s of the modes, from the longest to the shortest one (see `largest_step`).
+    s = np.linspace(0.0, 4.0, 101)
+    derivatives = _mode_derivatives(
+        order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag
+    )
     max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
 
     def are_unstable(steps: np.ndarray) -> np.ndarray:

@@ -168,7 +168,10 @@ def _nucleation_width(scene: Scene, solution: Solution) -> float:
 
 
 def died_out(solution: Solution) -> bool:
-    """Return True if a front stopped although the pre-stress ahead of it is positive."""
+    """Return True if a front stopped although the pre-stress ahead of it is positive.
+
+    A front has stopped if no block on its side of x = 0 slides at the end.
+    """
     is_released = np.isfinite(solution.release_time)
     is_sliding = is_released & ~np.isfinite(solution.stick_time)
     for side in (1, -1):

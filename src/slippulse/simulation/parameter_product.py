@@ -44,9 +44,9 @@ def sweep(
         As in `run_sweep`.
     **parameters
         Parameters of `Scene`, each a value or a list of values. Instead of ``prestress``, the
-        parameters of `Prestress` can be given: ``left``, ``right`` (by default equal to ``left``),
-        ``width`` and ``peak``, each a value or a list, and ``steps`` and ``bumps``, which are the
-        same in each run.
+        parameters of `Prestress` can be given. ``left``, ``right``, ``width`` and ``peak`` are
+        values or lists, and ``right`` is equal to ``left`` by default. ``steps`` and ``bumps`` are
+        the same in each run.
 
     Returns
     -------

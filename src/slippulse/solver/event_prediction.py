@@ -157,8 +157,8 @@ def predict_releases(medium, motion, segments, prediction, first, last, now, h):
     lowest_stress = math.inf
     for r in range(segments.count.n):
         for side in range(2):
-            # The block behind the last one of the segment, or the block before its first one.
-            block = segments.edges[2 * r + 1] if side else segments.edges[2 * r] - 1
+            # The block before the segment, then the block behind it.
+            block = segments.edges[2 * r] - 1 if side == 0 else segments.edges[2 * r + 1]
             is_mirror_image = medium.is_mirrored and block == 0
             if not first <= block < last or is_mirror_image:
                 continue

@@ -173,13 +173,16 @@ def viscous_loss(medium, velocity, dt, first, last):
     # Sums of (v_{i+1} - v_i)^2 and of v_i^2. On a mirrored lattice they are doubled below, so that
     # block 1 on the axis counts half.
     dv_squared, v_squared = 0.0, 0.0
-    for i in range(max(first - 1, 1 if medium.is_mirrored else 0), last):
+    # The block before the moving ones counts, too, unless it is a mirror image.
+    first_pair = max(first - 1, 1 if medium.is_mirrored else 0)
+    for i in range(first_pair, last):
         dv = velocity[i + 1] - velocity[i]
         dv_squared += dv * dv
         weight = 0.5 if medium.is_mirrored and i == 1 else 1.0
         v_squared += weight * velocity[i] * velocity[i]
-    loss = medium.beta / medium.dx * dv_squared + medium.alpha * medium.dx * v_squared
-    return (2.0 if medium.is_mirrored else 1.0) * dt * loss
+    power = medium.beta / medium.dx * dv_squared + medium.alpha * medium.dx * v_squared
+    sides = 2.0 if medium.is_mirrored else 1.0
+    return sides * dt * power
 
 
 @kernel_function()

@@ -62,12 +62,7 @@ class Lattice:
         # A mirrored lattice has one block at x < 0, the mirror image of the first one at x > 0.
         blocks_on_left = 1 if self.is_mirrored else INITIAL_BLOCKS + 1
         self._extend(blocks_on_left, INITIAL_BLOCKS + 1)
-        # The lattice must contain every block that is released at t = 0, also at distant bumps of
-        # the pre-stress.
-        reach = int(np.ceil(scene.prestress.nucleation_reach / scene.dx)) + arrays.EDGE_BLOCKS
-        blocks_needed = reach if self.is_mirrored else 2 * reach
-        while blocks_needed > self.size - arrays.EDGE_BLOCKS:
-            self._double()
+        self._cover_nucleation()
         self._release_nucleation()
 
     def _make_medium(self, beta: float) -> arrays.Medium:
@@ -94,6 +89,17 @@ class Lattice:
         self.sampled = np.abs(numbers) if self.is_mirrored else numbers
         slip, velocity = np.zeros((2, samples.times.size, samples.positions.size))
         self.recorder = arrays.Recorder(samples.times.copy(), numbers, slip, velocity)
+
+    def _cover_nucleation(self) -> None:
+        """Extend the lattice over all blocks that can be released at t = 0.
+
+        Some of them may lie at distant bumps of the pre-stress.
+        """
+        blocks_of_reach = int(np.ceil(self.scene.prestress.nucleation_reach / self.scene.dx))
+        blocks_per_side = blocks_of_reach + arrays.EDGE_BLOCKS
+        blocks_needed = blocks_per_side if self.is_mirrored else 2 * blocks_per_side
+        while blocks_needed > self.size - arrays.EDGE_BLOCKS:
+            self._double()
 
     def _release_nucleation(self) -> None:
         """Release every block whose pre-stress is at the threshold at t = 0."""

@@ -219,6 +219,7 @@ def compute_strength(elastic, fields, fault, i):
     """Return the strength of node i, from its motion since the release and its normal stress."""
     if fault.nucleus[i]:
         return 0.0
+    # Decrease of the strength since the release of the node.
     weakening = 0.0
     if fault.sliding[i]:
         if elastic.rate > 0.0:

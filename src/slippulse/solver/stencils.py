@@ -96,9 +96,10 @@ def compute_velocities(out, w, first, last, step, order):
     for i in block_range(first, last):
         after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
         out[i] = after
-        # A block may stop if its velocity is negative or NaN after the step. If it is negative only
+        # Count the block if its velocity is negative or NaN after the step. If it is negative only
         # for a part of the step, its tangent at the start of the step is negative at the end.
-        count += (not (after >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
+        tangent_after = w[1, i] + step * w[2, i]
+        count += (not (after >= 0.0)) | (tangent_after < 0.0)
     return count
 
 

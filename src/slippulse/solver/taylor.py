@@ -438,7 +438,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         # The step lasts from the time `start` to `end`, and has the length h. Times of events are
         # counted from its start.
         h, end = next_step(limits, start)
-        # Stage 2: the events that will happen until then.
+        # Stage 2: the events that will happen within the step.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
             return BLOWN_UP
         # At first, the blocks that move in this step are those that slide. Events add others.
@@ -449,17 +449,17 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 
         # Stage 3: one event after another. The step ends early at an event that has to happen
         # together with others.
-        early = False
+        ends_early = False
         while True:
             event = find_next_event(segments, prediction)
             if event.time == math.inf:
                 break
             latest = event.time + time_tolerance
-            early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
+            ends_early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
                 segments, prediction, medium, event.block, latest
             )
             instant = min(start + event.time, end)
-            if early:
+            if ends_early:
                 h, end = event.time, instant
                 set_velocities_at_early_end(motion, scratch, h, order)
                 break
@@ -476,7 +476,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         tally.friction_loss += loss_of_step(h, power, power_slope, work_slope_changes)
         tally.pending_step = h
         fastest = finish_step(medium, motion, scratch, tally, order, h)
-        if early:
+        if ends_early:
             latest = h + time_tolerance
             apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top)
         tally.steps += 1
