@@ -150,7 +150,7 @@ class Difference(NamedTuple):
 
     rows: np.ndarray  # (K, COLUMN_COUNT), time derivatives of the change of slip, at the event
     centre: np.ndarray  # (K + 2,), the same for the block of the event alone
-    values: np.ndarray  # (COLUMN_COUNT,)
+    values: np.ndarray  # (COLUMN_COUNT,), one time derivative of the change, at another time
 
 
 class StepEvents(NamedTuple):

@@ -211,10 +211,11 @@ def add_difference(motion, difference, first, last, block, now, h, top):
     rows, values = difference.rows, difference.values
     # Block i of the lattice is column i + column of the difference.
     column = np.uint64(CENTRE_COLUMN) - np.uint64(block)
+    # The velocity is derivative 1. The end of the step is the time h - now, counted from the event.
     evaluate_difference(values, rows, 1, top, h - now)
     for i in block_range(first, last):
         velocity[i] += values[i + column]
-    # The start of the step is the time -now, counted from the event.
+    # Slip is derivative 0. The start of the step is the time -now, counted from the event.
     evaluate_difference(values, rows, 0, top, -now)
     for i in block_range(first, last):
         offset[i] += values[i + column]
@@ -272,35 +273,38 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     velocity = motion.velocity
     centre, law_kink = difference.centre, medium.law_kink
     block, now, is_stick, at_law_kink = event
-    velocity_before = work_change = friction = 0.0
     left, right = count_sliding_neighbours(segments, block)
     if medium.is_mirrored and block == 1:
         # The block on the axis has the mirror images of its right neighbours on its left.
         left = right
+    # First the block of the event itself.
+    velocity_before = work_slope_change = friction = 0.0
     if is_stick:
         velocity_before = hold_block(centre, w, offset, block, now, top)
         velocity[block] = 0.0
         friction = friction_at_stick(motion, law_kink, block)
     elif at_law_kink:
-        work_change = change_weakening(centre, motion, law_kink, block, now, top)
+        work_slope_change = change_weakening(centre, motion, law_kink, block, now, top)
     else:
         friction = start_sliding(centre, medium, motion, block, now, top)
-    loss_change = change_of_loss_slope(medium, w, block, centre[ACCELERATION], now, top)
+    acceleration_change = centre[ACCELERATION]
+    loss_slope_change = change_of_loss_slope(medium, w, block, acceleration_change, now, top)
     # The time derivative of the power of friction (friction times velocity) changes by friction
     # times the change of acceleration, and at a kink by what `change_weakening` returns.
-    work_change += friction * centre[ACCELERATION]
+    work_slope_change += friction * acceleration_change
+
+    # Then all blocks within its reach.
     spread_difference(difference, medium, motion, event, left, right, top)
     if is_stick:
         # The polynomial of the block of the event was changed when the block was stopped.
         for k in range(2, top + 1):
             difference.rows[k, CENTRE_COLUMN] = 0.0
-
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
     first_changed = update_mirror_image(medium, motion, first, top)
 
-    # The neighbours of the changed blocks feel a different stress.
+    # Last, the next events of these blocks. Their neighbours at rest feel a different stress, too.
     lowest_stress = predict_releases(
         medium, motion, segments, prediction, first - 1, last + 1, now, h
     )
@@ -309,5 +313,11 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
     is_finite = predict_sticks(motion, prediction, first, last, suspects, now, h, top)
     predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
     return EventEffect(
-        is_finite, first_changed, last, velocity_before, lowest_stress, loss_change, work_change
+        is_finite,
+        first_changed,
+        last,
+        velocity_before,
+        lowest_stress,
+        loss_slope_change,
+        work_slope_change,
     )
