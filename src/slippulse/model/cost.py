@@ -1,8 +1,8 @@
 """Upper bounds on the computing time and the memory of a run.
 
-A front is at most as fast as the highest level of the pre-stress drives it, and the blocks that it
-has passed slide at most until the end of the run. The number of block updates is therefore at most
-the number of time steps times the number of blocks that the fronts can reach. The shipped sweeps
+A front is at most as fast as the highest level of the pre-stress drives it. The blocks that it has
+passed slide at most until the end of the run. The number of block updates is therefore at most the
+number of time steps times the number of blocks that the fronts can reach. The shipped sweeps
 need at most 0.43 of this estimate. Undamped blocks that slip many times may need up to twice the
 estimate.
 """
@@ -31,8 +31,8 @@ OTHER_SOLVER_NUMBERS = 16
 BYTES_PER_SAMPLE = 16.0
 # Bytes of a point of a table: two numbers, and their text in a data file.
 BYTES_PER_TABLE_POINT = 400.0
-# The time to start a run, and the time to solve one block of the exact solution, as numbers of
-# block updates that take equally long.
+# Two times, as the numbers of block updates that take equally long: the time to start a run, and
+# the time to solve one block of the exact solution.
 UPDATES_PER_START, UPDATES_PER_EXACT_BLOCK = 1e5, 3e4
 # Where a table reaches 1 the front speed is taken at this level, since it is infinite at 1.
 MAX_LEVEL = 1.0 - 1e-9

@@ -336,9 +336,9 @@ class Scene:
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
 
 
-# The numbers of a scene in the order of its fields, and those among them that are coefficients of
-# terms that the paper's equation does not have.
+# The numbers of a scene in the order of its fields.
 SCENE_NUMBERS = definitions_of(Scene)
+# Those among them that are coefficients of terms that the paper's equation does not have.
 EXTRA_TERMS = {name: term for name, term in SCENE_NUMBERS.items() if term.extra_term}
 DEFAULTS_OF_EXTRA_TERMS = {name: term.default for name, term in EXTRA_TERMS.items()}
 # Names of the attributes that describe a simulation in a data file.

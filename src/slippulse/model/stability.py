@@ -40,8 +40,8 @@ def largest_step(
 
     - "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + c^2) - c, where
       dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4;
-    - "localised" (a Taylor step that expands velocity to ``order``, and slip to one order more):
-      the step may amplify no mode; 0 if the polynomials overflow;
+    - "localised" (Taylor step of ``order`` in velocity and ``order`` + 1 in slip): the step may
+      amplify no mode; 0 if the polynomials overflow;
     - "continuum": infinite, since there are no steps.
 
     damping_ratio : b = beta/dx
@@ -67,10 +67,10 @@ def accurate_step(
 ) -> float:
     """Return the largest Taylor step, in units of dx, with at most a given relative error.
 
-    The error is estimated by the first omitted term of the Taylor series of the fastest mode,
-    (r dt)^(order + 1)/(order + 1)!, where r is the rate at which the mode changes. For a mode of
-    stiffness k and damping rate 2c, this rate is sqrt(k). If the mode is overdamped (c^2 > k), it
-    is c + sqrt(c^2 - k).
+    The error is estimated by the first omitted term of the Taylor series of the fastest mode. This
+    term is (r dt)^(order + 1)/(order + 1)!, where r is the rate at which the mode changes. For a
+    mode of stiffness k and damping rate 2c, this rate is sqrt(k). If the mode is overdamped
+    (c^2 > k), it is c + sqrt(c^2 - k).
 
     The other arguments are explained in `largest_step`.
     """

@@ -1,13 +1,13 @@
 """Spacing, step and order that keep the numbers of a scene within a largest relative error.
 
-In the continuum limit, at fixed beta/dx, the relative error of each number is a constant times dx
-divided by a length of the scene (or the square of this ratio). Solving for dx gives one spacing for
-each number, and `settings_for` returns the smallest of them.
+As dx tends to 0 at fixed beta/dx, each measured number tends to a limit. Its relative error is a
+constant times dx divided by a length of the scene, or times the square of this ratio. Solving for
+dx gives one spacing for each number, and `settings_for` returns the smallest of them.
 
 The constants are defined below. If no derivation is given, a constant is an upper bound that was
-measured in runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and gamma W^2 =
-0.001 to 64 under a displacement boundary, and levels of -0.1 to -10 under a stress boundary.
-`slippulse.measurement.promise` lists the numbers that are covered.
+measured in runs at two or three spacings. Under a displacement boundary, these runs had tau_0 = 0.1
+to 0.9, beta/dx = 0 to 1 and gamma W^2 = 0.001 to 64. Under a stress boundary, they had levels of
+-0.1 to -10. `slippulse.measurement.promise` lists the numbers that are covered.
 """
 
 import math
@@ -29,8 +29,8 @@ from ..theory.front_speeds import front_speed
 # this error.
 MAX_DAMPING_RATIO = 1.0
 # Fraction of the promised error that the spacing may use. The step uses a part of the rest. The
-# other part is for the scatter of a grid study, which with factors of 1.5 and 2 finds up to a third
-# more than the true error.
+# other part is for the scatter of a grid study. On lattices that are 1.5 and 2 times coarser, such
+# a study finds up to a third more than the true error.
 SPACING_FRACTION = 0.7
 # Smallest number of blocks across the narrowest length. A lattice four times coarser still has 8.
 MIN_BLOCKS = 32

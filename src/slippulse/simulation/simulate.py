@@ -41,22 +41,24 @@ def simulate(
     scene : Scene
     samples : Samples, optional
     progress : callable or bool, optional
-        Called with the fraction of the duration done; True draws a bar with the time that is left.
+        A function that is called with the fraction of the duration done. True draws a bar with the
+        time that is left.
     strict : bool
         Raise UnresolvedRun instead of returning a flagged run.
 
     Returns
     -------
     xarray.Dataset
-        Variables with the dimension x: prestress, release_time, stick_time, and slip,
-        slip_velocity and slip_acceleration at the end. Attributes: every parameter of the scene,
-        counters, the energy balance, run_flags ("" or names separated by commas) and versions.
+        The variables have the dimension x: prestress, release_time, stick_time, and slip,
+        slip_velocity and slip_acceleration at the end. The attributes are every parameter of the
+        scene, counters, the energy balance, run_flags ("" or names separated by commas) and
+        versions.
 
     Raises
     ------
     ValueError
-        If an argument has another type, if a sample is later than the end, or if the run may take
-        days or more memory than a small machine has. `run_sweep` accepts any cost.
+        If an argument has another type, or if a sample is later than the end. Also if the run may
+        take days, or more memory than a small machine has; `run_sweep` accepts any cost.
     UnstableRun
         If slip velocity is not finite or larger than the pre-stress can drive.
     UnresolvedRun
@@ -118,22 +120,24 @@ def run_sweep(
     samples : sequence of Samples, optional
         One for each scene, all with the same numbers of times and positions.
     record : sequence of {"fronts", "fields", "samples"}
-        Fields to keep: "fronts" are release and stick times, "fields" are slip, slip velocity and
-        acceleration at the end, and "samples" are the recorded samples.
+        Groups of results to keep. "fronts" are release and stick times. "fields" are slip, slip
+        velocity and acceleration at the end. "samples" are the recorded samples.
     threads : int, optional
         Number of scenes that are solved at a time, from 1 to 1024. The default is the number of
         cores that this process may use. The result does not depend on it.
     progress : callable or bool, optional
-        Called with (number done, number of scenes) after each scene; for a single scene, with the
-        fraction done and 1. True draws a bar with the time that is left.
+        A function that is called with (number done, number of scenes) after each scene. For a
+        single scene, it is called with the fraction done and 1 during the run. True draws a bar
+        with the time that is left.
 
     Returns
     -------
     xarray.Dataset
-        Numbers have the dimension ``point``, with the parameters as coordinates: ``sel`` selects
-        runs by any of them, and `as_grid` turns the parameters of a full product into axes. Arrays
-        of blocks have the dimension ``block`` and are contiguous ragged arrays: the ``row_size``
-        blocks of a run begin at ``row_start``. Samples have the dimensions (point, time, position).
+        Numbers have the dimension ``point``, with one value for each run. The parameters are
+        coordinates: ``sel`` selects runs by any of them, and `as_grid` turns them into axes if
+        there is a run for each combination. Fields have the dimension ``block``, along which the
+        runs follow one another: the ``row_size`` blocks of a run begin at ``row_start``. Samples
+        have the dimensions (point, time, position).
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """Arrays, constants and counters that the kernels share, in named groups.
 
-Each group is a NamedTuple, which the kernels read by field name. Shapes: K = order + 2 time
-derivatives of slip (rows 0 to order + 1), and N blocks of the lattice, with one ghost block at each
-end. Lengths are in units of H, times in units of H divided by the wave speed, and stresses in units
-of the stress drop.
+Each group is a NamedTuple, which the kernels read by field name. In the shapes of arrays, K is the
+number of time derivatives of slip, from derivative 0 to derivative order + 1. N is the number of
+blocks of the lattice, with one ghost block at each end. Lengths are in units of H, times in units
+of H divided by the wave speed, and stresses in units of the stress drop.
 """
 
 from typing import NamedTuple

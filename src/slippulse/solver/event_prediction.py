@@ -2,8 +2,8 @@
 
 Between events, the stress of a stuck block and the velocity of a sliding block are polynomials in
 the time since the step began. A block is released when its stress reaches 1, and it sticks when its
-velocity falls to 0. A law of friction may be piecewise linear; the slip or slip rate of a block
-reaching the kink of its law is an event, too. Each time is therefore a root of a polynomial, and
+velocity falls to 0. If the law of friction is piecewise linear, a third kind of event is that the
+slip or slip rate of a block reaches the kink. Each time is therefore a root of a polynomial, and
 `find_next_event` chooses the earliest. Most blocks are excluded by bounds that cost little; roots
 are found by Newton's method.
 

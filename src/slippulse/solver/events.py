@@ -1,9 +1,10 @@
 """Change of the motion by an event: a release, a stick, or a kink in the law of friction.
 
 The sliding lattice is linear. An event therefore adds a polynomial in time, the difference, to the
-Taylor polynomial of each block. At the block of the event, the first derivative of the difference
-that is not zero is the second one (the third if the event is a kink of the law). Each further
-derivative reaches one block further, since damping couples neighbours through their velocities:
+Taylor polynomial of each block. The lowest derivative of the difference that is not zero is the
+second one, at the block of the event. (If the event is a kink of the law, it is the third one.)
+Each further derivative reaches one block further, since damping couples neighbours through their
+velocities:
 
     derivative 2            x
     derivative 3          x x x
@@ -289,8 +290,8 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
         friction = start_sliding(centre, medium, motion, block, now, top)
     acceleration_change = centre[ACCELERATION]
     loss_slope_change = change_of_loss_slope(medium, w, block, acceleration_change, now, top)
-    # The time derivative of the power of friction (friction times velocity) changes by friction
-    # times the change of acceleration, and at a kink by what `change_weakening` returns.
+    # The power of friction is friction times velocity. Its time derivative changes by friction
+    # times the change of acceleration. At a kink of the law `change_weakening` returns its change.
     work_slope_change += friction * acceleration_change
 
     # Then all blocks within its reach.

@@ -33,10 +33,10 @@ from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
 from .taylor import BLOW_UP_FACTOR, next_step, record_release, record_stick
 
-# A front is locked to a fraction of dx/dt if it repeats the same cycle until the end: a few blocks
-# are released one after another, each time after the same numbers of steps. The front speed can
-# then be wrong by up to 13 per cent. A cycle of at least MIN_UNBIASED_CYCLE_STEPS steps does no
-# harm.
+# A front is locked to a fraction of dx/dt if it repeats the same cycle until the end. In a cycle a
+# few blocks are released one after another, and the numbers of steps between them are the same each
+# time. The front speed can then be wrong by up to 13 per cent. A cycle of at least
+# MIN_UNBIASED_CYCLE_STEPS steps does no harm.
 MAX_CYCLE_BLOCKS = 6
 MIN_CYCLE_REPEATS = 30
 MIN_UNBIASED_CYCLE_STEPS = 50

@@ -101,8 +101,8 @@ def add_weakening(w, k, first, last, column, motion, law_kink):
     """Add the decrease of piecewise linear friction to time derivative k of slip.
 
     Friction falls by the slope times its argument, the slip or the slip rate (see `LawKink`).
-    Derivative k of slip therefore contains the slope times derivative k - 2 of the argument, which
-    is in row k - 2 of ``w`` (slip) or in row k - 1 (slip rate).
+    Derivative k of slip therefore contains the slope times derivative k - 2 of the argument. This
+    is row k - 2 of ``w`` if the argument is the slip, and row k - 1 if it is the slip rate.
 
     w : time derivatives of slip; its column i is block i + ``column`` of the lattice
     """

@@ -363,8 +363,8 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
-    # The bottom row has only a value above it, and the top row only one below it, which counts
-    # twice since these rows have half the height.
+    # The bottom row has only a value above it, and the top row only one below it. This value counts
+    # twice, since these rows have half the height.
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0

@@ -1,7 +1,7 @@
 """The solution of a scene: its fields, its energies and its counters.
 
-When a lattice has reached the end of its scene, its arrays are unfolded (if only the half x >= 0
-was solved) and cut to the blocks that slipped, with a margin.
+When a lattice has reached the end of its scene, its arrays are cut to the blocks that slipped, with
+a margin. If only the half x >= 0 was solved, they are also extended by their mirror images.
 """
 
 import math
@@ -121,10 +121,10 @@ def _excess_of_viscous_loss(
 ) -> float:
     """Return the amount by which symplectic Euler overestimates the viscous loss of a run.
 
-    The scheme counts h D_1 for a step of length h, where D_0 and D_1 are the dissipation at the
-    start and at the end of the step. However, the damping force contains the velocity at the start
-    of the step and acts over the mean velocity, so that the loss is h (3 D_0 + D_1)/4. Since a run
-    starts at rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
+    Let D_0 and D_1 be the dissipation at the start and at the end of a step of length h. The scheme
+    counts h D_1. However, the damping force contains the velocity at the start of the step, and
+    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4. Since a run starts at
+    rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
 
     strain_rate : between each block and the next one, at the end
     """

@@ -6,13 +6,13 @@ therefore cheap to compute, and it gives the motion at any time of the step. One
 1. Compute the time derivatives of slip of all sliding blocks (`fill_derivatives`).
 2. The stress of a stuck neighbour and the velocity of a sliding block are polynomials in the time
    since the step began. Find their first root, which is the next event (`event_prediction`).
-3. Add the change that the event makes to the polynomials of the blocks within its reach, predict
-   the events of these blocks again (`events`), and go back to 2 until no event is left.
+3. Add the change that the event makes to the polynomials of the blocks within its reach, and
+   predict the events of these blocks again (`events`). Go back to 2 until no event is left.
 4. Advance slip, velocity and strain to the end of the step (`finish_step`).
 
-Two events so close that each would change the other end the step early, and happen together at its
-end. Only segments of sliding blocks and their neighbours are touched, since the derivatives of all
-other blocks are zero.
+If two events are so close that each would change the other, the step ends early, and they happen
+together at its end. Only segments of sliding blocks and their neighbours are touched, since the
+derivatives of all other blocks are zero.
 """
 
 import math
@@ -114,8 +114,8 @@ def take_samples(recorder, motion, tally, start, end, order):
 def compute_dissipation(medium, motion, segments):
     """Return the power that damping and friction alpha v dissipate, and its time derivative.
 
-    With velocities v, damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2 over all
-    neighbours, and friction alpha v dissipates alpha dx times the sum of v_i^2 over all blocks.
+    Damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2 over all pairs of neighbours.
+    Friction alpha v dissipates alpha dx times the sum of v_i^2 over all blocks.
     """
     # Sums of dv^2 and dv da over pairs of neighbours, and of v^2 and v a over blocks, where a is
     # the acceleration.
@@ -165,9 +165,9 @@ def loss_of_step(h, dissipation, slope, slope_changes):
 
     Let D_0 and D_0' be the dissipation and its slope at the start of the step, and D_1 the
     dissipation at its end. The loss is h (2 D_0 + D_1)/3 + h^2 D_0'/6, correct to third order in h.
-    The part h D_1/3 is added at the start of the next step, where D_1 is computed. (Velocities are
-    continuous.) An event at time s that changes the slope by k adds k (h - s)^2/2 to the loss.
-    Since D_1 contains the event already, h k (h - s)/3 is subtracted again.
+    The part h D_1/3 is added at the start of the next step, where D_1 is computed. An event at time
+    s that changes the slope by k adds k (h - s)^2/2 to the loss. Since D_1 contains the event
+    already, h k (h - s)/3 is subtracted again.
 
     dissipation, slope : D_0 and D_0'
     slope_changes : moments of k over the events of the step, see `arrays.SLOPE_CHANGES_DTYPE`
