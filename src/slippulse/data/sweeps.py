@@ -54,9 +54,13 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     variables: dict[str, tuple] = {}
     for name in runs[0].attrs:
         if name != "versions":
-            variables[name] = "point", np.array([run.attrs[name] for run in runs])
-    fields = [*FRONT_VARIABLES] if "fronts" in record else []
-    fields += FIELD_VARIABLES if "fields" in record else []
+            values = np.array([run.attrs[name] for run in runs])
+            variables[name] = ("point", values)
+    fields: list[str] = []
+    if "fronts" in record:
+        fields += FRONT_VARIABLES
+    if "fields" in record:
+        fields += FIELD_VARIABLES
     if fields:
         # This is how the CF conventions describe a contiguous ragged array of profiles.
         attributes["featureType"] = "profile"
@@ -72,7 +76,8 @@ def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[st
     sizes = np.array([run["x"].size for run in runs])
     variables: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
     for name in ("x", "prestress", *fields):
-        variables[name] = "block", np.concatenate([run[name] for run in runs])
+        values = np.concatenate([run[name] for run in runs])
+        variables[name] = ("block", values)
     return variables
 
 
@@ -81,5 +86,6 @@ def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
     variables: dict[str, tuple] = {}
     for name, dimensions in DIMENSIONS.items():
         axes = [dimension.removeprefix("sample_") for dimension in dimensions]
-        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
+        values = np.stack([run[name] for run in runs])
+        variables[name] = (("point", *axes), values)
     return variables

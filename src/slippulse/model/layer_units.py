@@ -415,6 +415,7 @@ class Layer(LayerMaterial):
         """Raise ValueError if the boundary or the gamma of a run is not that of this layer."""
         boundary, gamma = attributes["boundary"], attributes["gamma"]
         check_that(boundary == self.boundary, "run: boundary", boundary, repr(self.boundary))
+        # Without a held top there are no leaf springs, and gamma of the run is 0.
         expected = self.gamma if self.top == "held" else 0.0
         is_equal = math.isclose(gamma, expected, rel_tol=GAMMA_TOLERANCE)
         check_that(is_equal, "run: gamma", gamma, f"{expected!r}, as in the layer")

@@ -72,8 +72,11 @@ def lowest_stress(scene: Scene, solution: Solution) -> float:
     """
     if scene.scheme != "continuum":
         return solution.numbers["min_stuck_stress"]
-    first, last = solution.x[0] - scene.duration, solution.x[-1] + scene.duration
-    return float(np.min(scene.prestress(np.linspace(first, last, PRESTRESS_POSITIONS))))
+    # Waves have the speed 1, so that they run this far beyond the positions of the solution.
+    distance = scene.duration
+    first, last = solution.x[0] - distance, solution.x[-1] + distance
+    positions = np.linspace(first, last, PRESTRESS_POSITIONS)
+    return float(np.min(scene.prestress(positions)))
 
 
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:
