@@ -19,15 +19,15 @@ from .prestress import Interval, Prestress
 
 def integral(prestress: Prestress, lower: float, upper: float) -> float:
     """Return the integral of the pre-stress from ``lower`` to ``upper``, in closed form."""
-    first, last = min(lower, upper), max(lower, upper)
+    left_limit, right_limit = min(lower, upper), max(lower, upper)
     total = 0.0
     for interval in prestress.intervals:
         # The overlap of the interval with the range of integration, if they overlap.
-        start, end = max(interval.left, first), min(interval.right, last)
+        start, end = max(interval.left, left_limit), min(interval.right, right_limit)
         if start < end:
             total += _integral_in_interval(prestress, interval, start, end)
     for centre, amplitude, width in prestress.bumps:
-        total += amplitude * _gaussian_area(first, last, centre, width)
+        total += amplitude * _gaussian_area(left_limit, right_limit, centre, width)
     return total if upper >= lower else -total
 
 

@@ -40,8 +40,8 @@ MAX_LEVEL = 1.0 - 1e-9
 GAUSSIAN_END_IN_WIDTHS = 5.0
 # Factor by which the bound on a front speed is larger than simple estimates of it.
 SPEED_MARGIN = 1.3
-# A step ends early after this number of events. Each block has at most about two, a release and a
-# stick.
+# A step ends early after this number of events. A block usually has two events in a run, a release
+# and a stick.
 MAX_EVENTS_PER_STEP = 64
 EVENTS_PER_BLOCK = 2.0
 # Number of blocks at rest beyond each front.

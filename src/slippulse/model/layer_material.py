@@ -31,7 +31,7 @@ class Scales(NamedTuple):
     """The units of the model, in SI units.
 
     A non-dimensional number is converted to SI units by multiplying it by the scale of its
-    quantity.
+    quantity. A stress also has another zero in SI units, see `LayerMaterial.convert_to_si`.
     """
 
     length: float
