@@ -21,7 +21,6 @@ SMALL_STUDIES = {
         "WEAKENINGS": (0.05, 0.8),
         "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
     },
-    "layer_healing": {"THICK_PULSES": ((0.36, 4.0), (0.41, 1.5), (0.41, 2.5))},
     "rough_checks": {
         "GRID_SEEDS": 1,
         "LENGTH_SEEDS": 2,
