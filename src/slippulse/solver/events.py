@@ -176,6 +176,10 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         add_weakening(rows, k, first, last, column, motion, medium.law_kink)
         # After a stick the block is held, so the difference of its neighbours does not move it.
         rows[k, CENTRE_COLUMN] = centre[k] + (0.0 if event.is_stick else rows[k, CENTRE_COLUMN])
+    if event.is_stick:
+        # The polynomial of the block itself was changed when the block was stopped.
+        for k in range(2, top + 1):
+            rows[k, CENTRE_COLUMN] = 0.0
 
 
 @kernel_function(inline=True)
@@ -296,10 +300,6 @@ def apply_event(medium, motion, segments, prediction, difference, event, h, top)
 
     # Then all blocks within its reach.
     spread_difference(difference, medium, motion, event, left, right, top)
-    if is_stick:
-        # The polynomial of the block of the event was changed when the block was stopped.
-        for k in range(2, top + 1):
-            difference.rows[k, CENTRE_COLUMN] = 0.0
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
