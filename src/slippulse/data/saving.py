@@ -5,7 +5,6 @@ data therefore give files with equal bytes.
 """
 
 from collections.abc import Hashable
-from io import BytesIO
 from pathlib import Path
 
 import h5py
@@ -23,8 +22,12 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """
     if configuration():
         dataset = dataset.assign_attrs(configuration=configuration())
-    content = BytesIO()
-    with h5py.File(content, "w", track_order=True) as file:
+    write_whole(path, lambda unfinished: _write(dataset, unfinished))
+
+
+def _write(dataset: xr.Dataset, path: Path) -> None:
+    """Write a Dataset to a new file."""
+    with path.open("w+b") as target, h5py.File(target, "w", track_order=True) as file:
         file.attrs.update(dataset.attrs)
         stored = {}
         for name, variable in dataset.variables.items():
@@ -33,7 +36,6 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
             stored[name] = file.create_dataset(name, data=values)
             stored[name].attrs.update(variable.attrs)
         _store_dimensions(file, stored, dataset)
-    write_whole(path, lambda unfinished: unfinished.write_bytes(content.getbuffer()))
 
 
 def _store_dimensions(
