@@ -37,38 +37,46 @@ DURATION = 48.0
 # Stations of a pulse at GAMMA. Each measurement averages over a window around the position.
 # Comparing the last two stations shows whether the pulse is steady.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
+# Stations at which the same pulses are followed farther, on two grids. A pulse has split if a point
+# slides for less than this fraction of the time at the first of these stations.
+FAR_STATIONS = (16.0, 28.0, 40.0)
+SPLIT_FRACTION = 0.5
+# The front may become slower beyond the station at which its speed was measured, by this fraction.
+SLOWER_FRONT = 0.01
 # Stations of other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
 # Cells over the height. The run on the first grid determines how long the other runs must be.
-CELLS = (10, 20, 40)
-FINE_CELLS = (20, 40, 80)
-# The finer grids are used below this fracture energy and above this gamma: small fracture energies
-# need them, but at small gamma they would take too long.
-FINE_GRID_MAX_ENERGY = 0.3
-FINE_GRID_MIN_GAMMA = 0.2
+# Pulses of short weakening need the finest grids: the length gamma d_c over which the strength
+# falls is compared with BRITTLE_LENGTH. Below SMALL_GAMMA, where pulses are wide, all grids are one
+# step coarser.
+CELLS = (10, 20, 40, 80)
+BRITTLE_LENGTH = 0.2
+SMALL_GAMMA = 0.2
 # A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
 LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
 # The paper's damping.
 BETA = 1e-3
-# Pre-stress and weakening of a pulse whose top may rise, and of a crack under a stress boundary.
-FREE_TOP_LEVEL, FREE_TOP_WEAKENING = 0.5, 0.225
+# Pre-stress and relative fracture energy of pulses whose top may rise.
+FREE_TOP_PULSES = ((0.5, 0.42), (0.5, 0.6), (0.8, 0.42))
+# Pre-stress and weakening of a crack under a stress boundary.
 CRACK_LEVEL, CRACK_WEAKENING = 0.8, 0.8
-# Duration of all parts except pulse and step.
+# Duration of the parts free and crack.
 OTHER_DURATION = 30.0
 # Part barrier: the level that stops the left front under a stress boundary, the width of the
 # Gaussian at the nucleation, weakening distances, and the duration in units of OTHER_DURATION.
 BARRIER_LEVEL = -0.75
 GAUSSIAN_WIDTH = 5.0
-WEAKENINGS = (0.05, 0.2, 0.8)
-BARRIER_RELATIVE_DURATION = 1.8
-# Friction coefficients of a strength that depends on the normal stress.
-COUPLINGS = (0.3, 0.6)
+WEAKENINGS = (0.05, 0.8)
+BARRIER_RELATIVE_DURATION = 4.0
+# Friction coefficients of a strength that depends on the normal stress, and the duration.
+COUPLINGS = (0.1, 0.3, 0.6)
+COUPLED_DURATION = 48.0
 # Part step: a pulse enters another pre-stress at STEP_POSITION, with this weakening and these
 # levels at GAMMA. Its stations lie before and beyond the step.
 STEP_POSITION = 10.0
 STEP_WEAKENING = 0.3
 STEP_LEVELS = (0.65, 0.8)
-STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
+STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0, 30.0)
 # Part patch: its duration, in units of the time at which a strip that slides uniformly sticks.
 PATCH_RELATIVE_DURATION = 1.2
 # Part field: fracture energy of the pulse that is drawn, and time of the picture. One in two nodes
@@ -84,15 +92,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the measurements of all runs by part, and the part field for the picture.
 
     There is one row for each run, grid and station. Under a displacement boundary the parts are
-    pulse, patch (the same until the region without friction has stuck), step (a pulse enters
-    another pre-stress), free (the top is free to rise) and coupled (the strength depends on the
-    normal stress). Under a stress boundary they are crack and barrier.
+    pulse, far (the same pulses farther away), patch (the same until the region without friction has
+    stuck), step (a pulse enters another pre-stress), free (the top is free to rise) and coupled
+    (the strength depends on the normal stress). Under a stress boundary they are crack and barrier.
     """
     rows: Rows = []
     for gamma in GAMMAS:
         rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
-        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:])
+        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
     rows += free_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
     drawn = uniform("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
     field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
@@ -100,20 +108,80 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return the rows of pulses at several fracture energies and levels.
+    """Return the rows of pulses at several fracture energies and levels, near and far.
 
-    Each row also has the numbers of `one_dimensional_theory`.
+    The rows of the part pulse also have the numbers of `one_dimensional_theory`.
     """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
     for tau0, energy in cases:
         scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
-        needs_fine_grid = energy < FINE_GRID_MAX_ENERGY and gamma > FINE_GRID_MIN_GAMMA
-        grids = FINE_CELLS if needs_fine_grid else CELLS
+        near, far = near_and_far(scene)
         theory = one_dimensional_theory(scene)
-        rows += [row | theory for row in at_stations("pulse", scene, grids, STATION_POSITIONS)]
+        rows += [row | theory for row in near] + far
+    if gamma == GAMMA:
+        # The pulse of the part step in uniform pre-stress is followed, too.
+        _, far = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
+        rows += far
     return rows
+
+
+def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
+    """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS."""
+    positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
+    is_wide = scene.gamma < SMALL_GAMMA
+    followed_cells = CELLS[:2] if is_wide else CELLS[1:3]
+    is_brittle = scene.gamma * scene.weakening < BRITTLE_LENGTH
+    grids = CELLS[: 2 + is_brittle] if is_wide else CELLS[: 3 + (is_brittle and scene.gamma == GAMMA)]
+    # The run on the coarsest grid shows how long those on finer grids must be.
+    scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=grids[0])
+    run = simulate_layer(scene)
+    near, far = measured("pulse", scene, run, 1, positions), []
+    short_scene = shortened(scene, run, positions)
+    long_scene = extended(short_scene, near[-1]["speed"])
+    for cells in grids:
+        if cells in followed_cells:
+            scene = replace(long_scene, cells=cells)
+            run = simulate_layer(scene)
+            far += followed("far", scene, run, 1)
+        elif cells > grids[0]:
+            scene = replace(short_scene, cells=cells)
+            run = simulate_layer(scene)
+        if cells > grids[0]:
+            near += measured("pulse", scene, run, 1, positions)
+    return near, far
+
+
+def extended(scene: LayerScene, speed: float) -> LayerScene:
+    """Return a scene whose pulse passes the last of FAR_STATIONS, not of STATION_POSITIONS.
+
+    speed : front speed of the pulse
+    """
+    way = (FAR_STATIONS[-1] - STATION_POSITIONS[-1]) * stretch(scene.gamma)
+    more_time = (1.0 + SLOWER_FRONT) * way / speed
+    trail = scene.trail + max(0.0, more_time - way)
+    return replace(scene, duration=scene.duration + more_time, trail=trail)
+
+
+def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
+    """Return the rows of one run at FAR_STATIONS, with the position at which the pulse has split.
+
+    Behind the tip of a split pulse points stick early and are released again. The position is NaN
+    if the pulse does not split between the first and the last station.
+    """
+    positions = [side * station * stretch(scene.gamma) for station in FAR_STATIONS]
+    rows = measured(part, scene, run, side, positions)
+    sliding_times = run.stick_time - run.release_time
+    first_sliding_time = rows[0]["pulse_width"] / rows[0]["speed"]
+    distance = side * run.x
+    is_between = (distance > abs(positions[0])) & (distance < abs(positions[-1]))
+    is_split = is_between & (sliding_times < SPLIT_FRACTION * first_sliding_time)
+    split_position = float(distance[is_split].min()) if is_split.any() else math.nan
+    is_beyond = distance > abs(positions[0])
+    slides_again = is_beyond & np.isfinite(run.stick_time) & (run.velocity[0] > 0.0)
+    behaviour = {"split_position": split_position, "slides_again": float(slides_again.sum()/scene.cells)}
+    return [row | behaviour for row in rows]
 
 
 def patch_rows(gamma: float) -> Rows:
@@ -127,30 +195,36 @@ def patch_rows(gamma: float) -> Rows:
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
-    rows = along_path("patch", scene, CELLS)
+    rows = along_path("patch", scene, CELLS[:3])
     # There is one row for each station of a grid, but the region sticks only once in each run.
     first_stations = rows[:: len(FRACTIONS_OF_PATH)]
     return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
 
 
 def free_top_rows() -> Rows:
-    """Return the rows of a pulse in a layer whose top is free to rise."""
-    scene = uniform("displacement", GAMMA, FREE_TOP_LEVEL, FREE_TOP_WEAKENING)
-    return along_path("free", replace(scene, top="free"), CELLS)
+    """Return the rows of pulses in a layer whose top is free to rise."""
+    rows: Rows = []
+    for tau0, energy in FREE_TOP_PULSES:
+        scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
+        rows += along_path("free", replace(scene, top="free"), CELLS[:3])
+    return rows
 
 
 def crack_rows() -> Rows:
     """Return the rows of a crack in uniform pre-stress under a stress boundary."""
-    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS)
+    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS[:3])
 
 
 def coupled_rows() -> Rows:
     """Return the rows of pulses on both sides, if the strength depends on the normal stress."""
     weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
+    scene = replace(scene, duration=COUPLED_DURATION)
     rows: Rows = []
-    for coupling in COUPLINGS:
-        rows += along_path("coupled", replace(scene, coupling=coupling), FINE_CELLS[:2], (1, -1))
+    for coupling, cells in product(COUPLINGS, CELLS[1:3]):
+        coupled = replace(scene, coupling=coupling, cells=cells)
+        run = simulate_layer(coupled)
+        rows += followed("coupled", coupled, run, 1) + followed("coupled", coupled, run, -1)
     return rows
 
 
@@ -169,7 +243,7 @@ def barrier_rows() -> Rows:
     balance = {"balance_distance": paper_transition_stress(prestress)[0]}
     rows: Rows = []
     for weakening in WEAKENINGS:
-        stopped = along_path("barrier", replace(scene, weakening=weakening), CELLS, (1, -1))
+        stopped = along_path("barrier", replace(scene, weakening=weakening), CELLS[:2], (1, -1))
         rows += [row | balance for row in stopped]
     return rows
 
@@ -322,6 +396,7 @@ def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
         "first_stick": first_stick,
         "earliest_stick": float(sticks.min()),
         "earliest_stick_position": float(abs(run.x[np.argmin(sticks)])),
+        "largest_velocity": float(run.velocity[0].max()),
         "energy_residual": run.energy_residual,
         "end": side * path_length(run, side),
     }
