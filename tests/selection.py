@@ -21,7 +21,6 @@ SMALL_STUDIES = {
         "WEAKENINGS": (0.05, 0.8),
         "FRACTURE_ENERGIES": (0.05, 0.42, 0.9),
     },
-    "layer_healing": {"THICK_HALF_LENGTHS": (1.5, 5.0)},
     "rough_checks": {
         "GRID_SEEDS": 1,
         "LENGTH_SEEDS": 2,

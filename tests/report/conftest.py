@@ -57,7 +57,7 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
 
 def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
     """Return each finding, with every number that a text uses."""
-    variables = "n|late|literal|damped|made_with|collapse|plane|rough"
+    variables = "n|late|literal|damped|made_with|collapse|plane|healing|rough"
     names = set(re.findall(rf"\b(?:{variables})\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
     numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))}

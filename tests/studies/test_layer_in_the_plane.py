@@ -159,15 +159,15 @@ def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
         .set_index("patch_half_length")
     )
     for change in (runs["change"], runs["coarse_change"]):
-        assert change[1.5] < -0.08 and change[5.0] > 0.02
+        assert change[1.5] < -0.08 and change[5.0] > 0.01
     # Pulses differ more and more, so that no steady one attracts both.
     thick = slip.drop(index=1.0, level="thickness").dropna(axis="columns")
     ratios = thick.max() / thick.min()
-    assert ratios.is_monotonic_increasing and ratios.iloc[-1] > 1.2 * ratios.iloc[0] > 3.0
+    assert ratios.is_monotonic_increasing and ratios.iloc[-1] > 1.2 * ratios.iloc[0] > 3.6
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("half_length", "change"), [(1.5, -0.130), (2.5, 0.227), (5.0, 0.142)])
+@pytest.mark.parametrize(("half_length", "change"), [(1.5, -0.118), (5.0, 0.109)])
 def test_finer_grids_change_the_growth_in_a_thick_layer_but_not_its_sign(half_length, change):
     level = layer_healing.THICK_LEVEL
     pulse = layer_healing.Pulse(level, level, half_length)

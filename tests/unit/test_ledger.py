@@ -21,7 +21,7 @@ from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, written
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 
-YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
+YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
 NAN = float("nan")
 KNOWN = [1e-4, 1e-4]
 OVER_CHOICES = rules.verdict_over_choices
@@ -416,3 +416,18 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
         ledger.found("none")
     with pytest.raises(ValueError, match="claim: 'no'; allowed: one"):
         ledger("no")
+
+
+@pytest.mark.parametrize(
+    ("counts", "paper", "beyond"),
+    [((3, 0, 0), YES, HOLDS), ((19, 0, 1), CAVEAT, WITH_CAVEAT), ((2, 1, 0), NO, BEYOND)],
+)
+def test_a_claim_beyond_the_paper_holds_but_is_not_reproduced(counts, paper, beyond):
+    claim, entry = (
+        Qualitative(decided=answers(*counts)),
+        ENTRIES["estimate"] | {"kind": "qualitative"},
+    )
+    assert written("estimate", claim, entry, "")["verdict"] == paper
+    other = written("estimate", claim, entry | {"beyond": True}, "")
+    assert other["verdict"] == beyond and not other["counted"]
+    assert Ledger([other]).summary().startswith("0 counted claims")

@@ -103,8 +103,8 @@ def barrier_depth(
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
     """Return an estimate of the depth, (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
 
-    Raises ValueError: outside the domain. The paper does not have this estimate; its authors use it in
-    public code that they wrote later.
+    The paper does not have this estimate; its authors use it in public code that they wrote later.
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..records.provenance import changes
 from ..text.numerals import MISSING, number, percent, rounded, setting, with_uncertainty
-from .rules import FAILED, NOT_TESTABLE, REPRODUCED, VERDICTS
+from .rules import FAILED, NOT_TESTABLE, VERDICTS, WITHOUT_RESERVATION
 
 # A claim reports the tolerances at which its verdict changes if they are within this factor of its
 # own tolerance.
@@ -44,7 +44,7 @@ class Entry(SimpleNamespace):
 
     def why_text(self) -> str:
         """Return why a claim is not simply reproduced; empty if it is."""
-        if self.verdict == REPRODUCED or self.why:
+        if self.verdict in WITHOUT_RESERVATION or self.why:
             return self.why
         if self.verdict == NOT_TESTABLE:
             return "This run has no number that could be judged."

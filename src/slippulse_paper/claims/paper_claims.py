@@ -32,7 +32,7 @@ from .claim_texts import places_of
 from .evidence import Evidence
 from .kinds import Claim
 from .ledger import with_texts
-from .rules import NOT_TESTABLE
+from .rules import NOT_TESTABLE, VERDICTS_BEYOND
 
 # Simulations behind the claims, each with the topics of the predictions that it is compared with.
 SIMULATIONS = {
@@ -187,6 +187,8 @@ def written(
         # Only estimates have a spread of runs and a comparison with exact theory.
         fields |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     fields |= {"id": id} | claim.json_fields()
+    if fields["beyond"]:
+        fields["verdict"] = VERDICTS_BEYOND.get(fields["verdict"], fields["verdict"])
     fields["figure_or_section"] = place or "beyond the paper"
     fields["counted"] = not (fields["follows_from"] or fields["beyond"] or fields["remark"])
     if "earlier_tolerance" in entry:

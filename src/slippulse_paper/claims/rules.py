@@ -10,12 +10,22 @@ CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
 UNMET = "premise not met"
 BEYOND = "different beyond the paper"
+HOLDS_BEYOND = "holds beyond the paper"
+HOLDS_BEYOND_WITH_CAVEAT = "holds beyond the paper with caveat"
 FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
-VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NOT_TESTABLE)
+VERDICTS_ON_THE_PAPER = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, INCONCLUSIVE, NOT_TESTABLE)
+VERDICTS = (*VERDICTS_ON_THE_PAPER, HOLDS_BEYOND, HOLDS_BEYOND_WITH_CAVEAT, BEYOND)
 # Among several verdicts the one that comes first in this list decides; pages use the same order.
-WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
+WORST_FIRST = (
+    *(FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE),
+    *(BEYOND, CAVEAT, HOLDS_BEYOND_WITH_CAVEAT, REPRODUCED, HOLDS_BEYOND),
+)
+# The paper does not make a claim that is beyond it, so that it is not reproduced but holds.
+VERDICTS_BEYOND = {REPRODUCED: HOLDS_BEYOND, CAVEAT: HOLDS_BEYOND_WITH_CAVEAT, FAILED: BEYOND}
+# A claim with one of these verdicts needs no reason.
+WITHOUT_RESERVATION = (REPRODUCED, HOLDS_BEYOND)
 HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 
 

@@ -42,7 +42,7 @@ def draw_layer(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw a line for each pulse of one layer, with the change from the coarser grid as bars."""
     for colour, (level, runs) in zip(COLOURS, rows.groupby("tau0"), strict=False):
         case = ["before", "patch_half_length"]
-        for marker, (_, run) in zip(MARKERS, runs.groupby(case), strict=True):
+        for marker, (_, run) in zip(MARKERS, runs.groupby(case), strict=False):
             changes = (run["pulse_slip"] - run["coarse_slip"]).abs()
             look: Look = {"color": colour, "marker": marker, "capsize": 1.5}
             axes.errorbar(run["sample_position"], run["pulse_slip"], changes, **look)

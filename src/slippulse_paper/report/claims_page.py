@@ -16,6 +16,8 @@ from ..claims.rules import (
     CAVEAT,
     DEPENDS,
     FAILED,
+    HOLDS_BEYOND,
+    HOLDS_BEYOND_WITH_CAVEAT,
     INCONCLUSIVE,
     NOT_TESTABLE,
     REPRODUCED,
@@ -33,6 +35,8 @@ SIGNS = {
     UNMET: "\N{NOT EQUAL TO}",
     FAILED: "\N{MULTIPLICATION SIGN}",
     BEYOND: "→",
+    HOLDS_BEYOND: "\N{CHECK MARK}",
+    HOLDS_BEYOND_WITH_CAVEAT: "~",
     INCONCLUSIVE: "?",
     NOT_TESTABLE: "\N{EN DASH}",
 }

@@ -8,7 +8,7 @@ import pandas as pd
 
 from ..claims.claim_texts import REASONS, claims_of, coverage, places_of
 from ..claims.ledger import Ledger
-from ..claims.rules import WORST_FIRST
+from ..claims.rules import WITHOUT_RESERVATION, WORST_FIRST
 from ..text.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
 
@@ -103,7 +103,7 @@ def verdicts(lines: Iterable[Line]) -> str:
 def failures(ledger: Ledger) -> str:
     """Return a table of all claims that are not simply reproduced, worst first, with the reason."""
     order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
-    failed = [claim for claim in order if claim.verdict != WORST_FIRST[-1]]
+    failed = [claim for claim in order if claim.verdict not in WITHOUT_RESERVATION]
     rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
     return table("claim l34 | verdict l13 | why l53", rows)
 

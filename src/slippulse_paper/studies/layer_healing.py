@@ -21,7 +21,7 @@ GAMMA = 2.0 / 3.0
 RATE, WEAKENING = 0.05, 0.1
 # Pre-stress of the pulses of the thick layer, and the half-length of the region without friction in
 # which each of them starts. Longer regions start wider pulses.
-THICK_LEVEL, THICK_HALF_LENGTHS = 0.41, (1.5, 2.5, 5.0)
+THICK_LEVEL, THICK_HALF_LENGTHS = 0.41, (1.5, 5.0)
 # Pre-stress of the pulses of the thin layer, and the pre-stress at |x| < STEP_POSITION relative to
 # it. All start in a region without friction of this half-length.
 THIN_LEVELS, RELATIVE_LEVELS_BEFORE, STEP_POSITION = (0.52, 0.56), (0.94, 1.0, 1.1), 10.0
@@ -41,7 +41,7 @@ class Layer:
     cells: tuple[int, int]  # per unit of length, on a coarse and on a fine grid
 
 
-THICK = Layer(22.0, 58.0, 24.0, tuple(range(12, 37, 4)), (10, 20))
+THICK = Layer(20.0, 52.0, 22.0, tuple(range(12, 33, 4)), (10, 20))
 THIN = Layer(1.0, 44.0, 12.0, (9.0, *range(12, 33, 4)), (20, 40))
 
 
