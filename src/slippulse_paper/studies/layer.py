@@ -37,21 +37,21 @@ DURATION = 48.0
 # Stations of a pulse at GAMMA. Each measurement averages over a window around the position.
 # Comparing the last two stations shows whether the pulse is steady.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
-# Stations at which the same pulses are followed farther, on two grids. A pulse has split if a point
-# slides for less than this fraction of the time at the first of these stations.
+# Stations at which the same pulses are followed farther, on two grids. A pulse has split where a
+# point slides for less than this fraction of the time at the first of these stations.
 FAR_STATIONS = (16.0, 28.0, 40.0)
 SPLIT_FRACTION = 0.5
-# The front may become slower beyond the station at which its speed was measured, by this fraction.
+# The front may become slower beyond the last of STATION_POSITIONS, by this fraction.
 SLOWER_FRONT = 0.01
 # Stations of other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
-# Cells over the height. The run on the first grid determines how long the other runs must be.
-# Pulses of short weakening need the finest grids: the length gamma d_c over which the strength
-# falls is compared with BRITTLE_LENGTH. Below SMALL_GAMMA, where pulses are wide, all grids are one
-# step coarser.
+# Cells over the height. Pulses have finer grids if the length gamma d_c, over which the strength
+# falls, is smaller than BRITTLE_LENGTH, and coarser ones if gamma < SMALL_GAMMA. There, runs whose
+# duration multiplied by the length of the solved part is larger than LONG_RUN are left out.
 CELLS = (10, 20, 40, 80)
 BRITTLE_LENGTH = 0.2
 SMALL_GAMMA = 0.2
+LONG_RUN = 3000.0
 # A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
 LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
 # The paper's damping.
@@ -128,29 +128,41 @@ def pulse_rows(gamma: float) -> Rows:
 
 
 def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
-    """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS."""
+    """Return the rows of one pulse at STATION_POSITIONS, and on two grids at FAR_STATIONS."""
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
-    is_wide = scene.gamma < SMALL_GAMMA
-    followed_cells = CELLS[:2] if is_wide else CELLS[1:3]
-    is_brittle = scene.gamma * scene.weakening < BRITTLE_LENGTH
-    grids = CELLS[: 2 + is_brittle] if is_wide else CELLS[: 3 + (is_brittle and scene.gamma == GAMMA)]
-    # The run on the coarsest grid shows how long those on finer grids must be.
-    scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=grids[0])
+    coarsest = CELLS[0]
+    # The run on the coarsest grid shows how long the others must be.
+    scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
     run = simulate_layer(scene)
     near, far = measured("pulse", scene, run, 1, positions), []
     short_scene = shortened(scene, run, positions)
     long_scene = extended(short_scene, near[-1]["speed"])
-    for cells in grids:
-        if cells in followed_cells:
-            scene = replace(long_scene, cells=cells)
-            run = simulate_layer(scene)
+    followed_grids = CELLS[:2] if scene.gamma < SMALL_GAMMA else CELLS[1:3]
+    if coarsest in followed_grids:
+        far += followed("far", long_scene, simulate_layer(long_scene), 1)
+    for cells in finer_grids(short_scene):
+        is_followed = cells in followed_grids
+        scene = replace(long_scene if is_followed else short_scene, cells=cells)
+        run = simulate_layer(scene)
+        near += measured("pulse", scene, run, 1, positions)
+        if is_followed:
             far += followed("far", scene, run, 1)
-        elif cells > grids[0]:
-            scene = replace(short_scene, cells=cells)
-            run = simulate_layer(scene)
-        if cells > grids[0]:
-            near += measured("pulse", scene, run, 1, positions)
     return near, far
+
+
+def finer_grids(scene: LayerScene) -> Sequence[int]:
+    """Return the numbers of cells of all grids for a pulse except the coarsest.
+
+    Pulses whose strength falls over a short length, gamma d_c, need finer grids. At small gamma
+    grids are coarser, because pulses are wide and runs are long.
+
+    scene : a scene of the pulse with the duration and the trail that it needs
+    """
+    is_brittle = scene.gamma * scene.weakening < BRITTLE_LENGTH
+    is_long = scene.duration * scene.trail > LONG_RUN
+    if scene.gamma < SMALL_GAMMA:
+        return CELLS[1:3] if is_brittle and not is_long else CELLS[1:2]
+    return CELLS[1:] if is_brittle and scene.gamma == GAMMA else CELLS[1:3]
 
 
 def extended(scene: LayerScene, speed: float) -> LayerScene:
@@ -165,22 +177,26 @@ def extended(scene: LayerScene, speed: float) -> LayerScene:
 
 
 def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
-    """Return the rows of one run at FAR_STATIONS, with the position at which the pulse has split.
+    """Return the rows of one run at FAR_STATIONS, and tell whether the pulse has split.
 
-    Behind the tip of a split pulse points stick early and are released again. The position is NaN
-    if the pulse does not split between the first and the last station.
+    Behind the tip of a split pulse points stick early and slide again. The columns are
+
+    split_position : distance at which a point first sticks early, between the first and the last
+        station; NaN if none does
+    sliding_again : length of the fault beyond the first station that slides again at the end
     """
     positions = [side * station * stretch(scene.gamma) for station in FAR_STATIONS]
     rows = measured(part, scene, run, side, positions)
-    sliding_times = run.stick_time - run.release_time
     first_sliding_time = rows[0]["pulse_width"] / rows[0]["speed"]
+    sticks_early = run.stick_time - run.release_time < SPLIT_FRACTION * first_sliding_time
     distance = side * run.x
-    is_between = (distance > abs(positions[0])) & (distance < abs(positions[-1]))
-    is_split = is_between & (sliding_times < SPLIT_FRACTION * first_sliding_time)
-    split_position = float(distance[is_split].min()) if is_split.any() else math.nan
     is_beyond = distance > abs(positions[0])
+    is_split = is_beyond & (distance < abs(positions[-1])) & sticks_early
     slides_again = is_beyond & np.isfinite(run.stick_time) & (run.velocity[0] > 0.0)
-    behaviour = {"split_position": split_position, "slides_again": float(slides_again.sum()/scene.cells)}
+    behaviour = {
+        "split_position": float(distance[is_split].min()) if is_split.any() else math.nan,
+        "sliding_again": float(slides_again.sum()) / scene.cells,
+    }
     return [row | behaviour for row in rows]
 
 
