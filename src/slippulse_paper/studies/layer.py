@@ -51,11 +51,11 @@ FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
 CELLS = (10, 20, 40, 80)
 BRITTLE_LENGTH = 0.2
 SMALL_GAMMA = 0.2
-LONG_RUN = 3000.0
+LONG_RUN = 5000.0
 # A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
 LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
-# The paper's damping.
-BETA = 1e-3
+# The paper's damping, and a smaller one that shows its influence at GAMMA and LEVEL.
+BETA, SMALLER_BETA = 1e-3, 1e-4
 # Pre-stress and relative fracture energy of pulses whose top may rise.
 FREE_TOP_PULSES = ((0.5, 0.42), (0.5, 0.6), (0.8, 0.42))
 # Pre-stress and weakening of a crack under a stress boundary.
@@ -446,12 +446,16 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
 
     paper : the paper's formulas, without weakening and damping
     damped : with the weakening of the scene and the damping BETA
+    less_damped_pulse_width : width with the damping SMALLER_BETA, at GAMMA and LEVEL only
     balance_pulse_slip : final slip with weakening and without damping, from the energy balance
     """
     tau0, gamma = scene.prestress.right, scene.gamma
     weakening = scene.weakening
     paper = paper_pulse(tau0, gamma)
     damped = weakening_pulse(tau0, gamma, BETA, weakening)
+    less_damped_width = math.nan
+    if (gamma, tau0) == (GAMMA, LEVEL):
+        less_damped_width = weakening_pulse(tau0, gamma, SMALLER_BETA, weakening).width
     return {
         "paper_speed": paper.speed,
         "paper_pulse_width": paper.width,
@@ -459,6 +463,7 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
         "damped_speed": damped.speed,
         "damped_pulse_width": damped.width,
         "damped_pulse_slip": damped.slip,
+        "less_damped_pulse_width": less_damped_width,
         "balance_pulse_slip": undamped_weakening_slip(tau0, gamma, weakening),
     }
 
