@@ -59,7 +59,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     pulse : one row for each pulse on its finest grid, measured at the last station (see
         `drawn_pulses`)
     free : the same for pulses in a layer whose top is free to rise
-    coupled : slip along the path of pulses whose strength depends on the normal stress
+    coupled : width along the path of pulses whose strength depends on the normal stress
     map : outcome as a function of gamma and fracture energy
     """
     study = tables["layer"]
@@ -67,9 +67,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     coupled = study[study["part"] == "coupled"]
     # A grid is named by its number of cells over the height of the layer.
     coupled = coupled[coupled["cells"] == coupled["cells"].max()]
-    coupled = coupled[
-        ["part", "gamma", "tau0", "coupling", "side", "sample_position", "pulse_slip"]
-    ]
+    numbers = ["coupling", "side", "sample_position", "pulse_width"]
+    coupled = coupled[["part", "gamma", "tau0", *numbers]]
     points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")
     pulses = [drawn_pulses(study[study["part"] == part]) for part in ("pulse", "free")]
     return pd.concat([field, *pulses, coupled, points], ignore_index=True)
@@ -98,7 +97,7 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the velocity (a), speed, width and slip (b-d), sliding times (e), slips (f), map (g)."""
+    """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f), and the map (g)."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
     pulses = table[table["part"] == "pulse"]
     _draw_field(figure, panels[0], table[table["part"] == "field"])
@@ -130,7 +129,7 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     gamma = first["gamma"]
     title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
     axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
-    # The tip is where the fault moves fastest. It runs almost at the speed of the longitudinal wave.
+    # The fault moves fastest at the tip, which runs almost at the speed of the longitudinal wave.
     tip = grid.columns[np.argmax(grid.to_numpy()[0])]
     shear_front = [tip, tip - _crossing_width(gamma)]
     axes.plot(shear_front, [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
@@ -177,7 +176,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
         axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", xlim=(0.0, 1.0))
         axes.set_ylim(0.0, None)
     speed_axes.set_ylabel(r"front speed $v$")
-    width_axes.set_ylabel(r"width $W_\mathrm{p}/H\sqrt{2/\gamma-1}$")
+    width_axes.set_ylabel(r"width / $H\sqrt{2/\gamma-1}$")
     slip_axes.set_ylabel(r"slip / $(2\tau_0/\gamma)$")
     handles, _ = speed_axes.get_legend_handles_labels()
     speed_axes.legend(handles=handles, loc="lower left", fontsize=SMALL_TEXT)
@@ -208,33 +207,33 @@ def _draw_sliding_times(
     axes.plot(free_pulses["fracture_energy"], free_pulses["crossings"], "x", color=BLACK)
     axes.axhline(1.0, color=GREY, linewidth=0.6)
     axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylabel="sliding time / crossing time")
-    axes.set(xlim=(0.0, 1.0), ylim=(0.0, None))
+    axes.set(xlim=(0.0, 1.0), ylim=(0.9, None))
     entries = [
         entry(rf"$\tau_0 = {level:g}$", color=GREY, marker="o"),
         entry(r"other $\tau_0$", color=GREY, marker="o", **OPEN_MARKER),
         entry("top free to rise", color=BLACK, marker="x"),
     ]
-    axes.legend(handles=entries, loc="lower left", fontsize=SMALL_TEXT)
+    axes.legend(handles=entries, loc="upper left", fontsize=SMALL_TEXT)
 
 
 def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
-    """Draw the slip of pulses whose strength depends on the normal stress, on both sides."""
+    """Draw the width of pulses whose strength depends on the normal stress, on both sides."""
     for colour, (coupling, rows) in zip(
         COUPLING_COLOURS, coupled.groupby("coupling"), strict=False
     ):
         for side, line in ((1.0, "o-"), (-1.0, "o:")):
             on_side = rows[rows["side"] == side]
             look: Look = {"color": colour} | (OPEN_MARKER if side < 0.0 else {})
-            axes.plot(on_side["sample_position"].abs(), on_side["pulse_slip"], line, **look)
+            axes.plot(on_side["sample_position"].abs(), on_side["pulse_width"], line, **look)
         axes.plot([], [], color=colour, label=rf"$\mu = {coupling:g}$")
     handles, _ = axes.get_legend_handles_labels()
     handles += [
         entry("right", color=GREY, marker="o"),
         entry("left", color=GREY, marker="o", **OPEN_MARKER),
     ]
-    axes.set(xlabel=r"distance $|x|/H$", ylabel="slip left behind")
-    axes.set_ylim(0.0, None)
-    axes.legend(handles=handles, loc="upper right", fontsize=SMALL_TEXT)
+    axes.set(xlabel=r"distance $|x|/H$", ylabel=r"pulse width $W_\mathrm{p}/H$")
+    axes.set_ylim(0.0, 2.6)
+    axes.legend(handles=handles, loc="upper center", fontsize=SMALL_TEXT, ncols=2)
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
