@@ -191,24 +191,30 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 
 
 def split_pulses(evidence: Evidence) -> dict[str, float]:
-    """Return how many pulses of the part far split on one grid at least, which, and where.
+    """Return how many pulses of the part far split, with which fracture energies, and where.
 
-    The step pulse is the one of the part step in uniform pre-stress. Distances are those at which
-    the pulses split on the coarser and on the finer grid.
+    One of the followed pulses belongs to the part step and is not counted. Distances are those on
+    the finest grid, and on the next coarser one.
     """
-    rows = rows_at_station(evidence).query("part == 'far'")
-    split = rows.dropna(subset=["split_position"])
-    columns = ["gamma", "tau0", "weakening"]
-    pulses = finest_rows(rows_at_station(evidence), "pulse").reset_index()[columns]
-    among_pulses = split.merge(pulses, on=columns).drop_duplicates(columns)
+    rows = rows_at_station(evidence)
+    pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
+    split = followed[followed["split_position"].notna()]
+    counted = split[split.index.isin(pulses.index)]
+    coarser = finest_rows(rows, "far", coarser=1).loc[split.index]
     return {
         "followed": float(len(pulses)),
-        "split": float(len(among_pulses)),
-        "split_gamma": float(split["gamma"].min()),
-        "split_energy": float(among_pulses["fracture_energy"].max()),
+        "split": float(len(counted)),
+        "split_gamma": float(split.index.get_level_values("gamma").min()),
+        "split_energy": float(counted["fracture_energy"].max()),
+        "split_cells": float(split["cells"].min()),
         "split_low": float(split["split_position"].min()),
         "split_high": float(split["split_position"].max()),
-        "distance": float(rows.loc[rows["gamma"].idxmax(), "sample_position"]),
+        "coarse_split_low": float(coarser["split_position"].min()),
+        "coarse_split_high": float(coarser["split_position"].max()),
+        "split_later": float((split["split_position"] - coarser["split_position"]).min()),
+        # Distances are in units of H at the largest gamma, and longer by sqrt(2/3/gamma) at others.
+        "distance": float(followed["sample_position"].min()),
+        "near_distance": float(finest_rows(rows, "pulse")["sample_position"].min()),
     }
 
 

@@ -97,7 +97,7 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f), and the map (g)."""
+    """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f) and a map (g)."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
     pulses = table[table["part"] == "pulse"]
     _draw_field(figure, panels[0], table[table["part"] == "field"])
@@ -213,7 +213,7 @@ def _draw_sliding_times(
         entry(r"other $\tau_0$", color=GREY, marker="o", **OPEN_MARKER),
         entry("top free to rise", color=BLACK, marker="x"),
     ]
-    axes.legend(handles=entries, loc="upper left", fontsize=SMALL_TEXT)
+    axes.legend(handles=entries, loc="center left", fontsize=SMALL_TEXT)
 
 
 def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:

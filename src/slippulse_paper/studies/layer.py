@@ -45,9 +45,9 @@ SPLIT_FRACTION = 0.5
 SLOWER_FRONT = 0.01
 # Stations of other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
-# Cells over the height. Pulses have finer grids if the length gamma d_c, over which the strength
-# falls, is smaller than BRITTLE_LENGTH, and coarser ones if gamma < SMALL_GAMMA. There, runs whose
-# duration multiplied by the length of the solved part is larger than LONG_RUN are left out.
+# Cells over the height. Pulses are brittle, and have finer grids, if the length gamma d_c, over
+# which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA, grids are coarser,
+# and the finest is left out if duration times length of the solved part exceeds LONG_RUN.
 CELLS = (10, 20, 40, 80)
 BRITTLE_LENGTH = 0.2
 SMALL_GAMMA = 0.2
@@ -128,7 +128,10 @@ def pulse_rows(gamma: float) -> Rows:
 
 
 def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
-    """Return the rows of one pulse at STATION_POSITIONS, and on two grids at FAR_STATIONS."""
+    """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS.
+
+    A pulse that splits is followed on all finer grids, too.
+    """
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
     # The run on the coarsest grid shows how long the others must be.
@@ -137,11 +140,12 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     near, far = measured("pulse", scene, run, 1, positions), []
     short_scene = shortened(scene, run, positions)
     long_scene = extended(short_scene, near[-1]["speed"])
-    followed_grids = CELLS[:2] if scene.gamma < SMALL_GAMMA else CELLS[1:3]
+    followed_grids = grids_far_away(scene)
     if coarsest in followed_grids:
         far += followed("far", long_scene, simulate_layer(long_scene), 1)
     for cells in finer_grids(short_scene):
-        is_followed = cells in followed_grids
+        has_split = bool(far) and math.isfinite(far[-1]["split_position"])
+        is_followed = has_split or cells in followed_grids
         scene = replace(long_scene if is_followed else short_scene, cells=cells)
         run = simulate_layer(scene)
         near += measured("pulse", scene, run, 1, positions)
@@ -150,19 +154,31 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     return near, far
 
 
+def is_brittle(scene: LayerScene) -> bool:
+    """Return whether the length gamma d_c, over which the strength falls, is short."""
+    return scene.gamma * scene.weakening < BRITTLE_LENGTH
+
+
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of all grids for a pulse except the coarsest.
 
-    Pulses whose strength falls over a short length, gamma d_c, need finer grids. At small gamma
-    grids are coarser, because pulses are wide and runs are long.
+    Brittle pulses need finer grids. At small gamma pulses are wide and runs are long.
 
     scene : a scene of the pulse with the duration and the trail that it needs
     """
-    is_brittle = scene.gamma * scene.weakening < BRITTLE_LENGTH
     is_long = scene.duration * scene.trail > LONG_RUN
     if scene.gamma < SMALL_GAMMA:
-        return CELLS[1:3] if is_brittle and not is_long else CELLS[1:2]
-    return CELLS[1:] if is_brittle and scene.gamma == GAMMA else CELLS[1:3]
+        return CELLS[1:3] if is_brittle(scene) and not is_long else CELLS[1:2]
+    return CELLS[1:] if is_brittle(scene) and scene.gamma == GAMMA else CELLS[1:3]
+
+
+def grids_far_away(scene: LayerScene) -> Sequence[int]:
+    """Return the numbers of cells of the two grids on which a pulse is followed farther.
+
+    Brittle pulses that are narrow, and those at GAMMA, need the finer ones.
+    """
+    needs_fine_grids = is_brittle(scene) and scene.gamma > SMALL_GAMMA
+    return CELLS[1:3] if needs_fine_grids or scene.gamma == GAMMA else CELLS[:2]
 
 
 def extended(scene: LayerScene, speed: float) -> LayerScene:
