@@ -46,10 +46,11 @@ SLOWER_FRONT = 0.01
 # Stations of other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
 # Cells over the height. Pulses are brittle, and have finer grids, if the length gamma d_c, over
-# which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA, grids are coarser,
-# and the finest is left out if duration times length of the solved part exceeds LONG_RUN.
+# which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA, grids are
+# coarser. Runs with the product of duration and length of the solved part above LONG_RUN have the
+# two coarsest grids only, and are not followed farther.
 CELLS = (10, 20, 40, 80)
-BRITTLE_LENGTH = 0.2
+BRITTLE_LENGTH = 0.19
 SMALL_GAMMA = 0.2
 LONG_RUN = 5000.0
 # A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
@@ -140,7 +141,7 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     near, far = measured("pulse", scene, run, 1, positions), []
     short_scene = shortened(scene, run, positions)
     long_scene = extended(short_scene, near[-1]["speed"])
-    followed_grids = grids_far_away(scene)
+    followed_grids = grids_far_away(short_scene)
     if coarsest in followed_grids:
         far += followed("far", long_scene, simulate_layer(long_scene), 1)
     for cells in finer_grids(short_scene):
@@ -159,6 +160,11 @@ def is_brittle(scene: LayerScene) -> bool:
     return scene.gamma * scene.weakening < BRITTLE_LENGTH
 
 
+def is_long(scene: LayerScene) -> bool:
+    """Return whether the run of a scene takes long, given its duration and its trail."""
+    return scene.duration * scene.trail > LONG_RUN
+
+
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of all grids for a pulse except the coarsest.
 
@@ -166,17 +172,19 @@ def finer_grids(scene: LayerScene) -> Sequence[int]:
 
     scene : a scene of the pulse with the duration and the trail that it needs
     """
-    is_long = scene.duration * scene.trail > LONG_RUN
     if scene.gamma < SMALL_GAMMA:
-        return CELLS[1:3] if is_brittle(scene) and not is_long else CELLS[1:2]
+        return CELLS[1:3] if is_brittle(scene) and not is_long(scene) else CELLS[1:2]
     return CELLS[1:] if is_brittle(scene) and scene.gamma == GAMMA else CELLS[1:3]
 
 
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the two grids on which a pulse is followed farther.
 
-    Brittle pulses that are narrow, and those at GAMMA, need the finer ones.
+    Brittle pulses that are narrow, and those at GAMMA, need the finer ones. There is none for long
+    runs.
     """
+    if is_long(scene):
+        return ()
     needs_fine_grids = is_brittle(scene) and scene.gamma > SMALL_GAMMA
     return CELLS[1:3] if needs_fine_grids or scene.gamma == GAMMA else CELLS[:2]
 
