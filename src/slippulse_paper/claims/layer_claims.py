@@ -199,14 +199,16 @@ def split_pulses(evidence: Evidence) -> dict[str, float]:
     rows = rows_at_station(evidence)
     pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
     split = followed[followed["split_position"].notna()]
+    is_counted = followed.index.isin(pulses.index)
     counted = split[split.index.isin(pulses.index)]
     coarser = finest_rows(rows, "far", coarser=1).loc[split.index]
     return {
-        "followed": float(len(pulses)),
+        "pulses": float(len(pulses)),
+        "followed": float(is_counted.sum()),
         "split": float(len(counted)),
         "split_gamma": float(split.index.get_level_values("gamma").min()),
         "split_energy": float(counted["fracture_energy"].max()),
-        "split_cells": float(split["cells"].min()),
+        "step_energy": float(split["fracture_energy"].max()),
         "split_low": float(split["split_position"].min()),
         "split_high": float(split["split_position"].max()),
         "coarse_split_low": float(coarser["split_position"].min()),
