@@ -193,30 +193,30 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 def split_pulses(evidence: Evidence) -> dict[str, float]:
     """Return how many pulses of the part far split, with which fracture energies, and where.
 
-    One of the followed pulses belongs to the part step and is not counted. Distances are those on
-    the finest grid, and on the next coarser one.
+    Positions are those on the finest grid and on the next coarser one. One more pulse was followed,
+    which belongs to the part step.
     """
     rows = rows_at_station(evidence)
     pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
-    split = followed[followed["split_position"].notna()]
     is_counted = followed.index.isin(pulses.index)
-    counted = split[split.index.isin(pulses.index)]
-    coarser = finest_rows(rows, "far", coarser=1).loc[split.index]
+    counted, step = followed[is_counted], followed[~is_counted]
+    split = counted[counted["split_position"].notna()]
+    coarser = finest_rows(rows, "far", coarser=1).loc[split.index, "split_position"]
     return {
         "pulses": float(len(pulses)),
-        "followed": float(is_counted.sum()),
-        "split": float(len(counted)),
+        "followed": float(len(counted)),
+        "split": float(len(split)),
         "split_gamma": float(split.index.get_level_values("gamma").min()),
-        "split_energy": float(counted["fracture_energy"].max()),
-        "step_energy": float(split["fracture_energy"].max()),
+        "split_energy": float(split["fracture_energy"].max()),
         "split_low": float(split["split_position"].min()),
         "split_high": float(split["split_position"].max()),
-        "coarse_split_low": float(coarser["split_position"].min()),
-        "coarse_split_high": float(coarser["split_position"].max()),
-        "split_later": float((split["split_position"] - coarser["split_position"]).min()),
-        # Distances are in units of H at the largest gamma, and longer by sqrt(2/3/gamma) at others.
+        "coarse_split_low": float(coarser.min()),
+        "coarse_split_high": float(coarser.max()),
+        "step_energy": float(step["fracture_energy"].min()),
+        "step_split": float(step["split_position"].min()),
+        # Positions are in units of H at the largest gamma, and in longer units at smaller gamma.
         "distance": float(followed["sample_position"].min()),
-        "near_distance": float(finest_rows(rows, "pulse")["sample_position"].min()),
+        "near_distance": float(pulses["sample_position"].min()),
     }
 
 
@@ -296,11 +296,16 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
+    has_settled = max(differences) < evidence.tolerance(id)
     return Qualitative(
         decided=decided,
-        condition=not max(differences) < evidence.tolerance(id),
+        condition=not has_settled,
         further=further,
-        template_values=step | {"elasticity_ratios": float(brittle["gamma"].nunique())},
+        template_values=step
+        | {
+            "elasticity_ratios": float(brittle["gamma"].nunique()),
+            "has_settled": has_settled,
+        },
     )
 
 
