@@ -641,7 +641,11 @@ class DamageZone(Block):
 class LayerMap(Block):
     gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
     fracture_energy: Distinct[Positive] = key("fracture energies [tau_0^2/(2 gamma)]")
-    cells: int = key("number of grid cells over the height of the layer", ge=10, le=200)
+    cells: int = key(
+        "number of grid cells over the height of the layer; a second grid has half as many",
+        ge=10,
+        le=200,
+    )
     chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
