@@ -1,6 +1,5 @@
 """Figure 5: L_trans and T_trans of every run against the paper's formulas, both boundaries."""
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -40,7 +39,7 @@ def draw(table: pd.DataFrame) -> Figure:
     Rows: the length and the time, with the ratio to the formula in insets, and the ratio of the
     length at full size.
     """
-    figure, panels = new_panels(PAGE_WIDTH, 7.4, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.6))
+    figure, panels = new_panels(PAGE_WIDTH, 6.7, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.65))
     for column, boundary in enumerate(BOUNDARIES):
         runs = table[table["boundary"] == boundary]
         draw_boundary(figure, panels[column::2], runs, boundary)
@@ -62,10 +61,8 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
         scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few, quantity, level, second)
     scaling.draw_ratio(ratio_axes, few, "length", level, second)
     ratio_axes.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
-    # Leave room for the legend on the right.
-    span = np.ptp(runs[level])
-    ratio_axes.set_xlim(runs[level].min() - 0.05, runs[level].max() + 0.35 * span)
-    ratio_axes.legend(loc="center right", fontsize=SMALL_TEXT)
+    free_corner = "upper left" if boundary == "displacement" else "upper right"
+    ratio_axes.legend(loc=free_corner, fontsize=SMALL_TEXT)
     # The inset has the pre-stress of a few levels with the narrowest Gaussian.
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
     narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
