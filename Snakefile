@@ -41,6 +41,9 @@ onstart:
     # Without the profile of this folder, Snakemake starts a separate process for each job.
     if workflow.execution_settings.use_threads:
         WORKERS.start(workflow.cores)
+        # A limit of the rate of jobs lets Snakemake consider all waiting jobs again and again, which
+        # takes a twentieth of the processor time. Local jobs need no limit.
+        workflow.scheduler.job_rate_limiter = None
 
 
 onerror:

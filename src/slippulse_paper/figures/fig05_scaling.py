@@ -61,8 +61,9 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
         scaling.ratio_inset(axes, (0.1, 0.6, 0.34, 0.31), few, quantity, level, second)
     scaling.draw_ratio(ratio_axes, few, "length", level, second)
     ratio_axes.set(xlabel=f"${SYMBOLS[level]}$", ylabel=f"${QUANTITIES['length']}$ / formula")
-    free_corner = "upper left" if boundary == "displacement" else "upper right"
-    ratio_axes.legend(loc=free_corner, fontsize=SMALL_TEXT)
+    # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
+    are_rising = boundary == "displacement"
+    ratio_axes.legend(loc="upper left" if are_rising else "upper right", fontsize=SMALL_TEXT)
     # The inset has the pre-stress of a few levels with the narrowest Gaussian.
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
     narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
