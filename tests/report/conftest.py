@@ -13,7 +13,7 @@ from pypdf import PdfReader
 from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting.style import new_panels
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative
-from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.claims.paper_claims import fields_of_claim
 from slippulse_paper.claims.rules import Spread, Uncertain
 from slippulse_paper.report.manuscript import DOCUMENTS, Inputs
 from slippulse_paper.steps import write_report
@@ -24,7 +24,9 @@ FRONT = {"kind": "exact", "tolerance": 1e-3, "source": "runs", "note": "at $x_-$
 FRONT |= {"statement": r"fronts <outrun> the waves & keep $\gamma<1$", "figure": "fig01_one"}
 SPEEDS = {"predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4}
 SPEEDS = {name: np.array([value]) for name, value in SPEEDS.items()}
-CLAIM = written("speed", Equation(tolerance=1e-3, counts={"runs": 4}, **SPEEDS), FRONT, "III A")
+CLAIM = fields_of_claim(
+    "speed", Equation(tolerance=1e-3, counts={"runs": 4}, **SPEEDS), FRONT, "III A"
+)
 
 
 def read(path: Path):
@@ -51,7 +53,7 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
         if entry["kind"] == "qualitative":
             claim = Qualitative(decided=[True] * (i - 1) + [None] * 3, further=further)
         statement = rf"{id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$"
-        claims.append(written(id, claim, entry | shown | {"statement": statement}, "III A"))
+        claims.append(fields_of_claim(id, claim, entry | shown | {"statement": statement}, "III A"))
     return claims
 
 

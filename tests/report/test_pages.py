@@ -13,7 +13,7 @@ from PIL import Image
 from report.conftest import CLAIM, FRONT
 
 from slippulse_paper.claims.kinds import Qualitative
-from slippulse_paper.claims.paper_claims import written
+from slippulse_paper.claims.paper_claims import fields_of_claim
 from slippulse_paper.records.provenance import provenance
 from slippulse_paper.report import html
 from slippulse_paper.report.claims_page import SIGNS, claims_page
@@ -24,7 +24,7 @@ VOID = {"meta", "link", "img", "br", "hr", "input"}
 FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "why": "It is *off*."}
 FAILED |= {"measured": 1.5, "deviation": 0.2, "figure": ""}
 ALWAYS = FRONT | {"kind": "qualitative", "tolerance": 0.0, "follows_from": ["speed"]}
-OPEN = written("always", Qualitative(decided=[True] * 3 + [None] * 2), ALWAYS, "III A")
+OPEN = fields_of_claim("always", Qualitative(decided=[True] * 3 + [None] * 2), ALWAYS, "III A")
 FINDING = {"id": "ours", "numbers": {"gap": 0.5}, "text": "a gap of $x$", "source": "other"}
 NEVER = CLAIM | {"id": "length", "verdict": "not testable", "note": "", "flips_at": []}
 NEVER |= dict.fromkeys(["predicted", "measured", "uncertainty", "runs", "deviation"])

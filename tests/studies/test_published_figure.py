@@ -29,12 +29,12 @@ def panel(config):
 @pytest.mark.slow
 def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     truth, ratio = np.array([0.3, 0.6]), 0.12
-    values = panel.lattice(truth, ratio, "total", BETA / ratio)
+    values = panel.lattice_values(truth, ratio, "total", BETA / ratio)
     for name, value in zip(panel.readings["reading"], values, strict=True):
         config["published"][name]["value"] = float(value)
     ratios = {"total": (0.09, 0.104, 0.12, 0.139), "elastic": (0.1, 0.15, 0.22, 0.3)}
     monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
-    monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
+    monkeypatch.setattr(study_module, "RIGHT_DAMPING_RATIOS", (0.1,))
     best = infer_parameters(study_module.table({}, {}, config))["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
@@ -54,7 +54,7 @@ def test_best_fits_are_those_of_lattices_in_their_regions(table, panel, release,
     assert dx == pytest.approx(BETA / ratio, rel=1e-3)
 
     def pulls(trial: np.ndarray) -> np.ndarray:
-        return panel.independent_pulls(panel.lattice(trial, ratio, release, dx))[fitted]
+        return panel.independent_pulls(panel.lattice_values(trial, ratio, release, dx))[fitted]
 
     result = least_squares(pulls, FIRST_GUESS, x_scale=FIRST_GUESS, diff_step=0.01, xtol=1e-4)
     assert 2.0 * result.cost == pytest.approx(best["chi2"], abs=0.05)
@@ -91,7 +91,7 @@ def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, 
     trial, ratio = rows[["tau0", "gamma"]].to_numpy()[0], rows["damping_ratio"].iloc[0]
     smallest = (rows["weight"] * rows["independent_pull"] ** 2).sum()
     for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
-        exact = panel.exact(trial + change, ratio, "total")
+        exact = panel.exact_values(trial + change, ratio, "total")
         pulls = panel.independent_pulls(exact + rows["correction"].to_numpy())
         assert (rows["weight"] * pulls**2).sum() > smallest + 0.5
 
@@ -104,19 +104,19 @@ def test_the_errors_that_readings_of_the_edge_do_not_share_are_those_of_their_sc
     for _, run in rows.groupby(["release", "damping_ratio"]):
         deviations = (run["exact"] + run["correction"] - run["drawn"]).to_numpy()[is_edge]
         scatter = math.sqrt((np.diff(deviations, 3) ** 2).mean() / (1 + 9 + 9 + 1))
-        own = panel.error**2 - panel.readings["shared_error"].to_numpy() ** 2
+        own = panel.errors**2 - panel.readings["shared_error"].to_numpy() ** 2
         assert np.sqrt(own[is_edge]) == pytest.approx(scatter, rel=0.1)
 
 
 def test_a_shared_error_of_all_readings_of_an_edge_costs_as_much_as_that_of_one(panel):
     """Chi-square is that of the best common displacement, which has its own error."""
     shift, is_edge = 0.03, panel.readings["shared_error"].to_numpy() > 0.0
-    one, shared = panel.error[is_edge][0], panel.readings["shared_error"].max()
+    one, shared = panel.errors[is_edge][0], panel.readings["shared_error"].max()
     together = (panel.independent_pulls(panel.drawn + shift * is_edge) ** 2).sum()
     own = one**2 - shared**2
     assert together == pytest.approx(shift**2 / (shared**2 + own / is_edge.sum()))
     others = np.flatnonzero(~is_edge)
-    moved = panel.drawn + np.where(is_edge, 0.0, panel.error)
+    moved = panel.drawn + np.where(is_edge, 0.0, panel.errors)
     assert panel.independent_pulls(moved)[others] == pytest.approx(1.0)
 
 
@@ -147,7 +147,7 @@ def test_an_unknown_quantity_is_named():
     numbers = {"quantity": ["colour"], "drawn": 1.0, "reading_error": 0.1, "shared_error": 0.0}
     panel = LeftPanel(pd.DataFrame(numbers))
     with pytest.raises(ValueError, match="quantity: 'colour'; allowed: front_speed_right"):
-        panel.exact(np.array([0.5, 0.65]), 0.1, "total")
+        panel.exact_values(np.array([0.5, 0.65]), 0.1, "total")
 
 
 @pytest.mark.slow

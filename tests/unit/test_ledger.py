@@ -18,7 +18,7 @@ from slippulse_paper.claims.evidence import Evidence, agreed_answers, exponent
 from slippulse_paper.claims.findings import findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
-from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, written
+from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, fields_of_claim
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
@@ -44,15 +44,15 @@ def equation(
 
 # A rule, its arguments (a tolerance where it takes one), and the verdict.
 CASES = {
-    "number: well within": (rules.within, (0.001, 0.0001, 0.01), YES),
-    "number: just within": (rules.within, (0.0095, 0.001, 0.01), CAVEAT),
-    "number: just outside": (rules.within, (0.0105, 0.001, 0.01), CAVEAT),
-    "number: well outside": (rules.within, (0.02, 0.001, 0.01), NO),
-    "number: badly known, but too far off": (rules.within, (0.05, 0.02, 0.01), NO),
-    "number: badly known, within": (rules.within, (0.001, 0.02, 0.01), OPEN),
-    "number: badly known, outside": (rules.within, (0.025, 0.02, 0.01), OPEN),
-    "number: no deviation": (rules.within, (NAN, 0.001, 0.01), NONE),
-    "number: no uncertainty": (rules.within, (0.001, NAN, 0.01), NONE),
+    "number: well within": (rules.verdict_on_number, (0.001, 0.0001, 0.01), YES),
+    "number: just within": (rules.verdict_on_number, (0.0095, 0.001, 0.01), CAVEAT),
+    "number: just outside": (rules.verdict_on_number, (0.0105, 0.001, 0.01), CAVEAT),
+    "number: well outside": (rules.verdict_on_number, (0.02, 0.001, 0.01), NO),
+    "number: badly known, but too far off": (rules.verdict_on_number, (0.05, 0.02, 0.01), NO),
+    "number: badly known, within": (rules.verdict_on_number, (0.001, 0.02, 0.01), OPEN),
+    "number: badly known, outside": (rules.verdict_on_number, (0.025, 0.02, 0.01), OPEN),
+    "number: no deviation": (rules.verdict_on_number, (NAN, 0.001, 0.01), NONE),
+    "number: no uncertainty": (rules.verdict_on_number, (0.001, NAN, 0.01), NONE),
     "equation: the farthest off decides": (equation, ([0.02, 0.03], KNOWN, 0.01), (NO, 1.03)),
     "equation: a failure is not hidden": (equation, ([0.001, 0.02], [0.5, 1e-4], 0.01), (NO, 1.02)),
     "equation: badly known": (equation, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 1.001)),
@@ -117,7 +117,7 @@ def over_all(project):
     entry = ESTIMATED | {"why": "{{ runs }} runs.", "doubt": "{{ unsure.reason }}"}
 
     def write(combinations: list[Combination]) -> dict:
-        return written("length", over_choices(combinations), entry, "", common)
+        return fields_of_claim("length", over_choices(combinations), entry, "", common)
 
     return write
 
@@ -307,21 +307,21 @@ def test_the_extra_verdict_decides_at_every_tolerance():
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     sweep = evidence()
     claim = sweep.equation("equation", sweep.finest("sweep"), "number", "paper")
-    entry = written("equation", claim, ENTRIES["equation"], "III A")
+    entry = fields_of_claim("equation", claim, ENTRIES["equation"], "III A")
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
     assert entry == entry | expected | {"figure_or_section": "III A", "why": ""}
     failing = replace(claim, extra_verdict=lambda _: NO, counts={"held": 1, "failed": 1})
-    entry = written("equation", failing, ENTRIES["equation"], "III A")
+    entry = fields_of_claim("equation", failing, ENTRIES["equation"], "III A")
     assert (entry["verdict"], entry["held"], entry["failed"]) == (NO, 1, 1)
     beside = sweep.deviation_from_exact("sweep", "number")
     assert beside == pytest.approx((0.1, 0.1))
     table = pd.DataFrame({"a": [np.nan], "b": 1.0})
     nothing = replace(sweep.approximate("estimate", [table], "a", "b"), from_exact=beside)
-    entry = written("estimate", nothing, ENTRIES["estimate"], "")
+    entry = fields_of_claim("estimate", nothing, ENTRIES["estimate"], "")
     assert entry["verdict"] == NONE and entry["measured"] is None and not entry["counted"]
     assert (entry["exact_median"], entry["exact_largest"]) == beside
     estimate = sweep.approximate("estimate", sweep.lattices("sweep"), "1.05 * paper", "paper")
-    entry = written("estimate", estimate, ENTRIES["estimate"], "")
+    entry = fields_of_claim("estimate", estimate, ENTRIES["estimate"], "")
     assert (entry["verdict"], entry["at_earlier"]) == (YES, NO)
     json.dumps(entry, allow_nan=False)
 
@@ -427,7 +427,7 @@ def test_a_claim_beyond_the_paper_holds_but_is_not_reproduced(counts, paper, bey
         Qualitative(decided=answers(*counts)),
         ENTRIES["estimate"] | {"kind": "qualitative"},
     )
-    assert written("estimate", claim, entry, "")["verdict"] == paper
-    other = written("estimate", claim, entry | {"beyond": True}, "")
+    assert fields_of_claim("estimate", claim, entry, "")["verdict"] == paper
+    other = fields_of_claim("estimate", claim, entry | {"beyond": True}, "")
     assert other["verdict"] == beyond and not other["counted"]
     assert Ledger([other]).summary().startswith("0 counted claims")

@@ -1,1 +1,1 @@
-"""Claims of the paper, the numbers measured for each, and the verdicts computed from them."""
+"""Claims of the paper, the numbers that test them, and the verdicts computed from the numbers."""

@@ -1,8 +1,8 @@
 """Judge a claim at every combination of the choices that the paper leaves open.
 
-The paper does not state everything, for example the release rule. Such a claim is judged once for
-each admissible combination of values (`Combination`), and `OverChoices` makes one verdict from all
-of them. If the verdicts differ, `decisive_changes` finds the choices that the verdict depends on.
+The paper does not state everything, for example the release rule. A claim that depends on such a
+choice is judged at each combination of possible values (`Combination`). `OverChoices` makes one
+verdict from all of them. If they differ, `decisive_changes` finds the choices that matter.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,11 +16,12 @@ from ..text.numerals import setting
 from . import rules
 from .kinds import Claim
 
-# Values of the open choices, by name.
+# Values of the open choices at one combination, by name of the choice.
 Chosen = dict[str, float | str]
-# This value stands for a fraction of the path if a lattice run is measured at its last release.
+# Lattice runs are measured at their last release instead of a fraction of the path. The choice
+# "fraction" then has this value.
 LAST_RELEASE_FRACTION = "last release"
-# Names of the choices in sentences.
+# Choices that the paper leaves open, with the words for them in sentences.
 CHOICE_WORDS = {
     "fraction": "the fraction of the path that counts as arrest",
     "release": "the release rule",
@@ -39,7 +40,7 @@ class Combination:
 
     @cached_property
     def result(self) -> dict[str, Any]:
-        """The deviation, the verdict, and whether the claim holds (None if that is open)."""
+        """The deviation, the verdict, and whether the claim holds (None if this is open)."""
         verdict = self.claim.verdict()
         return {
             "deviation": self.claim.fields().get("deviation"),
@@ -54,11 +55,11 @@ class Combination:
 
 
 class Change(NamedTuple):
-    """A change of one choice, which leads from one combination to another.
+    """Two combinations that differ in one choice only.
 
-    name : the choice that changes
-    exact : True if both combinations are exact solutions
-    size : absolute difference of the deviations
+    name : name of this choice
+    exact : True if the results of both combinations come from exact solutions
+    size : absolute difference between the deviations
     """
 
     name: str
@@ -71,13 +72,13 @@ class Change(NamedTuple):
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return all ordered pairs of combinations that differ in one choice only.
 
-    Combinations without a deviation are left out.
+    Combinations without a deviation are left out. So are those at the last release, because this is
+    a property of the lattice and not a choice that the paper leaves open.
     """
     compared = []
     for combination in combinations:
-        # The last release is a property of the lattice and not a choice that the paper leaves open.
-        is_open_choice = combination.fraction != LAST_RELEASE_FRACTION
-        if is_open_choice and combination.result["deviation"] is not None:
+        at_last_release = combination.fraction == LAST_RELEASE_FRACTION
+        if not at_last_release and combination.result["deviation"] is not None:
             compared.append(combination)
     single_changes = []
     for before, after in permutations(compared, 2):
@@ -91,50 +92,52 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 
 
 def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
-    """Return, for each choice that decides whether the claim holds, the smallest such change.
+    """Return one change for each choice that decides whether the claim holds.
 
-    If no choice decides, return the change that moves the deviation most.
+    It is the smallest change of this choice from a combination at which the claim holds to one at
+    which it fails. Choices with larger effects come first. If no choice decides, the result is the
+    single change with the largest effect.
     """
     all_changes = changes(combinations)
-    smallest_deciding: dict[str, Change] = {}
+    deciding: dict[str, Change] = {}
     for change in sorted(all_changes, key=attrgetter("size")):
         holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
         if holds_before is True and holds_after is False:
-            smallest_deciding.setdefault(change.name, change)
-    # The choices are sorted by their largest change, in descending order. Changes of the exact
-    # solution come before changes of lattices.
+            deciding.setdefault(change.name, change)
+    # Changes of exact solutions rank higher than changes of lattices, and larger ones higher than
+    # smaller ones. The dictionary keeps the last change of each choice, which ranks highest.
     rank = attrgetter("exact", "size")
-    # A dictionary keeps the last change of each choice, which is the largest one.
-    largest = {change.name: change for change in sorted(all_changes, key=rank)}
-    largest_first = sorted(largest.values(), key=rank)[::-1]
-    deciding = [
-        smallest_deciding[change.name]
-        for change in largest_first
-        if change.name in smallest_deciding
+    largest_by_choice = {change.name: change for change in sorted(all_changes, key=rank)}
+    largest_first = sorted(largest_by_choice.values(), key=rank)[::-1]
+    deciding_in_order = [
+        deciding[change.name] for change in largest_first if change.name in deciding
     ]
-    return deciding or largest_first[:1]
+    return deciding_in_order or largest_first[:1]
 
 
 @dataclass(frozen=True, kw_only=True)
 class OverChoices(Claim):
-    """One claim made from its results at all combinations; its numbers are those of ``shown``."""
+    """The result about a claim that was judged at all combinations of choices.
+
+    shown : the result whose numbers are shown for the claim
+    """
 
     combinations: Sequence[Combination]
     shown: Claim
 
     def own_verdict(self, tolerance: float) -> str:
         """Return one verdict from those at all combinations."""
-        verdicts = [one.claim.verdict(tolerance) for one in self.combinations]
+        verdicts = [combination.claim.verdict(tolerance) for combination in self.combinations]
         return rules.verdict_over_choices(verdicts)
 
     @cached_property
     def decisive(self) -> list[Change]:
-        """Changes of choices on which the verdict depends."""
+        """Changes of choices on which the verdict depends, from `decisive_changes`."""
         return decisive_changes(self.combinations)
 
     def fields(self) -> dict[str, Any]:
         """Return the numbers shown, one row for each combination, and the most important choice."""
-        rows = [one.choice | one.result for one in self.combinations]
+        rows = [combination.choice | combination.result for combination in self.combinations]
         return self.shown.json_fields() | {
             "verdict": self.verdict(),
             "choices": rows,
@@ -148,11 +151,11 @@ class OverChoices(Claim):
 
         holding : deviations at the combinations at which the claim holds
         failing : deviations at the combinations at which it fails
-        last : deviations of lattice runs that are measured at their last release
+        last : deviations of lattice runs, which are measured at their last release
         changes : the changes of choices on which the verdict depends
         choice_names : names of the choices in sentences
-        settings : choices of the combination in doubt, in words. This is the first combination
-            whose verdict has a caveat, or the first of all if none has.
+        settings : the choices, in words, of the first combination whose verdict has a caveat, or of
+            the first combination if none has
         unsure : the template values of the claim at this combination
         """
         holding: list[float | None] = []
@@ -166,8 +169,11 @@ class OverChoices(Claim):
                 failing.append(deviation)
             if combination.fraction == LAST_RELEASE_FRACTION and deviation is not None:
                 last.append(deviation)
-        with_caveat = [one for one in self.combinations if one.result["verdict"] == rules.CAVEAT]
-        in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
+        in_doubt = self.combinations[0]
+        for combination in self.combinations:
+            if combination.result["verdict"] == rules.CAVEAT:
+                in_doubt = combination
+                break
         settings = [
             f"{CHOICE_WORDS[name]} {named(value)}"
             for name, value in in_doubt.choice.items()
@@ -187,11 +193,15 @@ class OverChoices(Claim):
 def over_choices(
     combinations: Sequence[Combination], shown: Claim | None = None, **fields: Any
 ) -> OverChoices:
-    """Return one claim made from all combinations; it shows the first one, or ``shown``."""
+    """Make one result about a claim from its results at all combinations.
+
+    shown : the result whose numbers are shown; that at the first combination by default
+    fields : attributes of the shown result that are replaced
+    """
     shown = replace(shown or combinations[0].claim, **fields)
     return OverChoices(combinations=combinations, shown=shown, tolerance=shown.tolerance)
 
 
 def named(value: float | str) -> str:
-    """Return the value of a choice in words."""
+    """Return the value of a choice as text: a name as it is, or a formatted number."""
     return value if isinstance(value, str) else setting(value)

@@ -1,9 +1,5 @@
-"""Read the texts of claims from the YAML files in manuscript/.
+"""Read the texts of claims, and the sentences of the paper that they test, from manuscript/."""
 
-Also list which sentences of the paper each claim tests, and count sentences that none tests.
-"""
-
-import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +8,7 @@ import yaml
 
 from ..configuration.problems import nearest
 
-# Each sentence is tested or has a reason why it has no claim; the words appear in a table.
+# Reasons why a sentence of the paper is or is not tested by a claim, with the words for a table.
 REASONS = {
     "tested": "tested by a claim",
     "repeats": "repeats another sentence",
@@ -25,14 +21,17 @@ REASONS = {
 
 
 def read_text(path: str | Path):
-    """Return the content of a YAML file, read by the C parser, which is ten times as fast."""
+    """Return the content of a YAML file."""
+    # This loader is written in C and ten times as fast as the default one.
     return yaml.load(Path(path).read_text(encoding="utf-8"), yaml.CSafeLoader)
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Return claims, checks and findings, with the tolerances that the configuration sets.
+    """Return the content of manuscript/claims.yaml, with the tolerances of the configuration.
 
-    A tolerance for an unknown claim raises a ValueError.
+    path : path of this file
+    tolerances : tolerances that replace those of the file, by claim id and key. Raises ValueError
+        if a claim is unknown.
     """
     texts = read_text(path)
     claims = texts["claims"]
@@ -46,28 +45,31 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
 
 
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
-    """Return the ids of the claims and checks that test a sentence of the paper.
+    """Return the ids of the claims that test a sentence of the paper.
 
-    Each entry lists the ids of the sentences that it tests.
+    entries : entries of the claims, each with the ids of the sentences that it tests
     """
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
 def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
-    """Return, for each claim, the sections and figures of the sentences that it tests, in order."""
+    """Return the sections and figures of the sentences that each claim tests, by claim id."""
     # A place such as "abstract, paragraph 1, sentence 2" is shortened to "abstract".
     place_of_sentence = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
     places_of_claim = {}
-    for claim, entry in entries.items():
+    for claim_id, entry in entries.items():
         places = [place for id, place in place_of_sentence.items() if id in entry["sentences"]]
+        # A dictionary keeps each place once, in the order of the paper.
         without_repetitions = dict.fromkeys(places)
-        places_of_claim[claim] = "; ".join(without_repetitions)
+        places_of_claim[claim_id] = "; ".join(without_repetitions)
     return places_of_claim
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """Return the number of sentences for each reason, and the total as "all"."""
-    reasons = [str(sentence.get("why_none", "tested")) for sentence in sentences]
-    # A repetition is "repeats ID".
-    counts = Counter(re.sub("^repeats .*", "repeats", reason) for reason in reasons)
-    return {key: counts[key] for key in REASONS} | {"all": len(sentences)}
+    """Return the number of sentences for each of REASONS, and the total as "all"."""
+    counts: Counter[str] = Counter()
+    for sentence in sentences:
+        reason = str(sentence.get("why_none", "tested"))
+        # The reason "repeats ID" has the id of the repeated sentence.
+        counts["repeats" if reason.startswith("repeats ") else reason] += 1
+    return {reason: counts[reason] for reason in REASONS} | {"all": len(sentences)}

@@ -1,8 +1,8 @@
-"""Provide the result tables to the functions that judge claims, and build claims from them.
+"""Provide all result tables to the functions that judge claims.
 
-`Evidence` holds all tables and selects runs on three lattices of different spacing. Its methods
-make claims of the measured kinds. The functions before it evaluate expressions over columns and
-estimate grid uncertainties.
+`Evidence` has the tables, and selects runs on three lattices of different spacing. Some of its
+methods compare measured and predicted values. The functions of this module evaluate expressions
+over columns, and estimate numerical uncertainties.
 """
 
 import re
@@ -19,13 +19,13 @@ from .kinds import NAN, Approximate, Equation
 from .rules import Spread, Uncertain
 
 Texts = Mapping[str, Mapping]
-# A table for each lattice, the finest first, or one of exact solutions.
+# Tables of the same runs, one for each lattice with the finest first, or one of exact solutions.
 Lattices = Sequence[pd.DataFrame]
 
 
 def value_of(table: pd.DataFrame, expression: str):
-    """Evaluate an expression over columns (`pandas.DataFrame.eval`)."""
-    # Evaluation slows down with every column of the table, even if the expression does not use it.
+    """Evaluate an expression over the columns of a table (`pandas.DataFrame.eval`)."""
+    # Every column of the table slows the evaluation down, even if the expression does not use it.
     mentioned = [name for name in table if name in expression]
     return table[mentioned].eval(expression, engine="python")
 
@@ -40,32 +40,32 @@ def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
 
 
 def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
-    """Return measured divided by predicted for each run, both given as expressions over columns.
+    """Return the ratio of a measured to a predicted value for each run; NaN if one is missing.
 
-    The ratio is NaN where a value is missing.
+    measured, predicted : expressions over columns
     """
     ratio = evaluated(table, measured) / evaluated(table, predicted)
     return pd.Series(ratio, table.index, float)
 
 
-def agreed_answers(first: Iterable, second: Iterable) -> list[bool | None]:
-    """Return the common answer of two lattices for each run.
+def agreed_answers(finest: Iterable, coarser: Iterable) -> list[bool | None]:
+    """Return for each run the answer on which two lattices agree; None if they differ or have none.
 
-    The answer is None if the lattices differ, or if they have no answer.
+    finest, coarser : answers on each lattice, one for each run
     """
     answers: list[bool | None] = []
-    for on_first, on_second in zip(first, second, strict=True):
-        agree = on_first is not None and on_first == on_second
-        answers.append(bool(on_first) if agree else None)
+    for on_finest, on_coarser in zip(finest, coarser, strict=True):
+        agree = on_finest is not None and on_finest == on_coarser
+        answers.append(bool(on_finest) if agree else None)
     return answers
 
 
 def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertain:
-    """Return a value and its grid uncertainty, from one value for each lattice.
+    """Return a value on the finest lattice, and its uncertainty because of the finite spacing.
 
-    ``values`` begins with that of the finest lattice. The uncertainty of an exact solution, which
-    is a single table, is 0.
+    values : the value on each lattice, the finest first
     """
+    # A single table is an exact solution.
     if len(tables) == 1:
         return Uncertain(values[0], 0.0)
     if tables[0].empty:
@@ -77,62 +77,80 @@ def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertai
 
 
 def _slope(logs: np.ndarray) -> float:
-    """Return the slope of log(measured) as a function of log(predicted); NaN below 3 runs.
+    """Return the slope of log(measured) as a function of log(predicted).
 
-    ``logs`` has the shape [predicted and measured, run].
+    NaN if fewer than 3 runs have both values.
+
+    logs : array with a row for log(predicted), a row for log(measured), and a column for each run
     """
-    x, y = logs[:, np.isfinite(logs).all(axis=0)]
-    return fit_line(x, y).slope if x.size > 2 else NAN
+    has_both = np.isfinite(logs).all(axis=0)
+    log_predicted, log_measured = logs[:, has_both]
+    return fit_line(log_predicted, log_measured).slope if has_both.sum() > 2 else NAN
 
 
-def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:
-    """Return the exponent of ``measured`` as a power of ``predicted``, with its uncertainty.
+def exponent(
+    tables: Lattices, measured: str, predicted: str, varied_columns: Iterable[str]
+) -> Uncertain:
+    """Return the exponent of a measured quantity as a power of a predicted one.
 
-    The uncertainty includes how much the exponent changes if all runs that share a value of one of
-    ``columns`` are left out.
+    Its uncertainty has two causes: the finite spacing, and the choice of runs. For the second, all
+    runs with one value of one of the varied columns are left out, and the largest change of the
+    exponent counts. The larger of both is returned.
+
+    measured, predicted : expressions over columns
     """
-    logs = []
+    logs_by_lattice = []
     for table in tables:
-        pair = evaluated(table, predicted), evaluated(table, measured)
-        logs.append(np.log(np.array(pair, dtype=float)))
-    value, uncertainty = with_grid_uncertainty(tables, [_slope(pair) for pair in logs])
+        values = [evaluated(table, predicted), evaluated(table, measured)]
+        logs_by_lattice.append(np.log(np.array(values, dtype=float)))
+    slopes = [_slope(logs) for logs in logs_by_lattice]
+    value, uncertainty = with_grid_uncertainty(tables, slopes)
 
-    for name in columns:
+    logs_on_finest = logs_by_lattice[0]
+    for name in varied_columns:
         column = tables[0][name].to_numpy()
         for left_out in np.unique(column):
-            change = abs(_slope(logs[0][:, column != left_out]) - value)
-            uncertainty = max(uncertainty, change)
+            slope_of_others = _slope(logs_on_finest[:, column != left_out])
+            uncertainty = max(uncertainty, abs(slope_of_others - value))
     return Uncertain(value, uncertainty)
 
 
 class Evidence:
-    """All result tables by name: simulations, coarser/NAME, uncertainties/NAME, and studies."""
+    """All result tables, the texts of the claims, and the readings of the published figure.
+
+    tables : tables by name. NAME has the runs of a simulation or the result of a study,
+        coarser/NAME has the same runs on coarser lattices, and uncertainties/NAME has grid studies
+    entries : entries of the claims in manuscript/claims.yaml, by claim id
+    steady : largest relative change of velocity that a steady pulse may have
+    readings : numbers that were read off the published figure, by name
+    """
 
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
         self.tables = tables
-        # Texts of the claims in manuscript/claims.yaml, by claim id.
         self.entries = entries
-        # Largest velocity change of a steady pulse.
         self.steady = steady
-        # Values that were read off the published figure.
         self.readings = readings
         coarser = [path for path in tables if path.startswith("coarser/")]
+        # Names of the simulations that have grid studies.
         self.swept = [path.removeprefix("coarser/") for path in coarser]
         self._lattices = {name: self._three_lattices(name) for name in self.swept}
 
     def _three_lattices(self, simulation: str) -> list[pd.DataFrame]:
-        """Return the measured runs on three lattices, the finest first, without flagged runs."""
+        """Return the runs of a simulation on three lattices, the finest first.
+
+        Runs that are flagged on the finest lattice are left out.
+        """
         finest, coarser = self.tables[simulation], self.tables[f"coarser/{simulation}"]
-        # The grid study has one row for each run (point) and quantity. It becomes one row for each
-        # run, with the columns extrapolated_QUANTITY and uncertainty_QUANTITY.
+        # The grid study has one row for each run (point) and quantity. This is turned into one row
+        # for each run, with the columns extrapolated_QUANTITY and uncertainty_QUANTITY.
         grid_study_rows = self.tables[f"uncertainties/{simulation}"]
         by_run = grid_study_rows.set_index(["point", "quantity"])
         by_run = by_run[["extrapolated", "uncertainty"]].unstack()
         by_run.columns = ["_".join(column) for column in by_run.columns]
         tables = [finest.join(by_run)]
-        # Predictions are the same on all lattices, and only the table of the finest has them.
+        # Predictions are the same on all lattices, but only the table of the finest has them.
         predictions = finest[finest.columns.difference(coarser.columns)]
         for _, lattice in coarser.groupby("factor"):
             tables.append(lattice.reset_index(drop=True).join(predictions))
@@ -160,39 +178,46 @@ class Evidence:
             tables = self._lattices[name]
             is_selected = evaluated(tables[0], where)
             selected.append([table[is_selected] for table in tables])
-        # Lattices of the same rank belong together: all finest ones, then all coarser ones.
+        # Combine the finest lattices of all simulations, then the next coarser ones, and so on.
         return [pd.concat(tables_of_rank) for tables_of_rank in zip(*selected, strict=True)]
 
     def flags_behind(self, source: str) -> str:
-        """Return a sentence on the flagged runs of the simulations in a source; empty if none is.
+        """Return a sentence on flagged runs, which claims do not use; empty if there is none.
 
-        Claims do not use a flagged run, so that such a run may leave a claim without a number.
+        source : names of simulations, as text
         """
         parts = []
         for name in dict.fromkeys(re.findall(r"\w+", source)):
             if name not in self.swept:
                 continue
-            flags = self.tables[name]["run_flags"].dropna().astype(str)
-            flags = flags[flags != ""]
-            kinds = ", ".join(sorted({*",".join(flags).split(",")}))
-            if len(flags):
-                count = f"{len(flags)} of {len(self.tables[name])} runs of {name}"
-                parts.append(f"{count} are flagged ({kinds}) and therefore not used")
+            # A run may have several flags, with commas between them.
+            flags_of_runs = self.tables[name]["run_flags"].dropna().astype(str)
+            flags_of_runs = flags_of_runs[flags_of_runs != ""]
+            flags = ", ".join(sorted({*",".join(flags_of_runs).split(",")}))
+            if len(flags_of_runs):
+                count = f"{len(flags_of_runs)} of {len(self.tables[name])} runs of {name}"
+                parts.append(f"{count} are flagged ({flags}) and therefore not used")
         return f"{'; '.join(parts)}." if parts else ""
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
-        """Return runs on the finest lattice.
+        """Return the runs of some simulations on the finest lattice.
 
-        Columns extrapolated_QUANTITY and uncertainty_QUANTITY come from the grid study.
+        The columns extrapolated_QUANTITY and uncertainty_QUANTITY come from the grid study.
+
+        where : condition over columns that selects runs
         """
         return self.lattices(*simulations, where=where)[0]
 
     def tolerance(self, id: str) -> float:
-        """Return the tolerance of a claim."""
+        """Return the tolerance of the claim with this id."""
         return float(self.entries[id]["tolerance"])
 
     def equation(self, id: str, table: pd.DataFrame, quantity: str, predicted: str) -> Equation:
-        """Compare the extrapolated values of a quantity with an expression that predicts them."""
+        """Compare a quantity, extrapolated to spacing 0, with its predicted value in each run.
+
+        id : id of the claim
+        predicted : expression over columns
+        """
         return Equation(
             tolerance=self.tolerance(id),
             predicted=evaluated(table, predicted).astype(float),
@@ -201,18 +226,20 @@ class Evidence:
         )
 
     def approximate(self, id: str, tables: Lattices, measured: str, predicted: str) -> Approximate:
-        """Compare measured and predicted expressions in their medians over the runs.
+        """Compare a measured with a predicted value, in the median over all runs.
 
-        ``tables`` has one table for each lattice, or a single table of exact solutions.
+        id : id of the claim
+        tables : one table for each lattice, the finest first, or a single table of exact solutions
+        measured, predicted : expressions over columns
         """
-        # One series of all runs for each lattice.
-        ratio_series = [ratios(table, measured, predicted) for table in tables]
-        deviation_series = [(series - 1.0).abs() for series in ratio_series]
-        median_ratios = [series.median() for series in ratio_series]
-        median_deviations = [series.median() for series in deviation_series]
+        # One series for each lattice, with one value for each run.
+        ratios_by_lattice = [ratios(table, measured, predicted) for table in tables]
+        deviations_by_lattice = [(values - 1.0).abs() for values in ratios_by_lattice]
+        median_ratios = [values.median() for values in ratios_by_lattice]
+        median_deviations = [values.median() for values in deviations_by_lattice]
         return Approximate(
             tolerance=self.tolerance(id),
-            deviations=deviation_series[0].to_numpy(),
+            deviations=deviations_by_lattice[0].to_numpy(),
             median=with_grid_uncertainty(tables, median_deviations),
             ratio=with_grid_uncertainty(tables, median_ratios),
         )
@@ -222,8 +249,13 @@ class Evidence:
     ) -> list[bool | None]:
         """Return for each run whether a condition holds; None if that is undecided.
 
-        The two finest lattices decide if they agree and the run is decidable. Otherwise the exact
-        regime decides, provided that ``ends`` lists the regimes in which the condition holds.
+        The two finest lattices decide if they agree. Otherwise, or if the run is not decidable, the
+        exact regime decides if ``ends`` is given.
+
+        where : condition over columns that selects runs
+        holds : the condition over columns that is judged
+        decidable : condition over columns under which lattices can decide; always if it is empty
+        ends : exact regimes in which the judged condition holds
         """
         finest, middle, _ = self.lattices(simulation, where=where)
         answers = agreed_answers(evaluated(finest, holds), evaluated(middle, holds))

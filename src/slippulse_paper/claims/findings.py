@@ -1,7 +1,7 @@
-"""Compute findings: results of our own without a verdict on the paper.
+"""Compute the numbers of our findings, which are results that are not statements of the paper.
 
-Most numbers are expressions in manuscript/claims.yaml over the columns of one table. The functions
-here compute the others; `COMPUTED_FINDINGS` lists them.
+Most numbers are expressions in manuscript/claims.yaml over the columns of one table. Functions of
+this package compute the other numbers; `COMPUTED_FINDINGS` lists them.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -24,40 +24,42 @@ def findings(
 ) -> list[dict]:
     """Return each finding with its id, its numbers by name, its text and its source tables.
 
-    damping_ratio : that of the figures, which expressions may use
+    damping_ratio : damping ratio of the figures, which expressions may use
     entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
     all_findings = []
     for id, entry in entries.items():
-        # Each row of an entry has a table and expressions over its columns.
-        expressions = entry.get("numbers", [])
-        values = all_numbers(evidence, damping_ratio, id, expressions)
+        # Each of these has a table, and expressions over the columns of this table.
+        expression_groups = entry.get("numbers", [])
+        values = all_numbers(evidence, damping_ratio, id, expression_groups)
         # In the text the numbers are n.NAME.
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
-        tables = [row["table"] for row in expressions]
+        tables = [group["table"] for group in expression_groups]
         source = ", ".join([*tables, *entry.get("source", [])])
         all_findings.append({"id": id, "numbers": values, "text": text, "source": source})
     return all_findings
 
 
 def all_numbers(
-    evidence: Evidence, damping_ratio: float, id: str, expressions: Sequence[Mapping]
+    evidence: Evidence, damping_ratio: float, id: str, expression_groups: Sequence[Mapping]
 ) -> dict[str, float]:
-    """Return the numbers of one finding: those of its expressions, and those computed here.
+    """Return all numbers of one finding, by name.
 
-    There are none at all if an altered configuration leaves no runs for some of them.
+    The result is empty if a changed configuration has no runs for some of the numbers.
+
+    expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
-    for row in expressions:
-        part = numbers(evidence, damping_ratio, **row)
-        if not part:
+    for group in expression_groups:
+        numbers_of_table = numbers(evidence, damping_ratio, **group)
+        if not numbers_of_table:
             return {}
-        values |= part
+        values |= numbers_of_table
     if id in COMPUTED_FINDINGS:
-        part = COMPUTED_FINDINGS[id](evidence)
-        if not part:
+        computed = COMPUTED_FINDINGS[id](evidence)
+        if not computed:
             return {}
-        values |= part
+        values |= computed
     return values
 
 
@@ -80,11 +82,12 @@ def numbers(
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
-    """Return the median factor by which damping changes L_trans, for both boundary conditions.
+    """Return the median factor by which damping changes L_trans, for each boundary condition.
 
-    It compares no damping with the largest damping ratio, over the scenes that have both.
+    The factor is L_trans at the largest damping ratio divided by L_trans without damping. Also
+    return the number of scenes, and of those that have both values (runs).
     """
-    out: dict[str, float] = {}
+    values: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
         table = table.set_index(["left", "width", "gamma", "damping_ratio"])
@@ -92,18 +95,18 @@ def collapse(evidence: Evidence) -> dict[str, float]:
         lengths = table["transition_length"].unstack()
         if lengths.empty:
             return {}
-        change = lengths.iloc[:, -1] / lengths.iloc[:, 0]
-        out[f"{boundary}_change"] = float(change.median())
-        out[f"{boundary}_runs"] = float(change.count())
-        out[f"{boundary}_scenes"] = float(len(change))
-    return out | {"ratio": float(lengths.columns[-1])}
+        factors = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        values[f"{boundary}_change"] = float(factors.median())
+        values[f"{boundary}_runs"] = float(factors.count())
+        values[f"{boundary}_scenes"] = float(len(factors))
+    return values | {"ratio": float(lengths.columns[-1])}
 
 
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
 
-    low, high : ends of the confidence region of the damping ratio
-    difference : how much larger chi-square is with the other release rule
+    low, high : ends of the confidence region of the damping ratio, at 95 %
+    difference : chi-square with the other release rule, minus chi-square of the best fit
     """
     fits = infer_parameters(evidence.tables["published_figure"])
     best = fits["best"]
@@ -120,23 +123,23 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
 
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:
-    """Return the median of the exact time divided by the paper's estimate.
+    """Return the median ratio of the exact arrest time to the paper's estimate.
 
-    There is one median for each fraction of the path that counts as arrest.
+    There is one median for each fraction of the path at which a front may count as arrested.
     """
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
     for fraction, median in transition.medians(judged.combinations).items():
-        # The last release is a text instead of a fraction, and belongs to lattices.
+        # Lattices are measured at their last release. They have a text instead of a fraction.
         if isinstance(fraction, float):
             medians[f"median_{100.0 * fraction:.0f}"] = median
     return medians
 
 
 def backward_threshold(evidence: Evidence) -> dict[str, float]:
-    """Count runs in which the printed threshold would let blocks slide back.
+    """Count the runs in which the threshold that the paper prints would let blocks slide back.
 
-    Also return the friction ratio above which no block would.
+    Also return the friction ratio mu_k/(mu_s - mu_k) from which on no block would slide back.
     """
     columns = ["min_stuck_stress", "friction_ratio_needed"]
     runs = pd.concat([evidence.tables[name][columns] for name in evidence.swept])

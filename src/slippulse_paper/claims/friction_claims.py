@@ -10,8 +10,8 @@ from .evidence import Evidence, agreed_answers
 from .kinds import Qualitative
 from .pulse_claims import TWO_WAY
 
-# Rate dependences divided by the critical one. Stronger ones of either sign would let blocks slide
-# back in pulses.
+# Rate strengthening divided by the critical one: the most negative and the most positive value of
+# the runs in which no block of a pulse would slide back.
 STRONGEST_RATES = (-0.5, 0.9)
 PULSE_SIZES = ("width", "slip")
 # The pre-stress at which the front speed under slip weakening is reported.
@@ -19,17 +19,20 @@ SLIP_WEAKENING_LEVEL = 0.5
 
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
-    """Find runs with two pulses (with leaf springs) and runs with one pulse (without)."""
-    # These tables also contain runs that are flagged because the rupture died out.
+    """Judge whether the lattice of Burridge and Knopoff has pulses under both boundary conditions.
+
+    There should be runs with two pulses if it has leaf springs, and with one pulse if it has none.
+    """
+    # Unlike `Evidence.finest`, these tables have the runs that are flagged since they died out.
     with_springs = evidence.tables["burridge_knopoff_chain"]
     without_springs = evidence.tables["burridge_knopoff_stress"]
     two_way = with_springs[with_springs["regime"] == TWO_WAY]
     one_way = without_springs[without_springs["regime"].str.startswith("pulse, one-way")]
-    # The paper has pulses that are one block wide. In such a pulse one block slides at a time.
+    # The paper says that pulses are one block wide, so that one block slides at a time.
     fewest_blocks = two_way["sliding_at_once"].min()
     is_wide = bool(fewest_blocks > 1.0)
-    # Each boundary condition counts as one case, and is undecided if none of its runs is a pulse.
-    decided = [None if two_way.empty else True, None if one_way.empty else True]
+    # Each boundary condition counts as one run. It is undecided if no rupture becomes a pulse.
+    decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
     return Qualitative(
         decided=decided,
         condition=is_wide,
@@ -49,7 +52,10 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether ruptures under each other law are pulses; skip runs that would slide back."""
+    """Judge whether ruptures under other friction laws become pulses.
+
+    Runs in which blocks would slide back are left out, and so are ruptures that stop at once.
+    """
     linear_in_rate = evidence.tables["rate_dependence"].query(
         "role == 'lattice' and over_critical != 0"
     )
@@ -67,42 +73,45 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether a pulse at zero pre-stress decays under rate strengthening, stress held."""
+    """Judge whether a pulse in zero pre-stress decays under rate strengthening, with held stress.
+
+    It decays if its largest velocity falls by more than the tolerance.
+    """
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
-    # From this time on the pulse without rate strengthening is steady.
+    # Without rate strengthening the pulse is steady from this time on.
     late = table[table["time"] >= 0.1 * table["time"].max()]
     velocities = late.groupby(["rate_strengthening", "dx"])["largest_velocity"]
-    limit = (1.0 - evidence.tolerance(id)) * velocities.first()
+    lowest_steady_velocities = (1.0 - evidence.tolerance(id)) * velocities.first()
     # One row for each rate strengthening, and one column for each spacing, the finest first.
-    decays = (velocities.last() < limit).unstack()
+    decays = (velocities.last() < lowest_steady_velocities).unstack()
     with_strengthening = decays[decays.index > 0.0]
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
-    steady_by_spacing = (~with_strengthening).sum()
+    steady_count_by_spacing = (~with_strengthening).sum()
     words = "laws, by their strengthening, that leave a steady pulse"
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
         condition=True,
-        further={words: float(steady_by_spacing.max())},
+        further={words: float(steady_count_by_spacing.max())},
     )
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether other laws change width and slip of pulses by more than the tolerance.
 
-    Pulses with the strongest rate dependences are compared with those at constant friction and at
-    the same level of pre-stress. Front speeds under slip weakening are quoted, too.
+    Pulses at STRONGEST_RATES are compared with those at constant friction and the same level of
+    pre-stress. The sentences of the claim also quote front speeds under slip weakening.
     """
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
-    # The column over_critical has the rate dependence, divided by the critical one.
+    # The column over_critical has the rate strengthening divided by the critical one.
     sizes = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in PULSE_SIZES]]
     at_constant_friction = sizes.xs(0.0, level="over_critical")
-    changes = []
+    changes_by_rate = []
     for rate in STRONGEST_RATES:
         ratio = sizes.xs(rate, level="over_critical") / at_constant_friction
-        changes.append((ratio - 1.0).abs())
-    change = pd.concat(changes)
-    is_changed = change > evidence.tolerance(id)
-    smallest = change.min()
+        changes_by_rate.append((ratio - 1.0).abs())
+    changes = pd.concat(changes_by_rate)
+    is_changed = changes > evidence.tolerance(id)
+    smallest = changes.min()
     further = {
         f"smallest change of the {size}": float(smallest[f"pulse_{size}"]) for size in PULSE_SIZES
     }

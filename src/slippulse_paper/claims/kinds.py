@@ -1,7 +1,7 @@
-"""Results about claims of the paper: one dataclass for each kind of claim.
+"""Results about claims of the paper: one class for each kind of claim.
 
-A result holds the numbers and computes the verdict from them at any tolerance, so that the ledger
-can also report the tolerances at which the verdict would change.
+A result has the measured numbers, and computes the verdict from them at any tolerance. So the
+ledger can also report the tolerances at which the verdict would change.
 """
 
 import math
@@ -17,9 +17,10 @@ from . import rules
 from .rules import Spread, Uncertain
 
 NAN = math.nan
-# A verdict is computed at this many tolerances; where it changes, bisection refines the tolerance.
+# To find where the verdict changes, it is computed at this number of tolerances. The interval in
+# which it changes is then halved this number of times.
 SCANNED_TOLERANCES, BISECTIONS = 41, 12
-# A qualitative claim is inconclusive if a larger fraction of its runs is undecided.
+# A qualitative claim is inconclusive if more than this fraction of its runs is undecided.
 MAX_UNDECIDED_FRACTION = 0.1
 
 
@@ -30,11 +31,11 @@ class Claim(ABC):
     Attributes
     ----------
     tolerance
-        Limit of the deviation; 0 if no number is compared with a limit.
+        Largest allowed deviation; 0 if no number is compared with a tolerance.
     extra_verdict
         Function that returns the verdict on an additional requirement at a given tolerance.
     failing
-        Verdict on the claim if it fails.
+        Verdict on the claim if it fails. It is not always "not reproduced".
     further
         Additional numbers by name, for the table of claims.
     template_values
@@ -53,7 +54,7 @@ class Claim(ABC):
 
     @abstractmethod
     def fields(self) -> dict[str, Any]:
-        """Return the verdict and the numbers of this kind, with their names in claims.json."""
+        """Return the verdict and the numbers, by their names in claims.json."""
 
     def verdict(self, tolerance: float | None = None) -> str:
         """Return the verdict at the tolerance of the claim, or at another tolerance."""
@@ -81,15 +82,14 @@ class Claim(ABC):
                 flips.append({"tolerance": tolerance, "below": below, "above": above})
         return flips
 
-    def _factor_of_flip(self, low: float, high: float, below: str) -> float:
-        """Return where the verdict changes, in units of the tolerance, by bisection.
+    def _factor_of_flip(self, low: float, high: float, verdict_at_low: str) -> float:
+        """Return the tolerance at which the verdict changes, divided by that of the claim.
 
-        low, high : factors between which it changes
-        below : the verdict at ``low``
+        low, high : factors of the tolerance between which the verdict changes
         """
         for _ in range(BISECTIONS):
             middle = np.sqrt(low * high)
-            if self.verdict(self.tolerance * middle) == below:
+            if self.verdict(self.tolerance * middle) == verdict_at_low:
                 low = middle
             else:
                 high = middle
@@ -106,11 +106,14 @@ class Claim(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
-    """A statement such as "always" or "never", which must hold in each run."""
+    """A statement with "always" or "never", which must hold in each run.
 
-    # True if it holds in a run, False if not, None if the run does not decide.
+    decided : one value for each run: True if the statement holds, False if it fails, and None if
+        the run does not decide
+    condition : True if the statement holds only under a condition that the paper does not state
+    """
+
     decided: Collection[bool | None]
-    # True if the claim needs a condition that the paper does not state.
     condition: bool = False
 
     def counts(self) -> dict[str, int]:
@@ -122,79 +125,86 @@ class Qualitative(Claim):
 
     def own_verdict(self, tolerance: float) -> str:
         """Return the verdict from the numbers of runs; the tolerance has no influence."""
-        counts, runs = self.counts(), len(self.decided)
-        if not runs:
+        counts, run_count = self.counts(), len(self.decided)
+        if not run_count:
             return rules.NOT_TESTABLE
         if counts["failed"]:
             return rules.FAILED
-        if counts["undecided"] > MAX_UNDECIDED_FRACTION * runs:
+        if counts["undecided"] > MAX_UNDECIDED_FRACTION * run_count:
             return rules.INCONCLUSIVE
         return rules.CAVEAT if counts["undecided"] or self.condition else rules.REPRODUCED
 
     def fields(self) -> dict[str, Any]:
         """Return the numbers of runs; the deviation is the fraction of runs that fail."""
-        runs, counts = len(self.decided), self.counts()
+        run_count, counts = len(self.decided), self.counts()
         return {
             "verdict": self.verdict(),
-            "runs": runs,
-            "predicted": runs,
+            "runs": run_count,
+            "predicted": run_count,
             **counts,
             "measured": counts["held"],
             "uncertainty": counts["undecided"],
-            "deviation": counts["failed"] / runs if runs else None,
+            "deviation": counts["failed"] / run_count if run_count else None,
         }
 
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Claim):
-    """An equation, judged by the values of its runs at spacing 0, or by an exponent."""
+    """An equation that must hold in each run.
 
-    # Arrays [run], NaN where a value is missing.
+    predicted : the value that the equation gives for each run; NaN where it is missing
+    measured, uncertainty : the measured value and its numerical uncertainty; NaN where missing
+    counts : additional numbers of runs for claims.json
+    """
+
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
-    # Additional numbers of runs: behind an exponent, or for an additional requirement.
     counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return relative deviation and relative uncertainty of each run.
+        """Return the relative deviation and the relative uncertainty of each run.
 
-        Both are absolute where the prediction is 0.
+        Both are absolute where the predicted value is 0.
         """
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
-        return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
+        deviations = np.abs(self.measured - self.predicted) / scale
+        return deviations, self.uncertainty / scale
 
     def verdicts(self, tolerance: float) -> list[str]:
         """Return the verdict on each run."""
-        runs = zip(*self.relative(), strict=True)
-        return [rules.within(deviation, uncertainty, tolerance) for deviation, uncertainty in runs]
+        deviations, uncertainties = self.relative()
+        return [
+            rules.verdict_on_number(deviation, uncertainty, tolerance)
+            for deviation, uncertainty in zip(deviations, uncertainties, strict=True)
+        ]
 
     def own_verdict(self, tolerance: float) -> str:
         """Return the worst verdict of all runs that have numbers."""
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
-        """Return the numbers of the run that decides, and how many runs have numbers.
+        """Return the numbers of one run, and how many runs have numbers.
 
-        Of all runs with the worst verdict, the one with the largest deviation decides.
+        The run is one with the worst verdict, and among these the one with the largest deviation.
         """
-        deviation, uncertainty = self.relative()
-        usable = int(np.isfinite(deviation + uncertainty).sum())
+        deviations, uncertainties = self.relative()
+        usable_count = int(np.isfinite(deviations + uncertainties).sum())
         fields: dict[str, Any] = {
             "verdict": self.verdict(),
-            "runs": usable,
-            "left_out": len(deviation) - usable,
+            "runs": usable_count,
+            "left_out": len(deviations) - usable_count,
         }
-        if usable:
+        if usable_count:
             worst = self.own_verdict(self.tolerance)
             verdicts = self.verdicts(self.tolerance)
-            deciding_runs = [run for run, verdict in enumerate(verdicts) if verdict == worst]
-            run = max(deciding_runs, key=lambda run: deviation[run])
+            worst_runs = [run for run, verdict in enumerate(verdicts) if verdict == worst]
+            run = max(worst_runs, key=lambda run: deviations[run])
             fields |= {
                 "predicted": float(self.predicted[run]),
                 "measured": float(self.measured[run]),
                 "uncertainty": float(self.uncertainty[run]),
-                "deviation": float(deviation[run]),
+                "deviation": float(deviations[run]),
             }
         return fields | dict(self.counts)
 
@@ -204,55 +214,61 @@ NO_VALUE, NO_SPREAD = Uncertain(NAN, NAN), Spread(NAN, NAN)
 
 @dataclass(frozen=True, kw_only=True)
 class Approximate(Claim):
-    """An estimate, judged by the median deviation of its runs."""
+    """An estimate, which must hold in the median of its runs.
 
-    # |measured/predicted - 1| of each run on the finest lattice, NaN where a value is missing.
+    deviations : |measured/predicted - 1| of each run on the finest lattice; NaN where a value is
+        missing
+    median : median of the deviations, with its numerical uncertainty
+    ratio : median of measured/predicted, with its numerical uncertainty
+    from_exact : deviations of our own values, extrapolated to spacing 0, from exact theory
+    """
+
     deviations: np.ndarray
-    # The medians of the deviation and of measured/predicted, with numerical uncertainties.
     median: Uncertain
     ratio: Uncertain = NO_VALUE
-    # Deviations from exact theory of values extrapolated to spacing 0.
     from_exact: Spread = NO_SPREAD
 
     def own_verdict(self, tolerance: float) -> str:
         """Return the verdict on the median deviation."""
         median_deviation, uncertainty = self.median
-        return rules.within(median_deviation, uncertainty, tolerance)
+        return rules.verdict_on_number(median_deviation, uncertainty, tolerance)
 
     def fields(self) -> dict[str, Any]:
-        """Return the medians and the spread of the runs; without usable runs only counts."""
-        usable = self.deviations[np.isfinite(self.deviations)]
+        """Return the medians and the spread of the runs; only counts if no run has a number."""
+        usable_deviations = self.deviations[np.isfinite(self.deviations)]
         exact_median, exact_largest = self.from_exact
         fields: dict[str, Any] = {
-            "runs": usable.size,
-            "left_out": self.deviations.size - usable.size,
+            "runs": usable_deviations.size,
+            "left_out": self.deviations.size - usable_deviations.size,
             "verdict": self.verdict(),
             "exact_median": exact_median,
             "exact_largest": exact_largest,
         }
-        if usable.size:
+        if usable_deviations.size:
             median_ratio, uncertainty = self.ratio
             fields |= {
                 "measured": median_ratio,
                 "uncertainty": uncertainty,
                 "predicted": 1.0,
                 "deviation": self.median.value,
-                "ninety": float(np.percentile(usable, 90.0)),
-                "largest": float(usable.max()),
+                "ninety": float(np.percentile(usable_deviations, 90.0)),
+                "largest": float(usable_deviations.max()),
             }
         return fields
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reading(Claim):
-    """Readings from a figure, judged by their chi-square at the best fit."""
+    """Numbers that were read off a figure, judged by their chi-square at the best fit.
+
+    degrees_of_freedom : number of readings minus number of fitted parameters
+    """
 
     chi_square: float
-    # Number of readings minus number of fitted parameters.
     degrees_of_freedom: int
 
     def p_value(self) -> float:
-        """Return the probability of a larger chi-square; NaN without degrees of freedom."""
+        """Return the probability of a larger chi-square; NaN if there is no degree of freedom."""
         degrees = self.degrees_of_freedom
         return float(chdtrc(degrees, self.chi_square)) if degrees else NAN
 

@@ -1,8 +1,9 @@
 """Judge claims about the two-dimensional layer, which the paper averages over its height.
 
-The table `layer` has one row for each run, grid and station; a station is a position at which the
-pulse is measured. Every run was made on several grids, and its finest grid is used. The part far
-has the same pulses as the part pulse, farther away and on two grids.
+The table `layer` has one row for each run, grid and station. A station is a position on the fault
+at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
+The part far has the same pulses as the part pulse, farther away and on two grids. A function that
+judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable
@@ -12,40 +13,38 @@ import numpy as np
 import pandas as pd
 
 from . import rules
-from .evidence import Evidence
+from .evidence import Evidence, agreed_answers
 from .kinds import Approximate, Qualitative
 from .rules import Uncertain
 
-# Whether the pulses of a point of the map are steady. All other outcomes leave it undecided,
-# because a pulse from below or from above was not tested or had not settled.
+# Whether the pulses at a point of `layer_map` are steady, by the outcome of its runs. The other
+# outcomes leave this open, because a pulse died early or had not settled.
 STEADY_BY_OUTCOME = {"steady": True, "growing": False, "dying": False}
 CONVERGED_QUANTITIES = ("speed", "pulse_width", "pulse_slip")
 RUN_COLUMNS = ["gamma", "tau0", "weakening", "coupling", "side"]
 # Pulses with a smaller fracture energy, divided by the energy that the layer releases, are brittle.
 BRITTLE_ENERGY = 0.4
-# The paper's transition time, pi/sqrt(gamma), divided by the travel time of a shear wave to the top
-# and back, 2 sqrt(2/gamma).
+# The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
+# top and back, 2 sqrt(2/gamma).
 CROSSINGS_OF_TRANSITION = np.pi / np.sqrt(8.0)
 
 
 def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
-    """Return the rows of all runs and grids at the last station.
+    """Return the rows of all runs and grids at one station.
 
-    A station is a position on the fault at which a pulse is measured.
-
-    before_last : number of stations before the last one, to choose an earlier station
+    before_last : number of stations between the chosen one and the last one; 0 for the last one
     """
     rows = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
     return rows[rows["station"] == rows["station"].max() - before_last]
 
 
 def finest_rows(rows: pd.DataFrame, part: str, coarser: int = 0) -> pd.DataFrame:
-    """Return the rows of one part on the finest grid of each run, or on a coarser one.
+    """Return the rows of one part on the finest grid of each run, or on a coarser grid.
 
-    The index has the parameters of the run, RUN_COLUMNS.
+    The index of the rows has the parameters of the run, RUN_COLUMNS.
 
     rows : rows of all parts and grids, at one station
-    coarser : number of grids by which the chosen grid is coarser than the finest
+    coarser : 0 for the finest grid, 1 for the second finest, and so on
     """
     rows = rows[rows["part"] == part].sort_values("cells", kind="stable")
     return rows.groupby(RUN_COLUMNS, sort=False).nth(-1 - coarser).set_index(RUN_COLUMNS)
@@ -74,11 +73,11 @@ def crossings(pulses: pd.DataFrame) -> pd.Series:
 
 
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
-    """Return the distance that a front runs while its shear front comes down from the top.
+    """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
-    Shear waves have the speed sqrt(gamma/2). The shear front of a source that moves along the top
-    at the speed v is a straight line. It meets the fault behind the source, at the distance
-    sqrt(2 v^2/gamma - 1).
+    Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
+    the speed v have a straight wave front. It meets the fault at the distance sqrt(2 v^2/gamma - 1)
+    behind the source.
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
@@ -135,8 +134,8 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
 def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     """Judge ruptures under a stress boundary.
 
-    A rupture must be a crack in uniform pre-stress. At a barrier it must stop on that side and
-    become a pulse on the other.
+    In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
+    stop on this side and become a pulse on the other.
     """
     is_crack, is_stopped = (
         on_two_grids(partial(regime, evidence)) for regime in (never_sticks, stops_on_one_side)
@@ -162,13 +161,12 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
 
 
 def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
-    """Judge runs on their two finest grids; a run is undecided if the grids disagree.
+    """Judge a statement on the two finest grids of each run, which is undecided if they disagree.
 
-    holds : returns for each run whether the statement holds, on the finest grid (0) or on the
-        second finest (1)
+    holds : function that returns for each run if the statement holds. Its argument is 0 for the
+        finest grid and 1 for the second finest.
     """
-    grids = zip(holds(0), holds(1), strict=True)
-    return Qualitative(decided=[bool(fine) if fine == coarse else None for fine, coarse in grids])
+    return Qualitative(decided=agreed_answers(holds(0), holds(1)))
 
 
 def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.Series:
@@ -221,15 +219,21 @@ def split_pulses(evidence: Evidence) -> dict[str, float]:
 
 
 def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
-    """Return which ruptures in uniform pre-stress never stick."""
+    """Return True for each rupture in uniform pre-stress that never sticks.
+
+    coarser : see `finest_rows`
+    """
     cracks = finest_rows(rows_at_station(evidence), "crack", coarser)
     return ~np.isfinite(cracks["first_stick"])
 
 
 def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
-    """Return which ruptures stop at a barrier on the left and become a pulse on the right.
+    """Return True for each rupture that stops at a barrier on the left and has a pulse on the right.
 
-    The pulse must have passed the second last station by the end.
+    The left front must stop before the balance position. The pulse must have passed the second last
+    station by the end.
+
+    coarser : see `finest_rows`
     """
     last, before = (
         finest_rows(rows_at_station(evidence, before_last), "barrier", coarser)
@@ -278,9 +282,10 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are steady if the fracture energy is below the energy that is released.
 
-    Fracture energies are divided by the largest energy that the layer can release, so that the
-    limit is 1. No pulse can exist above it. An outcome counts if two grids agree on it. The claim
-    has a caveat if a pulse that crosses a larger step has not settled at its last station.
+    Fracture energies are divided by the largest energy that the layer can release, so the limit is
+    1. Above the limit no pulse can exist. An outcome counts if two grids agree on it. The claim has
+    a caveat if a pulse that enters a very different pre-stress has not become steady at the last
+    station.
     """
     points = evidence.tables["layer_map"]
     agrees = points["outcome"] == points["coarse_outcome"]
@@ -312,27 +317,73 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Return the numbers for the section on the layer in two dimensions.
 
-    Most are ranges, with the smallest (low) and the largest value (high) in all pulses, in those
-    with varied fracture energy, or in those with a fracture energy below BRITTLE_ENERGY (brittle).
-    Width and slip are compared with the paper's formulas and with the pulse in one dimension with
-    the same friction, the slip also with the most that energy allows, and the time for which a
-    point slides with the time in which a shear front crosses the layer. The energy that leaves as
-    waves is divided by the static release.
+    Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high),
+    which are defined in `pulse_quantities`. Others are changes from the second finest to the finest
+    grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers` and `across_a_step`.
     """
     rows = rows_at_station(evidence)
     pulses = finest_rows(rows, "pulse")
-    # The fracture energy is varied at the level that most pulses have.
-    level = float(pulses.reset_index()["tau0"].mode().iloc[0])
-    varied = pulses.xs(level, level="tau0", drop_level=False)
+    varied = with_varied_energy(pulses)
+    thinnest = with_smallest_gamma(varied)
+    patch = finest_rows(evidence.tables["layer"], "patch")
+    numbers = {
+        "pulses": float(len(pulses)),
+        "level": float(varied.index.get_level_values("tau0")[0]),
+        "crossings": CROSSINGS_OF_TRANSITION,
+        "brittle_energy": BRITTLE_ENERGY,
+        "level_spread": spread_with_level(pulses),
+        "formula_speed": float(varied["paper_speed"].max()),
+        "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
+    }
+    quantities = pulse_quantities(pulses)
+    quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
+    quantities["free"] = crossings(finest_rows(rows, "free"))
+    for name, values in quantities.items():
+        numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
+    for quantity in CONVERGED_QUANTITIES:
+        numbers[f"{quantity}_change"] = float(change(rows, "pulse", quantity).max())
+    return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
+
+
+def with_varied_energy(pulses: pd.DataFrame) -> pd.DataFrame:
+    """Return the pulses that differ only in gamma and fracture energy.
+
+    They have the level of pre-stress that most pulses have.
+    """
+    levels = pulses.reset_index()["tau0"]
+    most_frequent_level = float(levels.mode().iloc[0])
+    return pulses.xs(most_frequent_level, level="tau0", drop_level=False)
+
+
+def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
+    """Return the pulses with the smallest gamma, which are the widest."""
+    gamma = pulses.index.get_level_values("gamma")
+    return pulses.xs(gamma.min(), level="gamma")
+
+
+def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
+    """Return quantities of pulses by name, each with one value for each pulse.
+
+    width, slip : compared with the paper's formulas
+    brittle_... : for pulses with the smallest fracture energy
+    line_... : pulses in one dimension with the same friction, compared with the paper's formulas
+    wider : pulse width divided by the width in one dimension
+    less_damped : width in one dimension divided by the one with more damping
+    crossing : pulse width divided by `crossing_width`; brittle_crossing for all fracture energies
+        below BRITTLE_ENERGY
+    sliding : time for which a point slides, divided by the time in which a shear wave crosses the
+        layer
+    slip_over_bound : slip divided by the largest slip that the energy balance allows
+    waves : fraction of the released energy that leaves as waves
+    """
+    varied = with_varied_energy(pulses)
     brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
     most_brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
-    patch = finest_rows(evidence.tables["layer"], "patch")
     gamma = pulses.index.get_level_values("gamma")
-    thinnest = varied.xs(gamma.min(), level="gamma")
     # A slip of s times the formula releases the static energy 4 s (1 - s), in units of G_0.
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
-    released = 4.0 * relative_slip * (1.0 - relative_slip)
-    ranges = {
+    released_energy = 4.0 * relative_slip * (1.0 - relative_slip)
+    return {
         "gamma": gamma,
         "tau0": pulses.index.get_level_values("tau0"),
         "energy": varied["fracture_energy"],
@@ -349,26 +400,10 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "crossing": crossings(pulses),
         "brittle_crossing": crossings(brittle),
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
-        "thinnest_width": thinnest["pulse_width"],
+        "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
-        "waves": 1.0 - pulses["fracture_energy"] / released,
-        "first_stick": patch["first_stick"] / patch["strip_first_stick"],
-        "free": crossings(finest_rows(rows, "free")),
+        "waves": 1.0 - pulses["fracture_energy"] / released_energy,
     }
-    numbers = {
-        "pulses": float(len(pulses)),
-        "level": level,
-        "brittle_energy": BRITTLE_ENERGY,
-        "crossings": CROSSINGS_OF_TRANSITION,
-        "level_spread": spread_with_level(pulses),
-        "formula_speed": float(varied["paper_speed"].max()),
-        "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
-    }
-    for name, values in ranges.items():
-        numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
-    for quantity in CONVERGED_QUANTITIES:
-        numbers[f"{quantity}_change"] = float(change(rows, "pulse", quantity).max())
-    return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
 
 
 def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
@@ -414,8 +449,10 @@ def spread_with_level(pulses: pd.DataFrame) -> float:
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
 
-    Slips are those on the finest grid at the last station. A difference is the relative one between
-    two slips there, on the grid where it is larger.
+    upwards, downwards : final slip of the pulse that enters a higher or a lower pre-stress
+    uniform_higher, uniform_lower : final slip in these two levels of pre-stress from the start
+    upwards_difference, downwards_difference : relative difference between the two slips, on the
+        grid where it is larger
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())

@@ -1,10 +1,10 @@
 """Turn the claims of claims.json into the texts that pages and reports show.
 
-`Ledger` holds all claims and findings by id. `Entry` and its subclasses format one claim by its
-kind: prediction, measured value, deviation with tolerance, and the reason for the verdict.
+`Ledger` has all claims and findings by id. An `Entry` is one claim. It returns the texts on the
+prediction, the measured value, the deviation with its tolerance, and the reason for the verdict.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,10 +18,10 @@ TOLERANCE_BAND = 1.5
 
 
 class Entry(SimpleNamespace):
-    """A claim of claims.json with its fields as attributes; this class formats a number.
+    """A claim of claims.json with its fields as attributes.
 
-    A subclass formats claims of other kinds. A method with a name in _text returns the content of
-    one column in the table of claims.
+    This class formats claims that are decided by a measured number, and subclasses format the other
+    kinds. A method with a name in _text returns the content of one column in the table of claims.
     """
 
     # Fields that only some kinds have, with the values for all others.
@@ -35,24 +35,24 @@ class Entry(SimpleNamespace):
         return number(self.predicted, 5)
 
     def measured_text(self) -> str:
-        """Return the measured value with its uncertainty; numbers of runs if qualitative."""
+        """Return the measured value with its uncertainty."""
         return with_uncertainty(self.measured, self.uncertainty)
 
     def compared_text(self) -> str:
         """Return the deviation and the tolerance in words."""
-        return MISSING if self.deviation is None else self._compared()
+        return MISSING if self.deviation is None else self._deviation_and_tolerance()
 
     def why_text(self) -> str:
-        """Return why a claim is not simply reproduced; empty if it is."""
+        """Return the reason for the verdict; empty if the claim holds without reservation."""
         if self.verdict in WITHOUT_RESERVATION or self.why:
             return self.why
         if self.verdict == NOT_TESTABLE:
             return "This run has no number that could be judged."
-        return self._off()
+        return self._sentence_on_deviation()
 
     def evidence_text(self) -> str:
         """Return the additional evidence for the verdict, as Markdown."""
-        parts = [self.note, *self._spread()]
+        parts = [self.note, *self._numbers_of_runs()]
         parts += [f"{name}: {rounded(value)}" for name, value in self.further.items()]
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
@@ -63,15 +63,16 @@ class Entry(SimpleNamespace):
         return "; ".join(part for part in parts if part)
 
     def _other_tolerances(self) -> list[str]:
-        """Return the verdicts at other tolerances that are near, and at the earlier tolerance."""
+        """Return the verdicts at similar tolerances, and at the earlier tolerance."""
         parts = []
         for flip in self.flips_at:
-            # The verdict changes at this tolerance. The other verdict lies beyond it.
+            # The verdict changes at this tolerance. The other verdict holds on that side of it on
+            # which the tolerance of the claim is not.
             ratio = flip["tolerance"] / self.tolerance
-            side = "above" if ratio > 1.0 else "below"
+            other_side = "above" if ratio > 1.0 else "below"
             if 1.0 / TOLERANCE_BAND <= ratio <= TOLERANCE_BAND:
                 limit = number(flip["tolerance"], 3)
-                parts.append(f"with a tolerance {side} {limit}: {flip[side]}")
+                parts.append(f"with a tolerance {other_side} {limit}: {flip[other_side]}")
         if self.at_earlier:
             earlier = setting(self.earlier_tolerance)
             parts.append(
@@ -91,26 +92,28 @@ class Entry(SimpleNamespace):
             reasons.append("the claim is a remark on a drawing and is not counted")
         return reasons
 
-    def _compared(self) -> str:
+    def _deviation_and_tolerance(self) -> str:
         """Return the deviation and the tolerance, for a claim that has a deviation."""
-        # A scaling deviates in its exponent; an estimate deviates in its median run.
+        # Deviations of exponents, and those from 0, are not relative.
         if self.kind == "scaling" or self.predicted == 0.0:
             return f"{number(self.deviation, 2)}, tolerance {setting(self.tolerance)}"
+        # The deviation of an estimate is the median over all runs.
         text = "median " if self.kind == "approximate" else ""
         text += f"{percent(self.deviation)}, tolerance {setting(100.0 * self.tolerance)} %"
         return f"{text}; {self.asked}" if self.asked else text
 
-    def _off(self) -> str:
-        """Return how far the claim is off; the uncertainty is relative, like the deviation."""
+    def _sentence_on_deviation(self) -> str:
+        """Return a sentence with the deviation and its uncertainty."""
         uncertainty = number(self.uncertainty)
         if self.predicted:
+            # The uncertainty is relative, like the deviation.
             uncertainty = percent(self.uncertainty / abs(self.predicted))
         deviation = "median deviation" if self.kind == "approximate" else "deviation"
         compared = self.compared_text().removeprefix("median ")
         return f"The {deviation} is {compared}; the uncertainty is {uncertainty}."
 
-    def _spread(self) -> list[str]:
-        """Return how many runs a number has, their spread, and how many are left out."""
+    def _numbers_of_runs(self) -> list[str]:
+        """Return the number of runs, how much they deviate, and how many are left out."""
         parts = []
         # The measured value of a qualitative claim is a number of runs already.
         if self.runs and self.kind != "qualitative":
@@ -123,15 +126,15 @@ class Entry(SimpleNamespace):
         return parts
 
 
-class Counts(Entry):
+class QualitativeEntry(Entry):
     """A qualitative claim, shown as numbers of runs."""
 
     def predicted_text(self) -> str:
-        """Return the number of runs, in all of which the statement should hold."""
+        """Return the number of all runs, because the statement should hold in each of them."""
         return f"all of {self.predicted:.0f}"
 
     def measured_text(self) -> str:
-        """Return the numbers of runs in which it holds, fails or is undecided."""
+        """Return the numbers of runs in which the statement holds, fails or is undecided."""
         total = self.held + self.failed + self.undecided
         parts = [f"{self.held} of {total}"]
         if self.failed:
@@ -140,52 +143,61 @@ class Counts(Entry):
             parts.append(f"{self.undecided} undecided")
         return ", ".join(parts)
 
-    def _compared(self) -> str:
+    def _deviation_and_tolerance(self) -> str:
+        """Return the requirement, with its tolerance if it has one."""
         text = self.asked or "no run may contradict"
         tolerance = setting(100.0 * self.tolerance)
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
-    def _off(self) -> str:
-        """Return in how many runs the claim holds and what the others do."""
-        # The text is "HELD of ALL", followed by what did not hold.
-        held, _, rest = self.measured_text().partition(", ")
-        if rest:
-            return f"It holds in {held} cases ({rest})."
+    def _sentence_on_deviation(self) -> str:
+        """Return a sentence on the runs in which the claim holds and on the other runs."""
+        # The text is, for example, "38 of 40, 1 against, 1 undecided".
+        held, _, others = self.measured_text().partition(", ")
+        if others:
+            return f"It holds in {held} cases ({others})."
         return "It holds only under a condition that the paper does not state."
 
 
-class ReadOff(Entry):
-    """Readings from a figure, shown as a chi-square."""
+class ReadingEntry(Entry):
+    """Numbers that were read off a figure, shown as a chi-square."""
 
     def predicted_text(self) -> str:
-        """Return the degrees of freedom, which are the expectation of chi-square."""
+        """Return the degrees of freedom, which are the expected value of chi-square."""
         degrees = "degree" if self.predicted == 1 else "degrees"
         return f"{self.predicted:.0f} {degrees} of freedom"
 
     def measured_text(self) -> str:
+        """Return the chi-square."""
         return f"\N{GREEK SMALL LETTER CHI}² = {number(self.measured, 3)}"
 
-    def _compared(self) -> str:
+    def _deviation_and_tolerance(self) -> str:
+        """Return the p-value and its smallest allowed value."""
         return f"p = {number(self.deviation, 2)}, required at least {setting(self.tolerance)}"
 
-    def _off(self) -> str:
-        """Return the p-value of the best fit."""
+    def _sentence_on_deviation(self) -> str:
+        """Return a sentence with the p-value of the best fit."""
         return f"The best fit has {self.compared_text()}."
 
 
-KINDS: dict[str, type[Entry]] = dict.fromkeys(("exact", "approximate", "scaling"), Entry)
-KINDS |= {"qualitative": Counts, "reading": ReadOff}
+# The class that formats a claim, by its kind.
+KINDS: dict[str, type[Entry]] = {
+    "exact": Entry,
+    "approximate": Entry,
+    "scaling": Entry,
+    "qualitative": QualitativeEntry,
+    "reading": ReadingEntry,
+}
 
 
 def with_texts(claim: Mapping[str, Any]) -> Entry:
-    """Return a claim of claims.json as the class that formats its kind."""
+    """Return a claim of claims.json as an object that formats it."""
     return KINDS[claim["kind"]](**claim)
 
 
 class Ledger:
-    """All claims of claims.json by id, and all findings of findings.json.
+    """All claims of claims.json and all findings of findings.json, by id.
 
-    Iteration goes over the claims.
+    Iterating over a ledger yields its claims.
     """
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
@@ -196,51 +208,58 @@ class Ledger:
         return iter(self.claims.values())
 
     def __call__(self, id: str) -> Entry:
-        """Return one claim; an unknown id raises a ValueError that lists the known ones."""
-        return _known("claim", id, self.claims)
+        """Return the claim with an id; raises ValueError if there is none."""
+        return _entry_with_id("claim", id, self.claims)
 
     def found(self, id: str) -> SimpleNamespace | None:
         """Return the numbers of one finding by name; None if it has no numbers."""
-        numbers = _known("finding", id, self.findings)["numbers"]
+        numbers = _entry_with_id("finding", id, self.findings)["numbers"]
         return SimpleNamespace(**numbers) if numbers else None
 
-    def deviation_at(self, id: str, **chosen: float | str) -> float | None:
-        """Return the deviation at a combination of choices; None if it does not exist."""
+    def deviation_at(self, id: str, **choices: float | str) -> float | None:
+        """Return the deviation of a claim at some choices; None if no combination has them.
+
+        choices : values of choices, by name
+        """
         for row in self(id).choices:
-            if chosen.items() <= row.items():
+            if choices.items() <= row.items():
                 return row["deviation"]
         return None
 
     def listed(self, id: str, words: str) -> str:
-        """List the further numbers of a claim with keys "WORDS: NAME", with NAME in italics."""
+        """Return a list of some further numbers of a claim, such as "12 *cracks*; 3 *pulses*".
+
+        The keys of these numbers are "TEXT: NAME", where TEXT contains the given words.
+        """
         parts = []
         for key, value in self(id).further.items():
-            start, colon, name = key.partition(": ")
-            if colon and words in start:
+            text, colon, name = key.partition(": ")
+            if colon and words in text:
                 parts.append(f"{number(value)} *{name}*")
         return "; ".join(parts)
 
     def count(self, *verdicts: str) -> int:
-        """Return the number of counted claims, or of those with one of the given verdicts."""
-        counted = [claim.verdict for claim in self if claim.counted]
-        return sum(not verdicts or verdict in verdicts for verdict in counted)
+        """Return the number of counted claims, or of those that have one of the given verdicts."""
+        verdicts_of_claims = [claim.verdict for claim in self if claim.counted]
+        return _count_of(verdicts_of_claims, verdicts)
 
     def relaxed(self, *verdicts: str) -> int:
-        """Return the number of claims with a stricter earlier tolerance.
+        """Return the number of claims that had a stricter tolerance earlier.
 
         If verdicts are given, count only claims with one of them at the earlier tolerance.
         """
-        earlier = [claim.at_earlier for claim in self if claim.at_earlier]
-        return sum(not verdicts or verdict in verdicts for verdict in earlier)
+        earlier_verdicts = [claim.at_earlier for claim in self if claim.at_earlier]
+        return _count_of(earlier_verdicts, verdicts)
 
     def summary(self) -> str:
-        """Return the numbers of claims of each verdict in words: counted claims, then the others.
+        """Return the number of counted claims with each verdict, in words.
 
-        Of the claims that are not counted, only those that fail are named.
+        If claims that are not counted fail, their number follows.
         """
         listed = []
         for verdict in VERDICTS:
             count = self.count(verdict)
+            # Plural of "depends on an open choice".
             words = verdict.replace("depends", "depend") if count > 1 else verdict
             if count:
                 listed.append(f"{count} {words}")
@@ -252,12 +271,20 @@ class Ledger:
         return f"{text}."
 
     def differences(self, shipped: Mapping[str, str]) -> list[dict]:
-        """Return the verdicts that differ from the shipped ones, as `changes` lists them."""
+        """Return the verdicts that differ from the shipped ones, in the form of `changes`.
+
+        shipped : verdicts that come with the project, by claim id
+        """
         return changes(shipped, {claim.id: claim.verdict for claim in self})
 
 
-def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
-    """Return the entry with an id; an unknown id raises a ValueError that lists the known ones."""
+def _count_of(values: Iterable[str], wanted: Sequence[str]) -> int:
+    """Return how many values are among the wanted ones; all count if none is wanted."""
+    return sum(not wanted or value in wanted for value in values)
+
+
+def _entry_with_id(what: str, id: str, entries: Mapping[str, Any]) -> Any:
+    """Return the entry with an id; raises ValueError, with all ids, if there is none."""
     if id not in entries:
         raise ValueError(f"{what}: {id!r}; allowed: {', '.join(entries)}")
     return entries[id]

@@ -1,7 +1,7 @@
-"""Compute the ledger: every claim of manuscript/claims.yaml, in that order, with its result.
+"""Judge every claim of manuscript/claims.yaml, and return the results for claims.json.
 
-A claim is judged by a rule in the YAML file or by a function listed in `JUDGES_BY_CLAIM`. Each
-result is written with its texts, whose expressions are evaluated here.
+A claim is judged by a rule in the YAML file, or by a function that `JUDGES_BY_CLAIM` lists. Its
+texts may contain expressions, which are evaluated here.
 """
 
 import json
@@ -34,7 +34,8 @@ from .kinds import Claim
 from .ledger import with_texts
 from .rules import NOT_TESTABLE, VERDICTS_BEYOND
 
-# Simulations behind the claims, each with the topics of the predictions that it is compared with.
+# Simulations that the claims use, each with the topics of the predictions with which it is
+# compared.
 SIMULATIONS = {
     "any_prestress": ["pulse"],
     "arrest_profiles": [],
@@ -134,12 +135,12 @@ DEFAULT_FIELDS: dict[str, Any] = {
 def all_claims(
     evidence: Evidence, explanations: Mapping[str, str], sentences: Sequence[Mapping]
 ) -> list[dict]:
-    """Return the ledger as in claims.json.
+    """Return all claims with their results and texts, as in claims.json.
 
-    A ValueError names claims that exist only in the texts or only in the code.
+    Raises ValueError if a claim exists only in the texts or only in the code.
 
-    explanations : for each verdict, the sentence that explains it on a claim judged at all open
-        choices
+    explanations : sentences that explain each verdict, for claims that are judged at all
+        combinations of open choices
     sentences : sentences of the paper with their places, from manuscript/statements.yaml
     """
     without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
@@ -149,20 +150,22 @@ def all_claims(
         raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.change_signs)
     places = places_of(evidence.entries, sentences)
-    ledger = []
+    results = []
     for id, entry in evidence.entries.items():
         claim = claim_of(evidence, id)
-        result = written(id, claim, entry, places[id], explanations)
+        result = fields_of_claim(id, claim, entry, places[id], explanations)
         if result["verdict"] == NOT_TESTABLE:
-            result["why"] = f"{result['why']} {evidence.flags_behind(result['source'])}".rstrip()
-        ledger.append(result)
-    return ledger
+            # The reason may be that runs are flagged.
+            sentence_on_flags = evidence.flags_behind(result["source"])
+            result["why"] = f"{result['why']} {sentence_on_flags}".rstrip()
+        results.append(result)
+    return results
 
 
 def claim_of(evidence: Evidence, id: str) -> Claim:
     """Judge one claim by the rule of its entry or by its function.
 
-    If a rule cannot be evaluated, the ValueError names it.
+    Raises ValueError, with the name of the claim, if its rule cannot be evaluated.
     """
     entry = evidence.entries[id]
     if "rule" not in entry:
@@ -174,11 +177,12 @@ def claim_of(evidence: Evidence, id: str) -> Claim:
         raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 
-def written(
+def fields_of_claim(
     id: str, claim: Claim, entry: Mapping, place: str, explanations: Mapping[str, str] = {}
 ) -> dict:
-    """Return one claim with its texts, as in claims.json.
+    """Return the fields of one claim in claims.json: its texts, its numbers and its verdict.
 
+    claim : result about the claim
     entry : texts of the claim in manuscript/claims.yaml
     place : sections and figures of the paper with the claim; empty if there is none
     explanations : see `all_claims`
@@ -186,7 +190,7 @@ def written(
     copied = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
     fields = DEFAULT_FIELDS | copied
     if entry["kind"] == "approximate":
-        # Only estimates have a spread of runs and a comparison with exact theory.
+        # Only estimates have these fields. They are None if the result does not set them.
         fields |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     fields |= {"id": id} | claim.json_fields()
     if fields["beyond"]:
@@ -196,19 +200,31 @@ def written(
     if "earlier_tolerance" in entry:
         fields["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))
     fields = finite(fields)
-    # The expressions in the texts may use all fields, and some values that are not written.
-    values = fields | claim.sentence_values()
-    for name in ("note", "why"):
-        fields[name] = sentence(fields[name], values)
+    return fields | final_texts(fields, claim, entry, explanations)
+
+
+def final_texts(
+    fields: Mapping[str, Any], claim: Claim, entry: Mapping, explanations: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the note and the reason (why) of a claim, with all expressions evaluated.
+
+    fields : all fields of the claim, with the expressions not evaluated
+    claim, entry, explanations : see `fields_of_claim`
+    """
+    # The expressions may use all fields, and some values that are not written to claims.json.
+    values = {**fields, **claim.sentence_values()}
+    note, why = sentence(fields["note"], values), sentence(fields["why"], values)
     if fields["choices"] and fields["verdict"] in explanations:
         # The common explanation may quote the reason and the doubt of this claim.
-        values |= {"why": fields["why"], "doubt": sentence(entry.get("doubt", ""), values)}
-        fields["why"] = sentence(explanations[fields["verdict"]], values)
-    return fields | {"why": with_texts(fields).why_text()}
+        values |= {"why": why, "doubt": sentence(entry.get("doubt", ""), values)}
+        why = sentence(explanations[fields["verdict"]], values)
+    texts = {"note": note, "why": why}
+    # A claim without a reason of its own gets one from its numbers.
+    return texts | {"why": with_texts({**fields, **texts}).why_text()}
 
 
 def sentence(text: str, values: Mapping) -> str:
-    """Return a text in one line, with its expressions evaluated over values by name."""
+    """Return a text in one line, with its expressions evaluated; they may use the values."""
     return " ".join(fill(text, values).split())
 
 

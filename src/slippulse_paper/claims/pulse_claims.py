@@ -1,7 +1,7 @@
 """Judge claims about pulses on lattices: equations, uniqueness and stability.
 
-`equation` and `always` evaluate the rules of manuscript/claims.yaml. The other functions take the
-evidence and the id of their claim, and return the result.
+`equation` and `always` judge claims whose rule is in manuscript/claims.yaml. Each other claim has a
+function here, which takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -32,7 +32,11 @@ UNPERTURBED = ("any_prestress", "steady_displacement", "steady_elsewhere")
 def equation(
     evidence: Evidence, id: str, measured: str, predicted: str, runs: Mapping[str, str]
 ) -> Equation:
-    """Judge an equation between columns, by a rule of manuscript/claims.yaml."""
+    """Judge a claim that has a rule for an equation between columns.
+
+    measured, predicted : a column, and an expression over columns
+    runs : conditions that select runs, by name of the simulation
+    """
     tables = [evidence.finest(name, where=where) for name, where in runs.items()]
     return evidence.equation(id, pd.concat(tables), measured, predicted)
 
@@ -43,12 +47,12 @@ class Always(NamedTuple):
     All conditions are expressions over columns.
 
     sweeps : names of the sweeps
-    where : selects runs; all of them if it is empty
-    holds : the condition; if it is empty, the regime must be one of ``ends``
+    where : condition that selects runs; all runs if it is empty
+    holds : condition that must hold; if it is empty, the regime must be one of ``ends``
     decidable, ends : see `Evidence.agreed`
-    counted : conditions by words; the regimes of the selected runs are counted in the table of
+    counted : conditions that select runs whose regimes are counted, by words for the table of
         claims
-    numbers : expressions by words, for the table of claims
+    numbers : expressions for additional numbers, by words for the table of claims
     """
 
     sweeps: Sequence[str]
@@ -61,16 +65,19 @@ class Always(NamedTuple):
 
 
 def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
-    """Judge a claim that has a rule `Always`, whose fields are the keyword arguments."""
+    """Judge a claim that has a rule of the form `Always`.
+
+    keys : fields of the rule
+    """
     rule = Always(**keys)
-    # The condition may contain the tolerance of the claim and that of steady pulses.
+    # In the condition, {tolerance} is the tolerance of the claim, and {steady} that of a steady
+    # pulse.
     holds = rule.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
     if not holds:
         holds = f"regime in {rule.ends}"
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
         decided += evidence.agreed(sweep, rule.where, holds, rule.decidable, rule.ends)
-    # Additional numbers for the table of claims: expressions, and counts of regimes.
     table = evidence.tables[rule.sweeps[0]]
     further = {words: float(value_of(table, number)) for words, number in rule.numbers.items()}
     for words, condition in rule.counted.items():
@@ -80,35 +87,41 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
 
 
 def change_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
-    """Return the signs of the changes of velocity and half-width: 1, -1, or 0 for no change.
+    """Return for each pulse if it grows (1), decays (-1) or keeps its size (0).
 
-    The columns are "changed" and "widened". Each pulse enters the level ``beyond``. It is compared
-    with the pulse that began in the same pre-stress and enters the level 0, where theory says that
-    it does not change. What this one changes on a lattice does not count as a change.
+    The pulse enters the level of pre-stress in the column beyond. In the level 0 a pulse keeps its
+    size, by theory. So each pulse is compared with a reference, which began in the same pre-stress
+    and entered the level 0.
+
+    changed : sign of the change of velocity; 0 if the velocity of the reference changes more
+    widened : sign of the half-width minus that of the reference
     """
-    staying = table[table["beyond"] == 0.0].set_index("left")
+    reference = table[table["beyond"] == 0.0].set_index("left")
     change = table[VELOCITY_CHANGE]
-    change_of_staying = table["left"].map(staying[VELOCITY_CHANGE])
-    has_changed = change.abs() > change_of_staying.abs()
-    widening = table[HALF_WIDTH] - table["left"].map(staying[HALF_WIDTH])
+    change_of_reference = table["left"].map(reference[VELOCITY_CHANGE])
+    has_changed = change.abs() > change_of_reference.abs()
+    widening = table[HALF_WIDTH] - table["left"].map(reference[HALF_WIDTH])
     signs = {
         "changed": np.sign(change).where(has_changed, 0.0),
         "widened": np.sign(widening),
     }
-    # A pulse that has died out counts as decayed.
+    # A pulse that has died counts as decayed.
     has_died = table["regime"] == "arrested"
     return {name: sign.mask(has_died, -1.0).fillna(0.0) for name, sign in signs.items()}
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
-    """Compare the front speed without damping for gamma up to 1 with the formula."""
+    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula."""
     where = f"{WITHOUT_DAMPING} and 0.1 <= gamma <= 1"
     tables = evidence.lattices("speed_against_gamma", "steady_displacement", where=where)
     return evidence.approximate(id, tables, "front_speed_right", "paper_front_speed_right")
 
 
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether the thickness, which is 1, is much smaller than each steady pulse width."""
+    """Judge whether the layer is thin: its thickness must be much smaller than each pulse width.
+
+    The thickness is 1. Divided by the width, it must not be larger than the tolerance.
+    """
     table = evidence.finest("any_prestress")
     allowed = evidence.tolerance(id)
     width = table["pulse_width"]
@@ -130,27 +143,31 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     )
 
 
-def within(
-    deviation: np.ndarray, uncertainty: np.ndarray, allowed: float, sure: bool = False
+def all_within(
+    deviations: np.ndarray,
+    uncertainties: np.ndarray,
+    allowed: float,
+    add_uncertainties: bool = False,
 ) -> bool | None:
-    """Return whether all deviations are at most ``allowed``; None if that is open.
+    """Return True if all deviations are at most ``allowed``, False if one is larger, None if open.
 
-    It is False if a deviation minus its uncertainty is larger. Otherwise it is True if all
-    deviations are at most ``allowed``: with their uncertainties added if ``sure``, else as they
-    are.
+    A deviation counts as larger only if it is larger even after its uncertainty is subtracted.
+
+    add_uncertainties : if True, a deviation must be at most ``allowed`` even after its uncertainty
+        is added
     """
-    if np.any(deviation - uncertainty > allowed):
+    if np.any(deviations - uncertainties > allowed):
         return False
-    largest = deviation + uncertainty if sure else deviation
+    largest = deviations + uncertainties if add_uncertainties else deviations
     return True if np.all(largest <= allowed) else None
 
 
 def differences_of_pairs(
     table: pd.DataFrame, sizes: list[str]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield relative differences between the pulses of each pair of runs, and uncertainties.
+    """Yield the relative differences between the pulses of each pair of runs, and uncertainties.
 
-    Both arrays have one value for each of the columns ``sizes``.
+    sizes : columns that are compared; both arrays have one value for each of them
     """
     values = table[sizes].to_numpy()
     uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy()
@@ -161,42 +178,51 @@ def differences_of_pairs(
 
 
 def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether pulses in the same pre-stress that began differently are the same pulse."""
+    """Judge whether there is only one pulse for each pre-stress, no matter how it began.
+
+    Each pair of pulses in the same pre-stress must have the same velocity, width and slip.
+    """
     table = evidence.finest("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)
     sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]
     allowed = evidence.tolerance(id)
     decided: list[bool | None] = []
-    # "beyond" is the level in which a pulse ends, and in which it is measured.
+    # The column beyond has the level in which a pulse ends, and in which it is measured.
     for _, same_prestress in table.groupby(["beyond", "gamma", "damping_ratio"]):
-        for difference, uncertainty in differences_of_pairs(same_prestress, sizes):
-            decided.append(within(difference, uncertainty, allowed))
+        for differences, uncertainties in differences_of_pairs(same_prestress, sizes):
+            decided.append(all_within(differences, uncertainties, allowed))
     return Qualitative(decided=decided)
 
 
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether a pulse that enters another pre-stress leaves the slip of its steady pulse."""
-    # Slips of a steady pulse: simulated, exact, and by the paper's formula without damping.
+    """Judge whether a pulse that enters another pre-stress becomes a steady pulse there.
+
+    Its final slip must be that of a steady pulse in this pre-stress, within the tolerance.
+    """
+    # Slips of steady pulses: simulated, exact, and by the paper's formula without damping. The keys
+    # are words for the table of claims.
     slip_columns = {
         "slip off by at most": "pulse_slip",
         "slip off the exact slip by at most": "exact_pulse_slip",
         "slip off that without damping by at most": "paper_pulse_slip",
     }
-    # For each lattice, the deviations of the perturbed pulses from these slips.
+    # The relative deviations from these slips, one table for each lattice.
     deviations = []
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)
     for pulses, steady_pulses in zip(perturbed, unperturbed, strict=True):
-        steady = matching_steady_pulses(pulses, steady_pulses)[[*slip_columns.values()]]
-        deviations.append((pulses[["pulse_slip"]].to_numpy() / steady - 1.0).abs())
-    finest, middle, _ = (table["pulse_slip"] <= evidence.tolerance(id) for table in deviations)
+        steady_slips = matching_steady_pulses(pulses, steady_pulses)[[*slip_columns.values()]]
+        deviations.append((pulses[["pulse_slip"]].to_numpy() / steady_slips - 1.0).abs())
+    on_finest, on_middle = (
+        table["pulse_slip"] <= evidence.tolerance(id) for table in deviations[:2]
+    )
     largest = deviations[0].max().fillna(0.0)
     further = {words: float(largest[column]) for words, column in slip_columns.items()}
-    return Qualitative(decided=agreed_answers(finest, middle), further=further)
+    return Qualitative(decided=agreed_answers(on_finest, on_middle), further=further)
 
 
 def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) -> pd.DataFrame:
-    """Return, for each pulse, the run whose uniform pre-stress is the level that the pulse enters.
+    """Return for each pulse the steady pulse in the level of pre-stress that the pulse enters.
 
-    A row is NaN if there is no such run.
+    A row is NaN if there is no such steady pulse.
     """
     keys = ["left", "gamma", "damping_ratio"]
     by_level = steady_pulses.drop_duplicates(keys).set_index(keys)
@@ -205,53 +231,61 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
 
 
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
-    """Judge whether a pulse that keeps its shape leaves no strain, and others grow or decay."""
+    """Judge whether a pulse leaves no strain if it keeps its shape, and only then."""
+    # Pulses that leave strain must grow or decay. This is the additional requirement.
     enters_stress = "beyond != 0"
-    strain = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
-    changes = evidence.agreed("regimes_beyond", enters_stress, "changed != 0")
+    strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
+    has_changed = evidence.agreed("regimes_beyond", enters_stress, "changed != 0")
 
-    def changing_if_strained(tolerance: float) -> Qualitative:
+    def changed_if_strained(tolerance: float) -> Qualitative:
         """Judge whether all pulses that leave a strain above the tolerance grow or decay."""
-        return Qualitative(decided=np.array(changes, object)[strain > tolerance])
+        return Qualitative(decided=np.array(has_changed, object)[strains > tolerance])
 
-    # In zero pre-stress pulses keep their shape.
+    # Pulses in zero pre-stress keep their shape, so they must leave no strain.
     unchanging = evidence.finest("stress_pulses", where=WITHOUT_DAMPING)
     claim = evidence.equation(id, unchanging, "strain_left", "0")
     return replace(
         claim,
-        counts=changing_if_strained(claim.tolerance).counts(),
-        extra_verdict=lambda tolerance: changing_if_strained(tolerance).verdict(),
+        counts=changed_if_strained(claim.tolerance).counts(),
+        extra_verdict=lambda tolerance: changed_if_strained(tolerance).verdict(),
     )
 
 
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether different pre-stress makes different pulses in a region of zero pre-stress.
+    """Judge whether pulses in zero pre-stress differ if they began in different pre-stress.
 
-    Each pair of runs must have different pulses, in peak velocity or in half-width.
+    The pulses of each pair of runs must have different peak velocities or different half-widths.
     """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
-    # The smallest nonzero damping ratio is that of the figures; without damping the lattice rings.
+    # The smallest nonzero damping ratio is that of the figures. Without damping the lattice rings.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
     allowed = evidence.tolerance(id)
+    sizes = ["pulse_peak_velocity", HALF_WIDTH]
     decided: list[bool | None] = []
-    for difference, uncertainty in differences_of_pairs(table, ["pulse_peak_velocity", HALF_WIDTH]):
-        is_same_pulse = within(difference, uncertainty, allowed, sure=True)
+    for differences, uncertainties in differences_of_pairs(table, sizes):
+        is_same_pulse = all_within(differences, uncertainties, allowed, add_uncertainties=True)
         decided.append(None if is_same_pulse is None else not is_same_pulse)
     return Qualitative(decided=decided)
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
-    """Compare peak and half-width on damped lattices with the exact solution."""
+    """Compare peak velocity and half-width on damped lattices with the exact solution."""
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
     allowed = evidence.tolerance(id)
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     exact = table[["exact_largest_velocity", "exact_half_width"]].to_numpy()
-    deviation = (table[sizes] / exact - 1.0).abs()
-    uncertainty = table[[f"uncertainty_{size}" for size in sizes]].to_numpy() / exact
+    # These have one row for each run, and one column for each size.
+    deviations = (table[sizes] / exact - 1.0).abs()
+    uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy() / exact
     decided = []
-    for deviation_of_run, uncertainty_of_run in zip(deviation.to_numpy(), uncertainty, strict=True):
-        decided.append(within(deviation_of_run, uncertainty_of_run, allowed))
-    peak, half_width = deviation.max()
+    for deviations_of_run, uncertainties_of_run in zip(
+        deviations.to_numpy(), uncertainties, strict=True
+    ):
+        decided.append(all_within(deviations_of_run, uncertainties_of_run, allowed))
+    largest_of_peak, largest_of_half_width = deviations.max()
     words = "on the lattice, with damping, off by at most"
-    further = {f"peak {words}": float(peak), f"half-width {words}": float(half_width)}
+    further = {
+        f"peak {words}": float(largest_of_peak),
+        f"half-width {words}": float(largest_of_half_width),
+    }
     return Qualitative(decided=decided, further=further)

@@ -1,4 +1,8 @@
-"""Claims and numbers about pulses on a rough pre-stress, over ensembles."""
+"""Judge claims about pulses on a rough pre-stress, and compute the numbers of our finding on them.
+
+An ensemble is a set of runs whose pre-stress has the same statistics, with different seeds. A
+function that judges a claim takes the evidence and the id of the claim, and returns the result.
+"""
 
 import pandas as pd
 
@@ -39,29 +43,29 @@ def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     """Judge that no pulse dies where the pre-stress is only a little rough.
 
-    The limit of the roughness is ours: the deviation of the pre-stress divided by its level is at
-    most the tolerance. Each pulse counts as one run. Pulses must die in rougher ensembles, because
-    otherwise the claim would not need the limit.
+    The paper states no limit of the roughness. Ours is that the standard deviation of the
+    pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,
+    the claim needs this limit as a condition. Each pulse counts as one run.
     """
     rows = ensembles(evidence, "displacement")
     roughness = rows["deviation"] / rows["level"]
     is_smooth = roughness <= evidence.tolerance(id)
     smooth, rough = rows[is_smooth], rows[~is_smooth]
     alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
-    dying = rough["deaths"].sum()
+    dead_in_rough, all_in_rough = rough["deaths"].sum(), rough["pulses"].sum()
     template_values = {
         "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
-        "dying": dying,
-        "stronger": rough["pulses"].sum(),
+        "dying": dead_in_rough,
+        "stronger": all_in_rough,
         "least_deviation": roughness[~is_smooth].min(),
     }
     further = {
-        "pulses that die at larger deviations": float(dying),
-        "of": float(template_values["stronger"]),
+        "pulses that die at larger deviations": float(dead_in_rough),
+        "of": float(all_in_rough),
     }
     return Qualitative(
         decided=[True] * int(alive) + [False] * int(dead),
-        condition=dying > 0,
+        condition=dead_in_rough > 0,
         further=further,
         template_values=template_values,
     )
@@ -104,6 +108,7 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         "tail_low": long_distance["exponent_low"],
         "tail_high": long_distance["exponent_high"],
     }
+    # Ensembles that the texts quote: the roughest, the smoothest, and that with the highest level.
     quoted = {
         "rough": stress.loc[stress["deviation"].idxmax()],
         "quiet": stress.loc[stress["deviation"].idxmin()],
@@ -116,10 +121,10 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
-    """Compare death rates with the predicted rates of fatal barriers.
+    """Return the range of measured death rates, divided by the predicted rates of fatal barriers.
 
-    Return the range of measured divided by predicted rates, and of the ends of their confidence
-    intervals, over the ensembles with at least LEAST_DEATHS deaths.
+    The range goes over the ensembles with at least LEAST_DEATHS deaths. The ends of the confidence
+    intervals of the measured rates have such a range, too (low and high).
     """
     dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
     ratio = dying["rate"] / dying["barrier_rate"]
@@ -134,10 +139,10 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 
 
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
-    """Return how many pulses survive where most die, and a bound where none dies.
+    """Return the survival of pulses where most die, and a bound of the death rate where none dies.
 
-    The survival is that in the ensemble with the highest death rate. The bound is an upper bound of
-    the death rate (calm_rate), over all ensembles without deaths.
+    worst_... : the ensemble with the highest death rate, and the fraction of pulses that survive
+    calm_rate : upper bound of the death rate over all ensembles without deaths
     """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
@@ -168,12 +173,13 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
-    """Return how near final slip and speed are to those of steady pulses.
+    """Return how near final slip and front speed are to those of steady pulses.
 
-    They are given for the ensembles with the shortest (short) and the longest (smooth) correlation
-    length among those with recorded slip. local and mean are deviations of the slip from steady
-    pulses at the local and at the mean pre-stress. forgotten is the largest change of the slip by a
-    bump at distances beyond the memory of the pulse.
+    short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
+        among those with recorded slip
+    ..._local, ..._mean : deviation of the slip from that of a steady pulse at the local pre-stress,
+        and at the mean pre-stress
+    forgotten : largest change of the slip by a bump that is farther away than the memory
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
@@ -191,10 +197,8 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return how far before the balance position pulses die on the coarsest and finest lattice.
-
-    The column change of the part balance holds the median of this distance.
-    """
+    """Return how far before the balance position pulses die on the coarsest and finest lattice."""
+    # The column change has the median of this distance over all pulses.
     by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
     finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
     return {

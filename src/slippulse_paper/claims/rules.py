@@ -1,4 +1,4 @@
-"""Define the verdicts, and the rules that turn a deviation and its uncertainty into a verdict."""
+"""Define the verdicts, and the rules by which a deviation and its uncertainty give a verdict."""
 
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -9,23 +9,34 @@ REPRODUCED = "reproduced"
 CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
 UNMET = "premise not met"
-BEYOND = "different beyond the paper"
-HOLDS_BEYOND = "holds beyond the paper"
-HOLDS_BEYOND_WITH_CAVEAT = "holds beyond the paper with caveat"
 FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
+# Verdicts on claims that the paper does not make.
+HOLDS_BEYOND = "holds beyond the paper"
+HOLDS_BEYOND_WITH_CAVEAT = "holds beyond the paper with caveat"
+BEYOND = "different beyond the paper"
 VERDICTS_ON_THE_PAPER = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, INCONCLUSIVE, NOT_TESTABLE)
 VERDICTS = (*VERDICTS_ON_THE_PAPER, HOLDS_BEYOND, HOLDS_BEYOND_WITH_CAVEAT, BEYOND)
-# Among several verdicts the one that comes first in this list decides; pages use the same order.
+# Of several verdicts on one claim, the first one in this list decides. Pages use the same order.
 WORST_FIRST = (
-    *(FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE),
-    *(BEYOND, CAVEAT, HOLDS_BEYOND_WITH_CAVEAT, REPRODUCED, HOLDS_BEYOND),
+    FAILED,
+    UNMET,
+    DEPENDS,
+    INCONCLUSIVE,
+    NOT_TESTABLE,
+    BEYOND,
+    CAVEAT,
+    HOLDS_BEYOND_WITH_CAVEAT,
+    REPRODUCED,
+    HOLDS_BEYOND,
 )
-# The paper does not make a claim that is beyond it, so that it is not reproduced but holds.
+# Verdict on a claim that the paper does not make, by the verdict that it would have as a claim of
+# the paper.
 VERDICTS_BEYOND = {REPRODUCED: HOLDS_BEYOND, CAVEAT: HOLDS_BEYOND_WITH_CAVEAT, FAILED: BEYOND}
 # A claim with one of these verdicts needs no reason.
 WITHOUT_RESERVATION = (REPRODUCED, HOLDS_BEYOND)
+# Whether the claim holds, by its verdict. The other verdicts leave this open.
 HOLDS_BY_VERDICT = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 
 
@@ -43,8 +54,14 @@ class Spread(NamedTuple):
     largest: float
 
 
-def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Return the verdict on one number, from its deviation and its uncertainty."""
+def verdict_on_number(deviation: float, uncertainty: float, tolerance: float) -> str:
+    """Return the verdict on one number, from its deviation and its uncertainty.
+
+    The true deviation lies between ``deviation`` minus ``uncertainty`` and ``deviation`` plus
+    ``uncertainty``. The claim fails if this whole interval is above the tolerance, and holds if it
+    is below. If the tolerance lies inside the interval, the claim holds with a caveat, or is
+    inconclusive if the uncertainty alone is larger than the tolerance.
+    """
     if not np.isfinite([deviation, uncertainty]).all():
         return NOT_TESTABLE
     if deviation - uncertainty > tolerance:
@@ -65,6 +82,10 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 
 
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
-    """Return the verdict on a claim from its verdicts at all combinations of open choices."""
-    held = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
-    return DEPENDS if {True, False} <= held else worst_tested(verdicts)
+    """Return one verdict on a claim from its verdicts at all combinations of open choices.
+
+    It depends on a choice if the claim holds at one combination and fails at another.
+    """
+    answers = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
+    holds_and_fails = True in answers and False in answers
+    return DEPENDS if holds_and_fails else worst_tested(verdicts)

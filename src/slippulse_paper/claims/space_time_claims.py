@@ -1,6 +1,8 @@
 """Judge claims about the two panels of the published space-time figure.
 
-Positions were read off the figure. The study `published_figure` fits the exact solution to them.
+Numbers that were read off the figure are called readings. The study `published_figure` fits the
+exact solution to them. A pull is a fitted value minus the reading, divided by the reading error.
+A function that judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 import math
@@ -17,7 +19,7 @@ ARROW_READINGS = ("arrow_time", "arrow_length")
 
 
 def left(evidence: Evidence, id: str) -> Reading:
-    """Judge the left panel by the best fit to all its readings except the arrows."""
+    """Judge the left panel by the best fit to all readings of it, except its two arrows."""
     best = infer_parameters(evidence.tables["published_figure"])["best"]
     return Reading(
         tolerance=evidence.tolerance(id),
@@ -29,26 +31,28 @@ def left(evidence: Evidence, id: str) -> Reading:
 
 
 def split_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
-    """Split the errors of the readings of the trailing edge, which are partly shared.
+    """Return what the sentences say about the shared errors of the trailing edge.
 
-    own_edge_error : the part of the error that is independent in each of these readings
+    The readings of the trailing edge have a part of their errors in common.
+
+    own_edge_error : the other part, which is independent in each of these readings
     independent_chi_square : chi-square if all errors were independent
 
-    ``pulls`` has the deviation of each reading divided by its error.
+    pulls : pull of each reading at the best fit
     """
     own_edge_error, chi_square = math.nan, 0.0
     for name, reading in evidence.readings.items():
-        shared = reading.get("shared_error", 0.0)
-        if shared:
-            # All these readings have the same errors.
-            own_edge_error = math.sqrt(reading["reading_error"] ** 2 - shared**2)
+        shared_error = reading.get("shared_error", 0.0)
+        if shared_error:
+            # This is the same for all readings of the trailing edge.
+            own_edge_error = math.sqrt(reading["reading_error"] ** 2 - shared_error**2)
         if name in pulls and not reading.get("arrow"):
             chi_square += pulls[name] ** 2
     return {"own_edge_error": own_edge_error, "independent_chi_square": chi_square}
 
 
 def arrows(evidence: Evidence, id: str) -> Reading:
-    """Judge the two arrows of the left panel by how much they raise the chi-square."""
+    """Judge the two arrows of the left panel by the chi-square that they add to the best fit."""
     study = evidence.tables["published_figure"]
     with_arrows = infer_parameters(study, part="arrows")["best"]
     without_arrows = infer_parameters(study)["best"]
@@ -58,28 +62,28 @@ def arrows(evidence: Evidence, id: str) -> Reading:
             statement = evidence.readings[name]["statement"]
             further[f"{statement}, longer than at the fit {words} arrows by"] = excess
     values = readings_by_name(evidence)
-    # The right front at the time where the arrow for T_trans ends, by the line through the front.
-    # Both fronts are twice as far apart.
+    # Position of the right front at the time at which the arrow for T_trans ends.
     front_position = values["intercept"] + values["front_speed"] * values["arrow_time"]
+    values |= {
+        "longer": [*excess_lengths(evidence, without_arrows).values()],
+        # Distance between the fronts, which are symmetric.
+        "apart": 2.0 * front_position,
+    }
     return Reading(
         tolerance=evidence.tolerance(id),
         chi_square=with_arrows["chi2"] - without_arrows["chi2"],
         degrees_of_freedom=with_arrows["dof"] - without_arrows["dof"],
         further=further,
-        template_values=values
-        | {
-            "longer": [*excess_lengths(evidence, without_arrows).values()],
-            "apart": 2.0 * front_position,
-        },
+        template_values=values,
     )
 
 
 def excess_lengths(evidence: Evidence, fit: Mapping[str, Any]) -> dict[str, float]:
-    """Return how much longer the drawn arrows are than those of a fit, by reading."""
+    """Return how much longer the drawn arrows are than those of a fit, by name of the reading."""
     lengths = {}
     for name in ARROW_READINGS:
-        # A pull is (fitted - drawn)/reading_error.
-        lengths[name] = -fit["pulls"][name] * evidence.readings[name]["reading_error"]
+        fitted_minus_drawn = fit["pulls"][name] * evidence.readings[name]["reading_error"]
+        lengths[name] = -fitted_minus_drawn
     return lengths
 
 
@@ -89,7 +93,7 @@ def readings_by_name(evidence: Evidence) -> dict[str, Any]:
 
 
 def right(evidence: Evidence, id: str) -> Reading:
-    """Judge the largest velocity of the right panel by the run that fits it worst."""
+    """Judge the largest velocity of the right panel by the run that deviates most from it."""
     pulls = evidence.tables["published_figure"].query("part == 'stress'")["pull"]
     return Reading(
         tolerance=evidence.tolerance(id),
@@ -100,9 +104,9 @@ def right(evidence: Evidence, id: str) -> Reading:
 
 
 def values_of_our_figure(evidence: Evidence, simulation: str) -> dict[str, float]:
-    """Return what our own figure shows where values were read off one panel of the published one.
+    """Return the values in our own figure that correspond to the readings of one panel.
 
-    simulation : simulation that makes the panel. If it has several runs, their mean is returned.
+    simulation : name of the simulation of the panel; means over its runs are returned
     """
     runs = evidence.finest(simulation)
     values = {}

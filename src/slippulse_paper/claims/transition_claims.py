@@ -1,15 +1,19 @@
-"""Judge claims about the transition from crack to pulse, and about where a front arrests.
+"""Judge claims about the transition from crack to pulse, and about the arrest of a front.
 
-Each claim is judged at every combination of choices that the paper leaves open. `Runs` holds the
-tables of one combination: three lattices, or one table of exact solutions. `transitions` collects
-them for a displacement boundary, `arrests` for a stress boundary. Their columns have common names:
-time and length of the transition (or arrest), the paper's estimates estimated_time and
-estimated_length, and for arrests the distance that the left front has covered.
+Most claims are judged at each combination of choices that the paper leaves open. `transitions`
+returns the runs of all combinations for a displacement boundary, and `arrests` for a stress
+boundary. The tables of all of them have the same columns:
+
+time, length : time and length of the transition, or of the arrest
+estimated_time, estimated_length : the paper's estimates
+covered : distance that the left front has covered (arrests only)
+
+A function that judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -24,19 +28,21 @@ from .kinds import NAN, Approximate, Claim, Equation, Qualitative
 from .rules import Spread
 from .space_time_claims import readings_by_name
 
-# The printed threshold also applies backwards: at or below -1 the pre-stress itself would make
-# blocks slide back.
+# Condition under which blocks do not slide back. The threshold that the paper prints also applies
+# backwards, so a pre-stress of -1 or less would make blocks slide back at once.
 NO_BACKWARD_SLIP = "left > -1"
-# A front arrests at x_minus if its distance from there is at most this, in units of H, which is the
-# smallest length of the model.
+# A front counts as arrested at x_minus if its distance from x_minus is at most this. The unit is
+# the thickness H of the layer, which is the smallest length of the model.
 MAX_ARREST_GAP = 1.0
-# The fraction of the distance to x_minus whose numbers are shown with a claim.
+# The numbers that are shown with a claim are for this fraction of the distance to x_minus.
 SHOWN_FRACTION = 0.95
 # Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
-# The two readings of T_trans under a displacement boundary, and the columns of each, with those of
-# the paper's estimates. The printed slip 2 tau/gamma is used with the level tau_0.
+# The paper's T_trans under a displacement boundary can be understood in two ways (criteria): as the
+# time of the first stick, or as the time at which the slip reaches the printed value 2 tau/gamma,
+# where tau is taken as the level tau_0.
 FIRST_STICK, PRINTED_SLIP = "first stick", r"slip $2\tau_0/\gamma$"
+# New names of columns, by their names in the tables of results.
 PAPER_ESTIMATES = {
     "paper_transition_time": "estimated_time",
     "paper_transition_length": "estimated_length",
@@ -47,13 +53,20 @@ COLUMNS_BY_CRITERION = {
     FIRST_STICK: STICK_COLUMNS | PAPER_ESTIMATES,
     PRINTED_SLIP: SLIP_COLUMNS | PAPER_ESTIMATES,
 }
-# Columns of lattices under held stress, which are measured at the last release.
-ARREST_COLUMNS = {"last_release_distance": "covered", "last_release_time": "time"}
-ARREST_COLUMNS |= {"last_release_length": "length"}
+# New names of columns of lattices under held stress, which are measured at the last release.
+ARREST_COLUMNS = {
+    "last_release_distance": "covered",
+    "last_release_time": "time",
+    "last_release_length": "length",
+}
 
 
 class Runs(NamedTuple):
-    """Runs at one combination of choices: one table for each lattice, or one exact table."""
+    """Runs at one combination of choices.
+
+    choice : values of the choices, by name
+    tables : one table for each lattice, the finest first, or a single table of exact solutions
+    """
 
     choice: Chosen
     tables: list[pd.DataFrame]
@@ -65,7 +78,7 @@ def shared_choices(table: pd.DataFrame) -> Chosen:
 
 
 def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
-    """Return simulated runs with their choices."""
+    """Return simulated runs with their choices; ``tables`` has one table for each lattice."""
     return Runs(shared_choices(tables[0]) | {"solution": "lattice"}, tables)
 
 
@@ -96,85 +109,92 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         choices_of_figure["fraction"] = SHOWN_FRACTION
     condition = f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
     table = evidence.tables["open_choices"].query(condition)
-    of_figure: list[Runs] = []
-    others: list[Runs] = []
+    runs_of_figure: list[Runs] = []
+    other_runs: list[Runs] = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         runs = Runs(choice | {"solution": "exact"}, [rows])
-        if choices_of_figure.items() <= choice.items():
-            of_figure.append(runs)
+        is_of_figure = all(choice[name] == value for name, value in choices_of_figure.items())
+        if is_of_figure:
+            runs_of_figure.append(runs)
         else:
-            others.append(runs)
-    return of_figure + others
+            other_runs.append(runs)
+    return runs_of_figure + other_runs
 
 
 @cache
 def transitions(evidence: Evidence) -> list[Runs]:
-    """Return runs under a displacement boundary, for both readings of T_trans.
+    """Return runs under a displacement boundary, for both criteria of T_trans.
 
-    Exact solutions are measured at the first stick only, lattices also at the printed slip.
+    Exact solutions are measured at the first stick only, and lattices also at the printed slip.
     """
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
     runs_by_criterion = {FIRST_STICK: lattices + exact, PRINTED_SLIP: lattices}
-    runs = []
+    transition_runs = []
     for criterion, runs_of_criterion in runs_by_criterion.items():
-        columns = COLUMNS_BY_CRITERION[criterion]
+        new_names = COLUMNS_BY_CRITERION[criterion]
         for choice, tables in runs_of_criterion:
-            renamed = [table.rename(columns=columns) for table in tables]
-            runs.append(Runs(choice | {"criterion": criterion}, renamed))
-    return runs
+            renamed = [table.rename(columns=new_names) for table in tables]
+            transition_runs.append(Runs(choice | {"criterion": criterion}, renamed))
+    return transition_runs
 
 
 @cache
 def arrests(evidence: Evidence) -> list[Runs]:
     """Return runs under a stress boundary, measured when the left front counts as arrested.
 
-    Exact solutions count as arrested when the left front has covered a fraction of |x_minus|, and
-    lattices at their last release.
+    In an exact solution this is when the front has covered a fraction of |x_minus|. On a lattice it
+    is at the last release.
     """
-    runs = []
+    arrest_runs = []
     # An exact solution has one table.
     for choice, (table,) in exact_runs(evidence, "stress"):
-        widest_exact = widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK])
-        runs.append(Runs(choice, [widest_exact]))
+        widest = widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK])
+        arrest_runs.append(Runs(choice, [widest]))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
-        widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
-        runs.append(Runs(choice | at_last_release, widest))
-    return runs
+        widest_on_lattices = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
+        arrest_runs.append(Runs(choice | at_last_release, widest_on_lattices))
+    return arrest_runs
 
 
-def widest_at_each_level(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
-    """Return one run for each level, with the estimates for the distance that it has covered.
+def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> pd.DataFrame:
+    """Return the run with the widest nucleation at each level, with the paper's estimates.
 
-    names : common names of the columns, by their names in the table
+    The estimates are those for the distance that the left front has covered.
+
+    new_names : new names of the columns, by their names in the table
     """
-    # The width is the only length, so runs of one level differ in scale only.
-    table = table.sort_values("width").drop_duplicates("left", keep="last").rename(columns=names)
-    if "covered" not in table:
-        # The paper estimates the time to cover the whole distance at speed 1, so both are equal.
-        table = table.assign(covered=table["fraction"] * table["estimated_time"])
-    return table.assign(estimated_time=table["covered"], estimated_length=2.0 * table["covered"])
+    # The width of the nucleation is the only length, so all runs of a level are alike in their
+    # ratios, and one of them is enough.
+    widest = table.sort_values("width").drop_duplicates("left", keep="last")
+    widest = widest.rename(columns=new_names)
+    if "covered" not in widest:
+        # The estimated time to cover the whole distance is equal to the distance, since the paper
+        # assumes the speed 1.
+        widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
+    covered = widest["covered"]
+    return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
 
 def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
-    """Return the median ratio for each covered fraction.
+    """Return the median of measured/estimated for each covered fraction.
 
-    All other choices are fixed to those of the first combination.
+    All other choices are those of the first combination.
     """
     first = combinations[0].choice
-    fixed = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
+    fixed_names = ("release", "damping_ratio", "nucleation")
     by_fraction: dict[float | str, float] = {}
     for combination in combinations:
-        if fixed.items() <= combination.choice.items():
-            fraction = combination.choice["fraction"]
-            by_fraction[fraction] = combination.claim.fields().get("measured", NAN)
+        choice = combination.choice
+        if all(choice.get(name) == first[name] for name in fixed_names):
+            by_fraction[choice["fraction"]] = combination.claim.fields().get("measured", NAN)
     return by_fraction
 
 
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
-    """Return the median ratio for each covered fraction, as further numbers of a claim."""
+    """Return the median ratio for each covered fraction, with words for the table of claims."""
     by_words = {}
     for fraction, median in medians(combinations).items():
         by_words[f"median ratio: at {named(fraction)}"] = median
@@ -184,17 +204,23 @@ def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
 def judge_each(
     runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]
 ) -> list[Combination]:
-    """Judge a claim at each combination; ``judge`` makes the claim from the tables."""
+    """Judge a claim at each combination.
+
+    judge : function that judges the claim from the tables of one combination
+    """
     return [Combination(choice, judge(tables)) for choice, tables in runs]
 
 
 class JudgedEstimate(NamedTuple):
-    """An estimate at all combinations, with two comparisons."""
+    """The results about an estimate of the paper.
+
+    combinations : the result at each combination of choices
+    from_exact : deviations of our lattices from exact theory
+    arrow : length of the arrow in figure 4 divided by the estimate; empty if there is no arrow
+    """
 
     combinations: list[Combination]
-    # Deviations of lattices from exact theory.
     from_exact: Spread
-    # Length of the arrow in figure 4 divided by the estimate; empty if figure 4 draws none.
     arrow: dict[str, float]
 
 
@@ -202,6 +228,7 @@ def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) ->
     """Judge the paper's estimate of a quantity ("time" or "length") at each combination."""
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
+        """Compare the quantity with its estimate, in the runs of one combination."""
         return evidence.approximate(id, tables, quantity, f"estimated_{quantity}")
 
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
@@ -212,7 +239,7 @@ def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) ->
 
 
 def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[str, float]:
-    """Return the length of an arrow in figure 4 divided by the estimate; empty without an arrow."""
+    """Return the length of an arrow in figure 4 divided by the estimate; empty if there is none."""
     name = f"arrow_{quantity}_stress" if boundary == "stress" else f"arrow_{quantity}"
     reading = evidence.readings.get(name)
     if reading is None:
@@ -226,26 +253,27 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 
 
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """Judge an estimate under a displacement boundary, by both readings of the transition.
+    """Judge an estimate of the transition under a displacement boundary, by both criteria.
 
     These are the first stick, and the time at which the slip reaches the printed value. Not all
-    runs reach it.
+    runs reach this value.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
     runs = evidence.finest("scaling_displacement")
-    by_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
-    # NaN if the run does not reach the printed slip.
-    ratio = ratios(by_printed_slip, quantity, f"estimated_{quantity}")
-    within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
+    at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
+    # The ratio is NaN if a run does not reach the printed slip.
+    ratio = ratios(at_printed_slip, quantity, f"estimated_{quantity}")
+    is_within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {
         f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
         "in all": float(len(ratio)),
-        "of these within the tolerance": float(within_tolerance.sum()),
+        "of these within the tolerance": float(is_within_tolerance.sum()),
     }
     template_values = readings_by_name(evidence) | undamped_and_damped(combinations)
     template_values |= {
         "of_runs": len(ratio),
         "reach": ratio.count(),
+        # With tau = 1, the pre-stress at the nucleation point, as the paper literally says.
         "reach_literally": runs["slip_time_nucleation"].count(),
     }
     return over_choices(
@@ -257,7 +285,11 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
 
 
 def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[float]]:
-    """Return deviations at the first stick: without damping, and by release rule with damping."""
+    """Return the deviations at the first stick, in three groups.
+
+    undamped : all combinations without damping
+    elastic, total : combinations with damping, by release rule
+    """
     deviations: dict[str, list[float]] = {"undamped": [], "elastic": [], "total": []}
     for combination in combinations:
         choice, deviation = combination.choice, combination.result["deviation"]
@@ -276,15 +308,16 @@ def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
-    """Judge if the transition scales like the paper's estimates of its time T and its length L.
+    """Judge if time T and length L of the transition are proportional to the paper's estimates.
 
-    T and L of the runs are fitted as powers of their estimates, and the exponent should be 1. The
-    claim is judged by T or L, whichever has its exponent farther from 1.
+    T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
+    exponent that is farther from 1 decides.
     """
     has_springs = boundary == "displacement"
     varied_columns = ("left", "gamma") if has_springs else ("left",)
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
+        """Fit both exponents to the runs of one combination, and judge the one farther from 1."""
         exponents = {}
         for quantity, symbol in SYMBOLS.items():
             estimate = f"estimated_{quantity}"
@@ -305,14 +338,15 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the mean speeds of both fronts are 1, the wave speed.
+    """Judge whether the mean speeds of both fronts until the arrest are 1, the wave speed.
 
-    Until its arrest the left front covers one part of the rupture length, and the right front the
-    rest of it. The claim is judged by the front whose median deviation is larger.
+    The front whose median deviation is larger decides.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
+        """Judge both fronts in the runs of one combination, and return the worse result."""
         left = evidence.approximate(id, tables, measured="covered / time", predicted="1")
+        # The length is the distance between the fronts, so the right front has run the difference.
         right_speed = "(length - covered) / time"
         right = evidence.approximate(id, tables, measured=right_speed, predicted="1")
         if right.median.value > left.median.value:
@@ -324,25 +358,26 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the left front takes longer to its arrest than at speed 1, in each run.
+    """Judge whether the left front takes longer to its arrest than it would take at speed 1.
 
     The paper estimates the time by this speed, and says that it underestimates the time.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
+        """Judge each run of one combination."""
         # At speed 1 the time equals the distance. Only the two finest lattices are compared.
         excesses = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
 
         def takes_longer(limit: float) -> Qualitative:
-            """Judge whether each run takes longer, but at most by this fraction."""
+            """Judge whether each run takes longer, but at most by this fraction of the time."""
             holds = [(excess > 0.0) & (excess <= limit) for excess in excesses]
             # An exact solution is one table, which agrees with itself.
             return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
         def extra_verdict(tolerance: float) -> str:
-            """Return the verdict with a limit; the tolerance 0 sets none.
+            """Return the verdict if a tolerance limits how much longer the front may take.
 
-            The earlier tolerance of the claim limited how much longer the front may take.
+            This is used for the earlier tolerance of the claim. The tolerance 0 sets no limit.
             """
             limit = tolerance if tolerance > 0.0 else np.inf
             return takes_longer(limit).verdict()
@@ -360,31 +395,11 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
-    """Judge the position of the last release on the left, compared with x_minus.
+    """Judge the distance of the last release on the left, which should be |x_minus|.
 
-    In addition, the exponent must be near 1 and the median gap to x_minus small. The claim is
-    judged for each damping ratio, and shows the numbers of all runs together.
+    The claim is judged for each damping ratio, and shows the numbers of all runs.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
-    covered, predicted = "last_release_distance", "balance_distance"
-    exponent_tolerance = float(evidence.entries[id]["tolerance_exponent"])
-
-    def judge(tables: list[pd.DataFrame]) -> Approximate:
-        """Judge the runs of three lattices; the extra verdict covers the gap and the exponent."""
-        median_gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
-        gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
-        gap_verdict = rules.within(gap, gap_uncertainty, MAX_ARREST_GAP)
-        power, power_uncertainty = exponent(tables, covered, predicted, ("left", "width"))
-        power_verdict = rules.within(abs(power - 1.0), power_uncertainty, exponent_tolerance)
-        extra_verdict = rules.worst([gap_verdict, power_verdict])
-        return replace(
-            evidence.approximate(id, tables, covered, predicted),
-            # The extra verdict does not depend on the tolerance, which is its argument.
-            extra_verdict=lambda _: extra_verdict,
-            further={"median gap in H, over all sweeps": gap, "exponent": power},
-            template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
-        )
-
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     finest = tables[0]
     runs = []
@@ -392,14 +407,41 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
             runs.append(lattice_runs([table[has_ratio] for table in tables]))
+    judge = partial(judge_arrest_distance, evidence, id)
     shown = judge(tables)
-    ratio = ratios(finest, covered, predicted)
+    ratio = ratios(finest, "last_release_distance", "balance_distance")
     extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
     return over_choices(judge_each(runs, judge), shown, further={**shown.further, **extremes})
 
 
+def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame]) -> Approximate:
+    """Compare the distance of the last release with |x_minus|, in some runs on three lattices.
+
+    There are two additional requirements. The median difference between the two distances (gap)
+    must be small. And the distance must be proportional to |x_minus|: if it is fitted as a power of
+    |x_minus|, the exponent must be near 1.
+    """
+    measured, predicted = "last_release_distance", "balance_distance"
+    median_gaps = [(table[predicted] - table[measured]).abs().median() for table in tables]
+    gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
+    gap_verdict = rules.verdict_on_number(gap, gap_uncertainty, MAX_ARREST_GAP)
+
+    power, power_uncertainty = exponent(tables, measured, predicted, ("left", "width"))
+    allowed = float(evidence.entries[id]["tolerance_exponent"])
+    power_verdict = rules.verdict_on_number(abs(power - 1.0), power_uncertainty, allowed)
+
+    verdict_on_both = rules.worst([gap_verdict, power_verdict])
+    return replace(
+        evidence.approximate(id, tables, measured, predicted),
+        # The argument is the tolerance of the claim, which does not limit the gap or the exponent.
+        extra_verdict=lambda _tolerance: verdict_on_both,
+        further={"median gap in H, over all sweeps": gap, "exponent": power},
+        template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
+    )
+
+
 def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether T_trans and L_trans grow at every step down in gamma."""
+    """Judge whether T_trans and L_trans diverge as gamma approaches 0, at each level."""
     finest, middle, _ = evidence.lattices("scaling_displacement")
     on_finest, on_middle = divergences(finest), divergences(middle)
     answers = agreed_answers(
@@ -417,8 +459,7 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
 class Divergence(NamedTuple):
     """The exponents of gamma in T_trans and L_trans.
 
-    ``diverges`` is True if both diverge as gamma falls. It is None if there are fewer than three
-    runs.
+    diverges : True if both diverge as gamma approaches 0; None if there are fewer than three runs
     """
 
     diverges: bool | None
@@ -432,45 +473,50 @@ def divergences(table: pd.DataFrame) -> list[Divergence]:
 
 
 def divergence(runs: pd.DataFrame) -> Divergence:
-    """Return whether T and L diverge, from runs that differ only in gamma, in ascending order.
+    """Return whether T_trans and L_trans diverge as gamma approaches 0.
 
-    Both must fall at each step up in gamma. At its three smallest values both must be powers of it,
-    with an exponent that is negative by more than three standard errors.
+    Both must fall from each value of gamma to the next larger one. At the three smallest values,
+    both must be powers of gamma with an exponent that is negative by more than three standard
+    errors.
+
+    runs : runs that differ only in gamma, in ascending order
     """
     quantities = ["transition_time", "transition_length"]
-    falls = (runs[quantities].diff()[1:] < 0.0).all(axis=None)
+    changes = runs[quantities].diff()[1:]
+    always_fall = (changes < 0.0).all(axis=None)
     logs = np.log(runs[["gamma", *quantities]].head(3))
     time_line, length_line = (fit_line(logs["gamma"], logs[name]) for name in quantities)
     is_negative = [line.slope + 3.0 * line.slope_error < 0.0 for line in (time_line, length_line)]
-    diverges = bool(falls and all(is_negative)) if len(runs) >= 3 else None
+    diverges = bool(always_fall and all(is_negative)) if len(runs) >= 3 else None
     return Divergence(diverges, time_line.slope, length_line.slope)
 
 
 def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
-    """Judge whether a quantity rises at each step up in the pre-stress, at each gamma.
+    """Judge whether a quantity rises with the pre-stress at each gamma.
 
-    A step smaller than its uncertainty is undecided. Values without an uncertainty are exact.
+    Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
+    than its uncertainty. Values without an uncertainty are exact.
     """
     uncertainty = table.get(f"uncertainty_{quantity}", 0.0)
     runs = table.assign(uncertainty=uncertainty).sort_values("left").dropna(subset=quantity)
     decided: list[bool | None] = []
     for _, same_gamma in runs.groupby("gamma"):
-        steps = same_gamma[quantity].diff()[1:]
-        # A step has the uncertainties of both its ends.
+        changes = same_gamma[quantity].diff()[1:]
+        # A change has the uncertainties of both its values.
         uncertainties = same_gamma["uncertainty"].rolling(2).sum()[1:]
-        for step, uncertainty_of_step in zip(steps, uncertainties, strict=True):
-            is_decided = abs(step) > uncertainty_of_step
-            decided.append(bool(step > 0.0) if is_decided else None)
+        for change, uncertainty_of_change in zip(changes, uncertainties, strict=True):
+            is_decided = abs(change) > uncertainty_of_change
+            decided.append(bool(change > 0.0) if is_decided else None)
     return Qualitative(decided=decided)
 
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the transition gets longer with the pre-stress."""
+    """Judge whether the transition length grows with the pre-stress."""
     return over_choices(
         judge_each(transitions(evidence), lambda tables: rises(tables[0], "length"))
     )
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether the pulse gets wider with the pre-stress."""
+    """Judge whether the pulse width grows with the pre-stress."""
     return rises(evidence.finest("any_prestress"), "pulse_width")

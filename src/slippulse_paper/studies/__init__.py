@@ -1,5 +1,6 @@
-"""Studies of the solver and of the theory, one module for each.
+"""Studies of the solver and of the theory.
 
-A module has the design of its study as constants, and a function `table` that returns the result.
-`NEEDS` lists the settings, data and sweeps of the configuration that the study uses.
+Most modules are one study each. The constants of such a module are the parameters of the study, and
+its function `table` returns the result. Its constant `NEEDS` lists the settings, data and sweeps
+that the study uses. The other modules have functions that several studies share.
 """

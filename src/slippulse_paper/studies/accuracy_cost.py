@@ -1,7 +1,7 @@
-"""Compare error and cost for each scheme, order, step and spacing, including the presets.
+"""Compare errors and cost of simulations for each scheme, order, time step and block spacing.
 
-Cost is counted here, not timed: the number of stencil passes over a block does not depend on the
-machine. `slippulse_paper.steps.measure_seconds` times the same runs.
+The settings of the presets are among them. The cost is not a time but a number of operations, which
+does not depend on the machine. `slippulse_paper.steps.measure_seconds` times the same runs.
 """
 
 import math
@@ -26,76 +26,83 @@ from slippulse.theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
-# Two pulses, one without damping and one with that of the paper's figures, become steady.
+# Pulses under a displacement boundary, one without damping and one with the damping ratio of the
+# paper's figures. Both become steady within the duration.
 UNIFORM_PRESTRESS = Prestress(0.55, 0.55)
 GAMMA = 0.65
 DAMPING_RATIOS = (0.0, 0.1)
 DURATION = 20.0
-# A crack turns into a pulse at Gamma = 0. The study compares the time at which its left front has
-# covered a fraction of its path; the run lasts three times as long.
+# A crack that turns into a pulse under a stress boundary. The study compares the time at which its
+# left front has covered this fraction of its path. The duration is in units of this time.
 ARRESTING_PRESTRESS = Prestress(-1.0, 0.0)
 COVERED_FRACTION = 0.95
 RELATIVE_CRACK_DURATION = 3.0
 # The crack is larger than the pulses, so its spacing is larger by this factor.
 RELATIVE_CRACK_SPACING = 2.0
+# Spacings, orders, and time steps divided by dx, of the localised scheme.
 SPACINGS = (0.08, 0.04, 0.02, 0.01, 0.005)
 ORDERS = (3, 4, 5, 6, 8)
 STEPS = (1.0, 0.5, 0.25)
-# The textbook scheme has errors from its step and from the spacing.
+# Spacings, and time steps divided by dx, of the textbook scheme. Shorter time steps than the
+# smallest one are left out, because the runs would take too long.
 TEXTBOOK_SPACINGS = (0.04, 0.02, 0.01)
 TEXTBOOK_STEPS = (0.5, 0.25, 0.125, 0.0625, 0.03125)
-# Its time steps are not smaller than this one, because the runs would take too long.
 SMALLEST_TEXTBOOK_TIME_STEP = 6.25e-4
 # Spacing at which the exact solution is sampled.
 EXACT_SPACING = 0.02
-# Front speed as a function of the step, at a level with an irrational speed. The textbook scheme
-# uses all steps, nearly up to its stability bound; the localised one only every fourth, because its
-# speed does not depend on the step.
-locking_scene = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
+# A front whose speed, by theory, is an irrational number, and time steps divided by dx. The
+# textbook scheme uses all of these steps, nearly up to its stability bound. The localised scheme
+# uses only every fourth one, because its front speed does not depend on the step.
+locking_scene = partial(
+    Scene, boundary="stress", prestress=Prestress(0.5, 0.5), duration=30.0, dx=0.1
+)
 LOCKING_STEPS = np.linspace(0.1, 0.98, 67).tolist()
 
 PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time")
-# Columns with relative errors compared with exact theory, and the residual of the energy balance.
+# Columns with relative deviations from exact theory, and the residual of the energy balance.
 QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 
-# These are the same for every setting.
+# The exact solutions are computed once, because they are the same for every setting.
 cached_transition = cache(exact_transition_displacement)
 cached_crack = cache(ArrestingCrack)
 cached_pulse = cache(steady_pulse)
 
 
 class Setting(NamedTuple):
-    """A scheme with its order, step (in units of dx) and spacing."""
+    """A scheme with its order, its time step divided by dx, and its block spacing dx."""
 
     scheme: str
     order: int
     step: float
     dx: float
 
-    def run_pulse(self, ratio: float) -> xr.Dataset:
-        """Simulate a pulse under a displacement boundary with a damping ratio."""
-        return self._run(UNIFORM_PRESTRESS, DURATION, GAMMA, ratio)
+    def run_pulse(self, damping_ratio: float) -> xr.Dataset:
+        """Simulate a pulse under a displacement boundary."""
+        return self._run(UNIFORM_PRESTRESS, DURATION, GAMMA, damping_ratio)
 
     def run_crack(self) -> xr.Dataset:
         """Simulate a crack that turns into a pulse under a stress boundary."""
         # It is damped, because otherwise the ringing of the lattice moves its left front.
-        ratio = max(DAMPING_RATIOS)
-        exact_time = cached_crack(ARRESTING_PRESTRESS, ratio).transition(COVERED_FRACTION).time
+        damping_ratio = max(DAMPING_RATIOS)
+        crack = cached_crack(ARRESTING_PRESTRESS, damping_ratio)
+        duration = RELATIVE_CRACK_DURATION * crack.transition(COVERED_FRACTION).time
         coarser = self._replace(dx=RELATIVE_CRACK_SPACING * self.dx)
-        return coarser._run(ARRESTING_PRESTRESS, RELATIVE_CRACK_DURATION * exact_time, 0.0, ratio)
+        return coarser._run(ARRESTING_PRESTRESS, duration, 0.0, damping_ratio)
 
-    def _run(self, profile: Prestress, duration: float, gamma: float, ratio: float) -> xr.Dataset:
-        """Simulate a scene, with a shorter step where this one would not be stable."""
-        # The textbook scheme and the exact solution have no adjustable order.
+    def _run(
+        self, prestress: Prestress, duration: float, gamma: float, damping_ratio: float
+    ) -> xr.Dataset:
+        """Simulate a scene with this setting, or with a shorter step if its step is unstable."""
+        # The textbook scheme and the exact solution do not use the order, but a Scene needs one.
         order = max(self.order, 3)
-        stability_limit = largest_step(self.scheme, order, ratio, gamma * self.dx**2)
+        stability_limit = largest_step(self.scheme, order, damping_ratio, gamma * self.dx**2)
         scene = Scene(
             boundary="displacement" if gamma > 0.0 else "stress",
-            prestress=profile,
+            prestress=prestress,
             duration=duration,
             dx=self.dx,
             gamma=gamma,
-            beta=ratio * self.dx,
+            beta=damping_ratio * self.dx,
             scheme=self.scheme,
             max_step=min(self.step, STABILITY_MARGIN * stability_limit),
             order=order,
@@ -104,27 +111,28 @@ class Setting(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of two parts of the figure, which the column part names.
+    """Return the rows of two parts of the figure. The column ``part`` has these values:
 
-    trade : one row for each setting, with its work and its errors
+    trade : one row for each setting, with its cost and its errors
     locking : one row for each scheme and step, with the front speed
     """
-    presets, window = settings["presets"], settings["measure"]["front_window"]
+    # The front speed is measured over this last fraction of the path.
+    front_window = settings["measure"]["front_window"]
     preset_names = {
         Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
-        for name, preset in presets.items()
+        for name, preset in settings["presets"].items()
     }
     compared = compared_settings()
     compared += [setting for setting in preset_names if setting not in compared]
-    rows = [errors(setting, window) for setting in compared]
-    trade = pd.DataFrame(compared).join(pd.DataFrame(rows))
-    trade["preset"] = [preset_names.get(setting, "") for setting in compared]
-    trade["part"] = "trade"
-    return pd.concat([trade, locking(window)], ignore_index=True)
+    errors = [errors_and_cost(setting, front_window) for setting in compared]
+    trade_off = pd.DataFrame(compared).join(pd.DataFrame(errors))
+    trade_off["preset"] = [preset_names.get(setting, "") for setting in compared]
+    trade_off["part"] = "trade"
+    return pd.concat([trade_off, locking_rows(front_window)], ignore_index=True)
 
 
 def compared_settings() -> list[Setting]:
-    """Return the settings of the textbook scheme, the localised scheme and the exact solution."""
+    """Return all settings of the textbook scheme and the localised scheme, and the exact one."""
     compared = []
     for dx, step in product(TEXTBOOK_SPACINGS, TEXTBOOK_STEPS):
         if dx * step >= SMALLEST_TEXTBOOK_TIME_STEP:
@@ -135,46 +143,47 @@ def compared_settings() -> list[Setting]:
     return compared
 
 
-def locking(window: float) -> pd.DataFrame:
-    """Return the front speed as a function of the step, for both schemes.
+def locking_rows(front_window: float) -> pd.DataFrame:
+    """Return the front speed as a function of the time step, for both schemes.
 
-    In the textbook scheme a front locks onto speeds that depend on the step: it advances by one
-    block in a whole number of steps.
+    In the textbook scheme the front speed is wrong and depends on the step, because the front
+    advances by one block in a whole number of steps.
     """
     schemes_and_steps = [("fixed_step", step) for step in LOCKING_STEPS]
     schemes_and_steps += [("localised", step) for step in LOCKING_STEPS[::4]]
     scenes = [locking_scene(scheme=scheme, max_step=step) for scheme, step in schemes_and_steps]
     rows = pd.DataFrame(schemes_and_steps, columns=["scheme", "step"])
-    rows["front_speed"] = [fit_front(simulate(scene), window).slope for scene in scenes]
+    rows["front_speed"] = [fit_front(simulate(scene), front_window).slope for scene in scenes]
     # The scenes differ only in the scheme and the step.
     exact_speed = front_speed_undamped(scenes[0].prestress.left)
     return rows.assign(exact=exact_speed, dx=scenes[0].dx, part="locking")
 
 
-def errors(setting: Setting, window: float) -> dict[str, float]:
-    """Return the work of a setting, and the largest relative error of each quantity in its runs.
+def errors_and_cost(setting: Setting, front_window: float) -> dict[str, float]:
+    """Return the largest relative error of each quantity, and the total cost of all runs.
 
     The runs are a pulse for each damping ratio, and a crack that turns into a pulse.
     """
-    runs = [pulse_errors(setting, ratio, window) for ratio in DAMPING_RATIOS]
+    runs = [pulse_errors(setting, damping_ratio, front_window) for damping_ratio in DAMPING_RATIOS]
     runs.append(crack_errors(setting))
     row: dict[str, float] = {}
     for quantity in QUANTITIES:
-        values = [run[quantity] for run in runs if quantity in run]
-        row[quantity] = float(np.max(values))
-    row["block_updates"] = sum(run["block_updates"] for run in runs)
-    row["work"] = sum(run["work"] for run in runs)
+        # Some quantities exist only for pulses, and some only for the crack.
+        errors = [run[quantity] for run in runs if quantity in run]
+        row[quantity] = float(np.max(errors))
+    for cost in ("block_updates", "work"):
+        row[cost] = sum(run[cost] for run in runs)
     return row
 
 
-def pulse_errors(setting: Setting, ratio: float, window: float) -> dict[str, float]:
-    """Return the costs of a pulse at one damping ratio, and its relative errors."""
-    run = setting.run_pulse(ratio)
-    pulse = leading_pulse(run, window)
-    # At fixed beta/dx damping acts only at the front in the continuum.
-    beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
-    exact = cached_pulse(UNIFORM_PRESTRESS.left, GAMMA, beta, damping_ratio=ratio)
-    transition = cached_transition(UNIFORM_PRESTRESS, GAMMA, ratio)
+def pulse_errors(setting: Setting, damping_ratio: float, front_window: float) -> dict[str, float]:
+    """Return the relative errors of a pulse, and the cost of its run."""
+    run = setting.run_pulse(damping_ratio)
+    pulse = leading_pulse(run, front_window)
+    # In the continuum limit at fixed beta/dx, damping only changes the front speed.
+    beta = 0.0 if setting.scheme == "continuum" else damping_ratio * setting.dx
+    exact = cached_pulse(UNIFORM_PRESTRESS.left, GAMMA, beta, damping_ratio=damping_ratio)
+    transition = cached_transition(UNIFORM_PRESTRESS, GAMMA, damping_ratio)
     measured_over_exact = {
         "front_speed": pulse.speed / exact.speed,
         "peak_velocity": pulse.peak_velocity / exact.peak_velocity,
@@ -183,14 +192,14 @@ def pulse_errors(setting: Setting, ratio: float, window: float) -> dict[str, flo
         "transition_time": run.attrs["first_stick_time"] / transition.time,
     }
     deviations = {name: abs(value - 1.0) for name, value in measured_over_exact.items()}
-    return costs(run) | deviations
+    return cost_of_run(run) | deviations
 
 
 def crack_errors(setting: Setting) -> dict[str, float]:
-    """Return the costs of the crack, and the relative errors of its left front.
+    """Return the relative errors of the left front of a crack, and the cost of its run.
 
-    share_time : time at which the front has covered COVERED_FRACTION of its path
-    arrest_position : distance that the front has run at the end
+    share_time : error of the time at which the front has covered COVERED_FRACTION of its path
+    arrest_position : error of the distance that the front has run at the end
     """
     crack = cached_crack(ARRESTING_PRESTRESS, max(DAMPING_RATIOS))
     exact_time = crack.transition(COVERED_FRACTION).time
@@ -202,15 +211,16 @@ def crack_errors(setting: Setting) -> dict[str, float]:
         "share_time": abs(time_to_cover / exact_time - 1.0),
         "arrest_position": abs(distances[-1] / path_length - 1.0),
     }
-    return costs(run) | deviations
+    return cost_of_run(run) | deviations
 
 
-def costs(run: xr.Dataset) -> dict[str, float]:
-    """Return the residual of the energy balance, block updates, and the work.
+def cost_of_run(run: xr.Dataset) -> dict[str, float]:
+    """Return the cost of a run, and the residual of its energy balance.
 
-    The work is the number of stencil passes over one block. In the localised scheme, each order is
-    one pass, and events need further ones. The textbook scheme passes once over the whole lattice
-    in each step. The exact solution has none, so its work is NaN.
+    block_updates : number of sliding blocks, summed over all time steps
+    work : number of evaluations of the force on a single block. The textbook scheme evaluates each
+        block of the lattice once in each step. The localised scheme evaluates only sliding blocks
+        and blocks that an event changes, as many times as its order. NaN for the exact solution.
     """
     attrs = run.attrs
     work = {

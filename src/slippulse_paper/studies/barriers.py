@@ -1,6 +1,6 @@
-"""Measure how deep pulses enter barriers of negative pre-stress, and which barriers they pass.
+"""Measure how deep pulses enter barriers, and which barriers they pass.
 
-The depths come from exact theory and from lattices of three spacings.
+A barrier is a stretch of negative pre-stress. Depths come from exact theory and from lattices.
 """
 
 import math
@@ -22,58 +22,85 @@ NEEDS = {"settings": ()}
 
 # No damping, and the damping ratio of the paper's figures.
 DAMPING_RATIOS = (0.0, 0.1)
-# Each pair of levels (before and in the barrier) has one of the gammas, as in a Latin square.
+# Lattices: levels of pre-stress before the barrier and in it. Each pair of them has one of the
+# gammas. Three spacings show the order of convergence.
 LEVELS = (0.3, 0.5, 0.65, 0.8)
 BARRIERS = (-0.2, -0.5, -1.0)
 GAMMAS = (0.3, 0.65, 1.0)
-# Three spacings show the order of convergence.
 SPACINGS = (0.04, 0.02, 0.01)
-# Barrier levels in the map of exact depths are spaced about evenly in their logarithm.
+# Map of exact depths: its gamma and both levels. Those in the barrier are spaced about evenly in
+# their logarithm.
+MAP_GAMMA = 1.0
 MAP_LEVELS = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9)
 MAP_BARRIERS = (-1.3, -0.85, -0.55, -0.36, -0.23, -0.15, -0.1)
-# Barrier lengths divided by the exact depth. At this spacing a block is shorter than the
-# differences between these lengths and the depth.
+# Barriers that a pulse passes or not: their lengths divided by the exact depth, and the spacing of
+# the lattice. A block is shorter than the differences between these lengths and the depth.
 RELATIVE_LENGTHS = (0.8, 0.95, 1.05, 1.2)
 PASSING_SPACING = 0.0125
-# Beyond TAIL_WIDTHS widths of the Gaussian the pre-stress is taken as its level.
+# The nucleation is a Gaussian of this width. Beyond TAIL_WIDTHS widths from its middle the
+# pre-stress is practically equal to the level.
 GAUSSIAN_WIDTH = 1.0
 TAIL_WIDTHS = 5.0
-# A pulse has died or passed before a wave has run this many times the exact depth.
+# After it has met the barrier, a pulse dies or passes within the time in which a wave runs this
+# many times the exact depth.
 DURATION_IN_CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of three parts of the study, which the column part names.
+    """Return the rows of three parts of the study. The column ``part`` has these values:
 
-    map : exact depths and the paper's estimates at gamma = 1, by both levels
+    map : exact and estimated depths, by the levels before the barrier and in it
     depth : depth of a barrier without end, exact and on lattices, by spacing
     passing : barriers of several lengths; measured is 1 if the pulse has passed, else 0
     """
     map_rows = [
-        exact_row(tau0, barrier, 1.0, ratio)
-        for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS)
+        exact_row(tau0, barrier, MAP_GAMMA, damping_ratio)
+        for damping_ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS)
     ]
-    depth_rows, passing_rows = [], []
-    pairs_of_levels = product(enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS)
-    for (line, tau0), (column, barrier), ratio in pairs_of_levels:
-        gamma = GAMMAS[(line + column) % len(GAMMAS)]
-        exact = exact_row(tau0, barrier, gamma, ratio)
-        pulse = steady_pulse(tau0, gamma, damping_ratio=ratio)
-        for dx in SPACINGS:
-            depth = depth_on_lattice(exact, pulse, dx, [(0.0, barrier)])
-            depth_rows.append(exact | {"part": "depth", "dx": dx, "measured": depth})
-        for relative_length in RELATIVE_LENGTHS:
-            went_past = passes(exact, pulse, relative_length)
-            row = {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
-            row |= {"length": relative_length, "measured": float(went_past)}
-            passing_rows.append(exact | row)
+    depth_rows: list[dict] = []
+    passing_rows: list[dict] = []
+    for tau0, barrier, damping_ratio in product(LEVELS, BARRIERS, DAMPING_RATIOS):
+        # The gammas take turns, so that each of them occurs with each barrier level.
+        index = LEVELS.index(tau0) + BARRIERS.index(barrier)
+        gamma = GAMMAS[index % len(GAMMAS)]
+        case = exact_row(tau0, barrier, gamma, damping_ratio)
+        pulse = steady_pulse(tau0, gamma, damping_ratio=damping_ratio)
+        depth_rows += rows_by_spacing(case, pulse)
+        passing_rows += rows_by_length(case, pulse)
     return pd.DataFrame(map_rows + depth_rows + passing_rows)
 
 
-def exact_row(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
-    """Return a row of the map, which is also the beginning of a row of the other parts.
+def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
+    """Return the depth to which a pulse enters a barrier without end, for each spacing.
 
-    The columns exact and paper are depths, by exact theory and by the paper's estimate.
+    case : a row of `exact_row`, with the parameters and the exact depth
+    """
+    rows = []
+    for dx in SPACINGS:
+        depth = penetration_on_lattice(case, pulse, dx, [(0.0, case["barrier"])])
+        rows.append(case | {"part": "depth", "dx": dx, "measured": depth})
+    return rows
+
+
+def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
+    """Return one row for each length of a barrier, which has 1 if a pulse passes it, else 0.
+
+    case : a row of `exact_row`, with the parameters and the exact depth
+    """
+    rows = []
+    for relative_length in RELATIVE_LENGTHS:
+        has_passed = passes(case, pulse, relative_length)
+        row = {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
+        row |= {"length": relative_length, "measured": float(has_passed)}
+        rows.append(case | row)
+    return rows
+
+
+def exact_row(tau0: float, barrier: float, gamma: float, damping_ratio: float) -> dict[str, Any]:
+    """Return the depth to which a pulse enters a barrier, as a row of the map.
+
+    Rows of the other parts begin with the same columns. The column exact has the depth by exact
+    theory. The column paper has an estimate that the authors of the paper use in later code.
 
     tau0 : pre-stress before the barrier, in which the pulse is steady
     barrier : negative pre-stress in the barrier
@@ -83,51 +110,55 @@ def exact_row(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[s
         "tau0": tau0,
         "barrier": barrier,
         "gamma": gamma,
-        "damping_ratio": ratio,
-        "exact": barrier_depth(tau0, barrier, gamma, ratio),
+        "damping_ratio": damping_ratio,
+        "exact": barrier_depth(tau0, barrier, gamma, damping_ratio),
         "paper": barrier_depth_estimate(tau0, barrier, gamma),
     }
 
 
-def passes(exact: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> bool:
-    """Return True if a pulse on a lattice passes a barrier with this length.
+def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> bool:
+    """Return True if a pulse on a lattice passes a barrier.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
+    case : a row of `exact_row`, with the parameters and the exact depth
     relative_length : length of the barrier divided by the exact depth
     """
-    exact_depth = exact["exact"]
+    exact_depth = case["exact"]
     length = relative_length * exact_depth
-    steps = [(0.0, exact["barrier"]), (length, exact["tau0"])]
-    depth = depth_on_lattice(exact, pulse, PASSING_SPACING, steps)
-    return depth > (relative_length + 0.5) * exact_depth
+    steps = [(0.0, case["barrier"]), (length, case["tau0"])]
+    distance = penetration_on_lattice(case, pulse, PASSING_SPACING, steps)
+    # A pulse that has passed goes on beyond the end of the barrier.
+    return distance > length + 0.5 * exact_depth
 
 
-def depth_on_lattice(
-    exact: dict[str, Any], pulse: SteadyPulse, dx: float, steps: Sequence[tuple[float, float]]
+def penetration_on_lattice(
+    case: dict[str, Any], pulse: SteadyPulse, dx: float, steps: Sequence[tuple[float, float]]
 ) -> float:
-    """Return how far a pulse on a lattice enters a barrier.
+    """Return how far a pulse on a lattice goes on after it has met a barrier.
 
-    This is the distance from the beginning of the barrier to half a block beyond the last released
-    block.
+    The rupture ends half a block beyond the last released block.
 
-    exact : a row of `exact_row`, with the parameters and the exact depth
-    steps : distances from the beginning of the barrier, and the pre-stress from there on
+    case : a row of `exact_row`, with the parameters and the exact depth
+    steps : pairs of a distance from the beginning of the barrier and the pre-stress from there on
     """
-    tau0, gamma, exact_depth = exact["tau0"], exact["gamma"], exact["exact"]
-    # The barrier begins between two blocks, and farther out than the pulse remembers its
-    # nucleation.
+    # The pulse must have forgotten its nucleation before it meets the barrier. A pulse remembers
+    # what it met within this distance.
     memory = pulse.width / (pulse.speed - 1.0)
-    undisturbed = TAIL_WIDTHS * GAUSSIAN_WIDTH + memory
-    start = (math.floor(undisturbed / dx) + 0.5) * dx
-    on_the_right = [(start + distance, level) for distance, level in steps]
-    on_the_left = [(-position, level) for position, level in on_the_right]
+    steady_from = TAIL_WIDTHS * GAUSSIAN_WIDTH + memory
+    # The barrier begins halfway between two blocks.
+    start = (math.floor(steady_from / dx) + 0.5) * dx
+    steps_on_the_right = [(start + distance, level) for distance, level in steps]
+    steps_on_the_left = [(-position, level) for position, level in steps_on_the_right]
+    tau0 = case["tau0"]
+    prestress = Prestress(
+        tau0, tau0, GAUSSIAN_WIDTH, steps=(*steps_on_the_right, *steps_on_the_left)
+    )
     scene = Scene(
         boundary="displacement",
-        prestress=Prestress(tau0, tau0, GAUSSIAN_WIDTH, steps=(*on_the_right, *on_the_left)),
-        duration=start + DURATION_IN_CROSSINGS * exact_depth + pulse.width,
+        prestress=prestress,
+        duration=start + DURATION_IN_CROSSINGS * case["exact"] + pulse.width,
         dx=dx,
-        gamma=gamma,
-        beta=exact["damping_ratio"] * dx,
+        gamma=case["gamma"],
+        beta=case["damping_ratio"] * dx,
         max_step=0.5,
         order=4,
     )

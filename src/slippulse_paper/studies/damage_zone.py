@@ -11,30 +11,36 @@ NEEDS = {"settings": ["figures.fig07_damage_zone"]}
 ROCK_THICKNESS = 1.6
 SLIP = 1.1
 IMPOSED_DISPLACEMENT = 1.9
-STIFFNESS_RATIO = 0.2  # G/G_r
+# Shear modulus of the damage zone divided by that of the rock, G/G_r.
+STIFFNESS_RATIO = 0.2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of three parts of the figure, which the column role names.
+    """Return the rows of three parts of the figure. The column ``role`` has these values:
+
+    curve : stress drop as a function of the stiffness ratio, for several thicknesses of the rock
+    before, after : displacement at heights y in the example of the sketch, before and after slip
 
     The formulas are those of section IV C 2 of the paper.
-
-    curve : stress drop by ratio of stiffness, for several thicknesses of the rock
-    before, after : displacement by height y in the example of the sketch, before and after slip
     """
     figure = settings["figures"]["fig07_damage_zone"]
-    steps = figure["stiffness_ratios"]
-    ratios = np.geomspace(steps["from"], steps["to"], steps["count"])
-    parts = [curve(float(thickness), ratios) for thickness in figure["thickness_ratios"]]
-    parts.append(displacements(0.0).assign(role="before"))
-    parts.append(displacements(SLIP).assign(role="after"))
+    given = figure["stiffness_ratios"]
+    stiffness_ratios = np.geomspace(given["from"], given["to"], given["count"])
+    parts = []
+    for thickness in figure["thickness_ratios"]:
+        parts.append(stress_drop_curve(float(thickness), stiffness_ratios))
+    parts.append(displacements("before", slip=0.0))
+    parts.append(displacements("after", slip=SLIP))
     return pd.concat(parts, ignore_index=True)
 
 
-def curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
-    """Return the stress drop by ratio of stiffness, for one thickness of the rock.
+def stress_drop_curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
+    """Return the stress drop as a function of the stiffness ratio.
 
-    The slip, and the thickness and shear modulus of the damage zone, are 1.
+    The slip is 1, and so are the thickness and the shear modulus of the damage zone.
+
+    thickness : thickness of the rock
+    stiffness_ratios : shear moduli of the damage zone divided by that of the rock
     """
     drop = damage_zone_stress_drop(
         slip=1.0,
@@ -47,13 +53,14 @@ def curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
     return pd.DataFrame({"role": "curve"} | columns | {"stress_drop": drop})
 
 
-def displacements(slip: float) -> pd.DataFrame:
-    """Return the displacement at three heights: the fault, and the tops of damage zone and rock.
+def displacements(role: str, slip: float) -> pd.DataFrame:
+    """Return the displacement at three heights, after some slip.
 
+    The heights are those of the fault, of the top of the damage zone and of the top of the rock.
     The top of the rock has the imposed displacement.
     """
-    # Both layers together are sheared by the imposed displacement minus the slip. Stress is
-    # proportional to it with the same factor as the stress drop to the slip.
+    # Damage zone and rock are sheared by the imposed displacement minus the slip. The formula of
+    # the stress drop returns the stress for any displacement between bottom and top.
     stress = float(
         damage_zone_stress_drop(
             slip=IMPOSED_DISPLACEMENT - slip,
@@ -63,8 +70,9 @@ def displacements(slip: float) -> pd.DataFrame:
             rock_thickness=ROCK_THICKNESS,
         )
     )
-    # Both layers have the same stress, so strains are inversely proportional to the moduli.
+    # Both layers have the same stress, so the strain of the rock is STIFFNESS_RATIO times that of
+    # the damage zone. The damage zone has the shear modulus 1.
     y = np.array([0.0, 1.0, 1.0 + ROCK_THICKNESS])
-    relative_displacement = np.array([0.0, 1.0, 1.0 + STIFFNESS_RATIO * ROCK_THICKNESS])
-    displacement = slip + stress * relative_displacement
-    return pd.DataFrame({"role": "", "y": y, "displacement": displacement})
+    displacement_per_stress = np.array([0.0, 1.0, 1.0 + STIFFNESS_RATIO * ROCK_THICKNESS])
+    displacement = slip + stress * displacement_per_stress
+    return pd.DataFrame({"role": role, "y": y, "displacement": displacement})

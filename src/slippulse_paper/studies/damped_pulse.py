@@ -1,4 +1,6 @@
-"""Tabulate the exact steady pulse as a function of the damping ratio, and its limit dx -> 0."""
+"""Tabulate exact steady pulses as functions of the damping ratio, and their limit dx -> 0."""
+
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -18,39 +20,56 @@ RELATIVE_DAMPING_RATIOS = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each pulse and quantity, in two parts, which the column role names.
+    """Return one row for each pulse and quantity. The column ``role`` has these values:
 
-    curve : pulses at the spacing of the sweep, divided by the paper's formulas
-    limit : the pulse as dx -> 0, with its front speed
+    curve : a quantity of a pulse at the spacing of the sweep, divided by the paper's formula
+    limit : a quantity of the pulse in the limit dx -> 0, or its front speed
     """
-    swept, refined = ([*runs(settings["sweeps"][name])] for name in NEEDS["sweeps"])
-    # All refined runs are the same scene at several spacings, so they have the same limit.
-    rows = curve_rows(swept) + limit_rows(refined[0])
-    columns = ["role", "left", "damping_ratio", "quantity", "value"]
-    return pd.DataFrame(rows, columns=columns)
+    swept_runs = [*runs(settings["sweeps"]["pulse_damping"])]
+    # All runs of this sweep are the same scene at several spacings, so they have the same limit.
+    refined_runs = [*runs(settings["sweeps"]["continuum_fixed_ratio"])]
+    return pd.DataFrame(curve_rows(swept_runs) + limit_rows(refined_runs[0]))
 
 
-def curve_rows(swept: list[Run]) -> list[tuple]:
-    """Return exact pulses divided by the paper's formula, for each level and damping ratio."""
-    first = swept[0]
-    largest_ratio = max(run.damping_ratio for run in swept)
-    ratios = largest_ratio * RELATIVE_DAMPING_RATIOS
+def curve_rows(swept_runs: list[Run]) -> list[dict[str, Any]]:
+    """Return exact pulses divided by the paper's formulas, for each level and damping ratio.
+
+    The spacing, gamma and release rule are those of the swept runs, which share them.
+    """
+    dx, gamma, release = swept_runs[0].dx, swept_runs[0].gamma, swept_runs[0].release
+    largest_ratio = max(run.damping_ratio for run in swept_runs)
+    damping_ratios = largest_ratio * RELATIVE_DAMPING_RATIOS
     rows = []
-    for level in sorted({run.prestress.left for run in swept}):
-        paper = paper_pulse(level, first.gamma)
-        speeds = front_speed(level, ratios, first.release)
-        for ratio, speed in zip(ratios, speeds, strict=True):
-            pulse = pulse_at_speed(level, first.gamma, ratio * first.dx, speed)
+    for level in sorted({run.prestress.left for run in swept_runs}):
+        paper = paper_pulse(level, gamma)
+        speeds = front_speed(level, damping_ratios, release)
+        for damping_ratio, speed in zip(damping_ratios, speeds, strict=True):
+            pulse = pulse_at_speed(level, gamma, damping_ratio * dx, speed)
             for quantity in QUANTITIES:
-                value = getattr(pulse, quantity) / getattr(paper, quantity)
-                rows.append(("curve", level, ratio, quantity, value))
+                ratio_to_paper = getattr(pulse, quantity) / getattr(paper, quantity)
+                rows.append(row_of("curve", level, damping_ratio, quantity, ratio_to_paper))
     return rows
 
 
-def limit_rows(run: Run) -> list[tuple]:
-    """Return the exact pulse in the limit dx -> 0 at the damping ratio of a run."""
-    level, ratio = run.prestress.left, run.damping_ratio
-    pulse = steady_pulse(level, run.gamma, damping_ratio=ratio, release=run.release)
+def limit_rows(run: Run) -> list[dict[str, Any]]:
+    """Return the exact pulse in the limit dx -> 0, at the level and damping ratio of a run."""
+    level, damping_ratio = run.prestress.left, run.damping_ratio
+    pulse = steady_pulse(level, run.gamma, damping_ratio=damping_ratio, release=run.release)
     values = {quantity: getattr(pulse, quantity) for quantity in QUANTITIES}
     values["front_speed"] = pulse.speed
-    return [("limit", level, ratio, quantity, value) for quantity, value in values.items()]
+    return [
+        row_of("limit", level, damping_ratio, quantity, value) for quantity, value in values.items()
+    ]
+
+
+def row_of(
+    role: str, level: float, damping_ratio: float, quantity: str, value: float
+) -> dict[str, Any]:
+    """Return one row of the table."""
+    return {
+        "role": role,
+        "left": level,
+        "damping_ratio": damping_ratio,
+        "quantity": quantity,
+        "value": value,
+    }

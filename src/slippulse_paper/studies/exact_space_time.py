@@ -1,4 +1,4 @@
-"""Tabulate the exact fronts and trailing edges of the two runs of the space-time figure."""
+"""Tabulate the exact fronts and trailing edges of both ruptures of the space-time figure."""
 
 import numpy as np
 import pandas as pd
@@ -6,23 +6,26 @@ import pandas as pd
 from slippulse.simulation.exact_rupture import exact_rupture
 
 from ..configuration.expand import expand
+from .outermost_fronts import outermost_fronts
 
 NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
 
-# Positions are dense near the end of the path of a front, where it may be slow.
+# Positions divided by the length of the path of a front, from 0 to nearly 1. They are dense near
+# the end of the path, where the front may be slow.
 PATH_FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the release and stick times of positions; NaN for a stick time if sliding goes on."""
+    """Return release times and stick times by position; NaN where a point has not stuck again."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         scenes, _ = expand(sweep)
         rupture = exact_rupture(scenes[0])
-        left_end, right_end = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
-        # From the end of the left front to that of the right one, with x = 0 once.
-        left, right = left_end * PATH_FRACTIONS[:0:-1], right_end * PATH_FRACTIONS
-        x = np.concatenate([left, right])
+        fronts = outermost_fronts(rupture)
+        # Positions in ascending order. Those on the left do not include x = 0 again.
+        x_on_left = fronts.left.x * PATH_FRACTIONS[:0:-1]
+        x_on_right = fronts.right.x * PATH_FRACTIONS
+        x = np.concatenate([x_on_left, x_on_right])
         columns = {
             "simulation": name,
             "position": x,

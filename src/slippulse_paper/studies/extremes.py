@@ -1,4 +1,4 @@
-"""Run the solver at the limits of its domain, and compare each case with its expected outcome."""
+"""Run ruptures with extreme parameters, and compare the verdict on each with the expected one."""
 
 import math
 from functools import lru_cache
@@ -29,9 +29,9 @@ from .extreme_cases import (
 
 NEEDS = {"settings": ["measure.front_window"]}
 
-# Largest relative errors (absolute where 0 is expected), by family or else by quantity. They follow
-# from the spacings of the cases, and for drifts and symmetry from rounding. Without an entry the
-# values must be equal.
+# Largest relative errors, by the family of a case or else by its quantity; absolute errors where 0
+# is expected. They follow from the spacings of the cases. For drifts and for the asymmetry they
+# follow from rounding. Without an entry the values must be equal.
 TOLERANCES = {
     "front speed": 0.01,
     "T_trans": 0.01,
@@ -45,13 +45,13 @@ TOLERANCES = {
     "energy residual": 1e-5,
     "asymmetry": 1e-9,
 }
-# Verdicts of cases that give no reliable number, or no number at all, without saying so.
+# Verdicts that no case should get: on a wrong number or a missing one, without any flag.
 WRONG_WITHOUT_FLAG, NO_NUMBER = "WRONG WITHOUT A FLAG", "no number"
-# These quantities assume a steady pulse, so any other state of the pulse counts as a flag.
+# These quantities assume a steady pulse, so the state of the pulse is also a flag.
 PULSE_QUANTITIES = ("front speed", "final slip", "speed drift", "slip drift", "energy residual")
-# These states are not reported as flags.
+# Flags and states of a run without any problem.
 STATES_WITHOUT_FLAG = ("", "steady", "none", "resolved")
-# Quantities that are columns of the measured table; all others are measured here.
+# Quantities that are columns of the measured table. All others are measured by `measured_here`.
 MEASURED_COLUMNS = {
     "front speed": "front_speed_right",
     "final slip": "pulse_slip",
@@ -61,7 +61,12 @@ MEASURED_COLUMNS = {
 
 
 class Outcome(NamedTuple):
-    """The value measured in a case, its flags or refusal, and the number of block updates."""
+    """The result of a case.
+
+    value : the measured value; NaN if there is none
+    message : flags of the run, or the text of a refusal; empty if there is no problem
+    block_updates : number of sliding blocks, summed over all time steps
+    """
 
     value: float = math.nan
     message: str = ""
@@ -69,31 +74,31 @@ class Outcome(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row per case, with the verdict; the message has the flags or the refusal."""
-    window = settings["measure"]["front_window"]
-    return pd.DataFrame([judged(case, window) for case in CASES])
+    """Return one row per case, with its value, its flags or refusal, and its verdict."""
+    front_window = settings["measure"]["front_window"]
+    return pd.DataFrame([judged(case, front_window) for case in CASES])
 
 
-def judged(case: Case, window: float) -> dict[str, Any]:
+def judged(case: Case, front_window: float) -> dict[str, Any]:
     """Run a case and return its row of the table, with the verdict.
 
     A run that is flagged gets the verdict "flagged", whatever its value. Otherwise the value is
     compared with the expected one.
 
-    window : last fraction of its path over which the front speed is measured
+    front_window : last fraction of its path over which the front speed is measured
     """
     tolerance = tolerance_of(case)
     expected = case.expected()
     error = math.nan
     try:
-        outcome = measured(case, window)
+        outcome = measured(case, front_window)
         scale = abs(expected) if expected != 0.0 else 1.0
         error = abs(outcome.value - expected) / scale
         verdict = verdict_on_outcome(outcome, error, tolerance)
-    except UnstableRun as stopped:
-        verdict, outcome = STOPPED, Outcome(message=str(stopped))
-    except ValueError as refusal:
-        verdict, outcome = REFUSED, Outcome(message=str(refusal))
+    except UnstableRun as why_stopped:
+        verdict, outcome = STOPPED, Outcome(message=str(why_stopped))
+    except ValueError as why_refused:
+        verdict, outcome = REFUSED, Outcome(message=str(why_refused))
     return {
         "family": case.family,
         "value": case.label,
@@ -119,7 +124,8 @@ def tolerance_of(case: Case) -> float:
 def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:
     """Return the verdict on a case that was run to its end.
 
-    If theory has no value, the error is NaN. A measured number then counts as wrong.
+    error : deviation from the expected value; NaN if theory has no value, and then the verdict on
+        any number without a flag is that it is wrong
     """
     if outcome.message == NOT_OFFERED:
         return NOT_OFFERED
@@ -127,20 +133,21 @@ def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:
         return FLAGGED
     if math.isnan(outcome.value):
         return NO_NUMBER
+    # A comparison with NaN is False.
     return RIGHT if error <= tolerance else WRONG_WITHOUT_FLAG
 
 
-# The three cases of the longest run share it.
+# Three cases share the longest run, so the last run is kept.
 simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
-def measured(case: Case, window: float) -> Outcome:
-    """Run a case and return its measured value, with the flags of the run as the message.
+def measured(case: Case, front_window: float) -> Outcome:
+    """Run a case, and return the measured value and the flags of the run.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
     if case.quantity == "velocity error":
-        # The library does not offer single precision; the error shows why.
+        # The solver does not offer single precision. The error of a simple scheme shows why.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":
@@ -148,9 +155,9 @@ def measured(case: Case, window: float) -> Outcome:
         return Outcome(float(solution.slip.max()))
     run = simulated(scene)
     if case.quantity == "releases":
-        # A run without a release is flagged, which is the expected outcome here.
+        # A run without any release has a flag, but this is right here, so the flag is left out.
         return Outcome(float(run.attrs["releases"]), block_updates=run.attrs["block_updates"])
-    settings = {"front_window": window, "fraction": COVERED_FRACTION, "trailing_times": ()}
+    settings = {"front_window": front_window, "fraction": COVERED_FRACTION, "trailing_times": ()}
     row = measured_row(run, settings)
     if case.quantity in MEASURED_COLUMNS:
         value = row[MEASURED_COLUMNS[case.quantity]]
@@ -166,10 +173,11 @@ def measured(case: Case, window: float) -> Outcome:
 def measured_here(run: xr.Dataset, quantity: str) -> float:
     """Return a quantity of a run that is not in the measured table.
 
-    meeting time : time at which fronts from two nucleations meet halfway between them
-    asymmetry : largest difference between the slip and its mirror image about that point, divided
-        by the largest slip
-    passes by : distance that the right front has run beyond the centre of a barrier, at least 0
+    meeting time : time at which fronts from two nucleations meet, halfway between these
+    asymmetry : largest difference between the slip and its mirror image about the meeting point,
+        divided by the largest slip
+    passes by : distance that the right front has run beyond the centre of a barrier; 0 if it has
+        not reached the centre
     speed drift, slip drift : see `drift`
     """
     x, slip = run["x"].values, run["slip"].values
@@ -189,21 +197,21 @@ def measured_here(run: xr.Dataset, quantity: str) -> float:
 def drift(run: xr.Dataset, quantity: str) -> float:
     """Return the relative change of the front speed, or of the slip, over most of the path.
 
-    The mean over the last tenth of the path is compared with the mean between two and three tenths.
+    The mean over the last tenth of the path is compared with the mean over the third tenth.
     """
     times, distances = front_path(run)
     x, path_length = run["x"].values, distances[-1]
 
     def mean_slip(start: float, end: float) -> float:
         """Return the mean slip between two fractions of the path."""
-        # Slip still grows close to the front, which is at the end of the path.
-        is_inside = (x > start * path_length) & (x < (end - 0.01) * path_length)
-        return float(np.mean(run["slip"].values[is_inside]))
+        # Slip still grows close to the front, so the last hundredth of the path is left out.
+        in_stretch = (x > start * path_length) & (x < (end - 0.01) * path_length)
+        return float(np.mean(run["slip"].values[in_stretch]))
 
     def mean_speed(start: float, end: float) -> float:
         """Return the mean front speed between two fractions of the path."""
-        is_inside = (distances > start * path_length) & (distances < end * path_length)
-        speed, _ = np.polyfit(times[is_inside], distances[is_inside], 1)
+        in_stretch = (distances > start * path_length) & (distances < end * path_length)
+        speed, _ = np.polyfit(times[in_stretch], distances[in_stretch], 1)
         return float(speed)
 
     mean_between = mean_slip if quantity == "slip drift" else mean_speed
@@ -211,9 +219,9 @@ def drift(run: xr.Dataset, quantity: str) -> float:
 
 
 def single_precision_error(case: Case) -> float:
-    """Return the relative error of the slip velocity if a crack is computed in single precision.
+    """Return the relative error of the slip velocity of a crack in single precision.
 
-    It is the largest difference from the same computation in double precision, divided by the
+    This is the largest difference from the same computation in double precision, divided by the
     largest velocity.
     """
     in_double = crack_velocity(case, np.float64)
@@ -222,12 +230,14 @@ def single_precision_error(case: Case) -> float:
 
 
 def crack_velocity(case: Case, dtype: type[np.floating]) -> np.ndarray:
-    """Compute the slip velocity at the end of an undamped, symmetric crack on x >= 0.
+    """Compute the slip velocities on x >= 0 at the end of an undamped, symmetric crack.
 
-    This is the symplectic Euler method, with all fields in one floating-point type.
+    The method is symplectic Euler. Slip, velocity and stress have the floating-point type
+    ``dtype``.
     """
     dx = case.dx
     time_step = 0.4 * dx
+    # The fronts of these cases are slower than 1.5, so they do not reach the last block.
     x = dx * np.arange(int(1.5 * case.duration / dx) + 32)
     gaussian = np.exp(-0.5 * (x / case.width) ** 2)
     prestress = case.level + (1.0 - case.level) * gaussian

@@ -1,7 +1,7 @@
-"""Other laws of friction: which make pulses that stick or creep, and what selects front speeds.
+"""Simulate ruptures under other friction laws, to find out which of them become pulses.
 
 Two laws depend on the slip rate and two on the slip. All ruptures have leaf springs and a uniform
-pre-stress, and only their right side is measured.
+pre-stress, and only their right side is measured. The study also compares front speeds with theory.
 """
 
 from functools import cache
@@ -12,7 +12,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from slippulse.measurement.regime import is_pulse
 from slippulse.model.friction_laws.law import Friction
 from slippulse.model.friction_laws.rate import BoundedRate, RateWeakening
 from slippulse.model.friction_laws.weakening import ExponentialWeakening, SlipWeakening
@@ -22,38 +21,32 @@ from slippulse.simulation.sweep import recorded
 from slippulse.solver.fixed_step import solve_by_scheme
 from slippulse.theory.law_pulses import rate_pulse, weakening_pulse
 
-from .right_side import (
-    CRACK,
-    CREEPING,
-    STICKING,
-    PulseSize,
-    pulse_at,
-    right_of_centre,
-    sliding_part,
-)
+from . import right_side
+from .right_side import PulseSize
 
 NEEDS = {"settings": ["measure"]}
 
 GAMMA = 2.0 / 3.0
-# Damping beta/dx of laws of slip rate, and beta of slip weakening.
+# Damping: beta/dx under laws of slip rate, and beta under slip weakening.
 DAMPING_RATIO = 0.1
 BETA = 0.05
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
-# Limit F of laws of slip rate, divided by the pre-stress.
+# Laws of slip rate: limit F of the friction divided by the pre-stress, velocity v_0 of rate
+# strengthening, and slope a of rate weakening.
 RELATIVE_LIMITS = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3)
-# Velocity v_0 of rate strengthening, and slope a of rate weakening.
 STRENGTHENING_VELOCITY = 0.1
 WEAKENING_SLOPE = 1.5
-# d_c of slip weakening, divided by tau_0^2/gamma; at larger d_c the fracture energy stops ruptures.
+# Slip weakening: slip d_c over which friction falls, divided by tau_0^2/gamma. At larger d_c the
+# fracture energy stops ruptures. There is no friction within the half-length of x = 0, so that the
+# rupture starts there.
 RELATIVE_DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
-# There is no friction within this distance of x = 0, which nucleates the rupture.
 NUCLEATION_HALF_LENGTH = 2.0
 DX, DURATION = 0.08, 40.0
-# Time steps divided by dx. Sharp fronts, as under laws of slip rate, lock onto a fraction of dx
-# divided by the step, so these laws need the fine step.
+# Time steps divided by dx. Under laws of slip rate the front is sharp, and a coarse step would
+# change its speed to a fraction of dx divided by the step.
 STEP_OVER_DX, FINE_STEP_OVER_DX = 0.1, 0.0127
-# A pulse counts as sticking if its slip exceeds tau_0/gamma by this factor. With less overshoot
-# the remaining motion of the nucleation makes blocks stick at irregular times.
+# A pulse counts as sticking if its slip is larger than tau_0/gamma by this factor. With less slip,
+# waves that remain from the nucleation make blocks stick at irregular times.
 MIN_OVERSHOOT = 1.01
 # In a running rupture, front and trailing edge advance by more than this factor during the second
 # half of the run.
@@ -64,7 +57,7 @@ NO_RUPTURE = "no rupture"
 SELECTION_LEVELS = (0.5, 0.8)
 SELECTION_SPACINGS = (0.08, 0.04, 0.02)
 SPACINGS_PER_DISTANCE = (1.0, 2.0, 4.0, 8.0)
-# Cases with exact numbers, on lattices of these spacings: level, law, and step divided by dx.
+# Cases with exact numbers: level, law, and step divided by dx. Each is run at SELECTION_SPACINGS.
 CASES: tuple[tuple[float, Friction, float], ...] = (
     (0.5, BoundedRate(0.3, 1.0), FINE_STEP_OVER_DX),
     (0.5, RateWeakening(1.5, 0.3), FINE_STEP_OVER_DX),
@@ -77,29 +70,30 @@ cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of four parts of the figure, which the column role names.
+    """Return the rows of four parts of the figure. The column ``role`` has these values:
 
-    plane : runs of all laws at all levels, for the regime as a function of level and strength
-    selection : front speeds under slip weakening by spacing and d_c, with the exact speed
+    plane : runs of all laws at all levels, with the regime of each run
+    selection : front speeds under slip weakening, by spacing and d_c, and the exact front speed
     case, theory : some runs at several spacings, and their exact numbers
     """
+    # The centre of a pulse counts as at rest below this fraction of the largest velocity.
     still_fraction = settings["measure"]["still"]
     cases = [
         _run(level, law, dx=dx, step_over_dx=step_over_dx, still_fraction=still_fraction)
         for (level, law, step_over_dx), dx in product(CASES, SELECTION_SPACINGS)
     ]
     parts = {
-        "plane": _plane(still_fraction),
-        "selection": _selection(still_fraction),
+        "plane": _rows_of_all_laws(still_fraction),
+        "selection": _rows_by_weakening_distance(still_fraction),
         "case": cases,
-        "theory": [_theory(level, law) for level, law, _ in CASES],
+        "theory": [_exact_row(level, law) for level, law, _ in CASES],
     }
     tables_by_role = [pd.DataFrame(rows).assign(role=role) for role, rows in parts.items()]
     return pd.concat(tables_by_role, ignore_index=True).assign(gamma=GAMMA)
 
 
-def _plane(still_fraction: float) -> list[dict[str, Any]]:
-    """Run all laws at all levels."""
+def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
+    """Simulate ruptures under all laws at all levels, and return one row for each."""
     rows = []
     for level in LEVELS:
         laws: list[Friction] = []
@@ -118,8 +112,11 @@ def _plane(still_fraction: float) -> list[dict[str, Any]]:
     return rows
 
 
-def _selection(still_fraction: float) -> list[dict[str, Any]]:
-    """Run slip weakening at several spacings and d_c; NaN as exact speed if nothing ruptures."""
+def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
+    """Simulate ruptures under slip weakening at several spacings and d_c, with the exact speed.
+
+    The exact speed is NaN if the fracture energy is too large for a rupture.
+    """
     rows = []
     for level, dx, spacings_per_distance in product(
         SELECTION_LEVELS, SELECTION_SPACINGS, SPACINGS_PER_DISTANCE
@@ -134,10 +131,10 @@ def _selection(still_fraction: float) -> list[dict[str, Any]]:
 
 
 def _strength(level: float, law: Friction) -> float:
-    """Return the strength of a law relative to the pre-stress level.
+    """Return how strong a friction law is, relative to the pre-stress.
 
-    This is d_c gamma/tau_0^2 for slip weakening, and F/tau_0 for rate strengthening. For rate
-    weakening it is -F/tau_0, so that one axis can show both laws of slip rate.
+    For slip weakening this is d_c divided by tau_0^2/gamma. For laws of slip rate it is the limit F
+    divided by tau_0, with a minus sign for rate weakening, so that one axis can show both laws.
     """
     parameters = law.mapping()
     if "d_c" in parameters:
@@ -149,15 +146,16 @@ def _strength(level: float, law: Friction) -> float:
 def _run(
     level: float, law: Friction, dx: float, step_over_dx: float, still_fraction: float
 ) -> dict[str, Any]:
-    """Simulate one run and return its regime and pulse; width and slip are NaN if nothing sticks.
+    """Simulate a rupture, and return its parameters, its regime and the size of its pulse.
+
+    The size is NaN if no block sticks behind the pulse.
 
     step_over_dx : largest time step divided by dx
-    still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
-        rest
+    still_fraction : see `_regime`
     """
-    # The step must also resolve the law of friction.
+    # The step must also resolve the friction law.
     step_over_dx = min(step_over_dx, 0.9 * law.traits.longest_step / dx)
-    # Slip weakening has a limit dx -> 0 at fixed beta, all other laws at fixed beta/dx.
+    # Slip weakening has a limit dx -> 0 at fixed beta, all other laws have it at fixed beta/dx.
     beta = BETA if isinstance(law, SlipWeakening) else DAMPING_RATIO * dx
     scene = Scene(
         boundary="displacement",
@@ -171,9 +169,11 @@ def _run(
         friction=law,
     )
     run = recorded(scene, None, solve_by_scheme(scene)).dataset()
-    right = right_of_centre(run)
+    right = right_side.right_of_centre(run)
     regime = _regime(right, level / GAMMA, still_fraction)
-    pulse = pulse_at(right, DURATION) if regime == STICKING else PulseSize(np.nan, np.nan)
+    pulse = PulseSize(np.nan, np.nan)
+    if regime == right_side.STICKING:
+        pulse = right_side.pulse_at(right, DURATION)
     return {
         "law": law.law,
         "level": level,
@@ -190,7 +190,10 @@ def _run(
 
 
 def _late_front_speed(right: xr.Dataset) -> float:
-    """Return the front speed over the last third of a run; NaN if too few blocks are released."""
+    """Return the front speed over the last third of a run; NaN if it releases fewer than 3 blocks.
+
+    right : the right side of the run
+    """
     release_time, x = right["release_time"].values, right["x"].values
     is_late = release_time > 2.0 / 3.0 * DURATION
     if is_late.sum() <= 2:
@@ -199,31 +202,34 @@ def _late_front_speed(right: xr.Dataset) -> float:
     return float(speed)
 
 
-def _regime(right: xr.Dataset, slip_at_rest: float, still_fraction: float) -> str:
+def _regime(right: xr.Dataset, balance_slip: float, still_fraction: float) -> str:
     """Return the regime of a rupture, from its right side.
 
     - No rupture: the front hardly advances in the second half of the run.
-    - Sticking pulse: the trailing edge advances, and the slip behind it is larger than at rest. So
-      much slip remains only if friction holds the blocks against the springs.
-    - Creeping pulse: the centre does not stick in this way, but is nearly at rest at the end.
+    - Sticking pulse: the trailing edge advances, and the slip behind it is larger than
+      ``balance_slip``. So much slip remains only if friction holds the blocks against the springs.
+    - Creeping pulse: blocks do not stick in this way, but the centre is nearly at rest at the end.
     - Crack: the centre still slides at the end.
 
-    slip_at_rest : slip at which the springs balance the pre-stress, tau_0/gamma
+    balance_slip : slip at which the springs balance the pre-stress, tau_0/gamma
     still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
-    halfway, end = sliding_part(right, 0.5 * DURATION), sliding_part(right, DURATION)
-    # The path of the front is counted from the edge of the nucleation.
+    halfway = right_side.sliding_part(right, 0.5 * DURATION)
+    end = right_side.sliding_part(right, DURATION)
+    # The path of the front begins at the edge of the nucleation.
     path_halfway = halfway.front - NUCLEATION_HALF_LENGTH
     if end.front <= NUCLEATION_HALF_LENGTH + MIN_GROWTH * path_halfway:
         return NO_RUPTURE
     edge_advances = end.trailing_edge > MIN_GROWTH * halfway.trailing_edge
-    if edge_advances and pulse_at(right, DURATION).slip > MIN_OVERSHOOT * slip_at_rest:
-        return STICKING
+    slip = right_side.pulse_at(right, DURATION).slip
+    if edge_advances and slip > MIN_OVERSHOOT * balance_slip:
+        return right_side.STICKING
     velocity = right["slip_velocity"].values
-    return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still_fraction) else CRACK
+    centre_velocity = float(velocity[0])
+    return right_side.regime_without_sticks(centre_velocity, velocity.max(), still_fraction)
 
 
-def _theory(level: float, law: Friction) -> dict:
+def _exact_row(level: float, law: Friction) -> dict[str, Any]:
     """Return the exact numbers of a case; width and slip are left out if its pulse never sticks."""
     if isinstance(law, SlipWeakening):
         pulse = cached_pulse(level, GAMMA, BETA, law.d_c)

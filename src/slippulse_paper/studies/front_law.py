@@ -1,4 +1,4 @@
-"""Tabulate exact front speeds as functions of pre-stress, leaf springs and spacing."""
+"""Tabulate exact front speeds as functions of the pre-stress, the leaf springs and the spacing."""
 
 from collections.abc import Iterator
 
@@ -21,63 +21,75 @@ NEEDS = {
     ]
 }
 
-# Computing the pre-stress for a given speed is faster than the inverse, so the lines start from
-# these speeds.
+# A line of speed against pre-stress has the pre-stress for each of these speeds. It is faster to
+# compute than the speed for a given pre-stress.
 SPEEDS = 1.0 + np.geomspace(1e-3, 299.0, 60)
 # Values of gamma dx^2, denser where the speed falls and the lines end.
 SPRING_STIFFNESSES = np.concatenate([np.geomspace(3e-3, 0.3, 8), np.geomspace(0.34, 6.0, 34)])
+# Number of points of a line of speed against spacing, without those of the runs.
 SPACING_COUNT = 33
-# Refined lattices of one level. At a larger beta the pulse would be as narrow as the damped
-# layer at its front.
+# Runs with such a line have one level, and a small beta. At a larger beta the pulse would be as
+# narrow as the damped layer at its front.
 REFINED_RUNS = "left == 0.5 and beta <= 0.1"
+# Columns that name such a line. What is fixed along it, "b" or "beta", is in the column held, and
+# its value is in the column fixed.
 LINE_COLUMNS = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the points of the lines of theory in four panels, which the column panel names.
-
-    There is a line for each combination of parameters that the simulated sweeps have.
+    """Return the points of theoretical lines in four panels. The column ``panel`` has these values:
 
     prestress : front speed as a function of the pre-stress
     springs : front speed as a function of gamma dx^2
-    refined : front speed as a function of dx, with beta or b = beta/dx fixed
+    refined : front speed as a function of dx, with either beta or b = beta/dx fixed
     limit : front speed in the limit dx -> 0 at fixed beta
+
+    There is a line for each combination of the other parameters in the simulated sweeps.
     """
-    # The parameters of the runs of each sweep, in the order of NEEDS.
-    swept, springs, fixed_ratio, *fixed_beta = (
-        pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
-    )
+    # One table for each sweep, with the parameters of its runs.
+    tables_by_sweep = {
+        name: pd.DataFrame(parameters(sweep)) for name, sweep in settings["sweeps"].items()
+    }
+    fixed_ratio = tables_by_sweep["continuum_fixed_ratio"]
     refined = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
-    refined += [runs.assign(held="beta", fixed=runs["beta"]) for runs in fixed_beta]
-    # The panels refined and limit are made together.
-    refined_and_limit = refined_lines(pd.concat(refined))
-    parts = [*prestress_lines(swept), *spring_lines(springs), refined_and_limit]
+    for name in ("continuum_fixed_beta", "front_speed_fixed_beta"):
+        fixed_beta = tables_by_sweep[name]
+        refined.append(fixed_beta.assign(held="beta", fixed=fixed_beta["beta"]))
+    parts = [
+        *prestress_lines(tables_by_sweep["front_speed"]),
+        *spring_lines(tables_by_sweep["front_speed_springs"]),
+        # This has the rows of two panels, refined and limit.
+        refined_lines(pd.concat(refined)),
+    ]
     return pd.concat(parts, ignore_index=True)
 
 
-def prestress_lines(swept: pd.DataFrame) -> Iterator[pd.DataFrame]:
-    """Yield the front speed as a function of the pre-stress, for each release rule and ratio."""
-    for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
+def prestress_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
+    """Yield front speeds as functions of the pre-stress, by release rule and damping ratio."""
+    for release, damping_ratio in runs[["release", "damping_ratio"]].drop_duplicates().values:
         line = {
-            "left": prestress_for_speed(SPEEDS, ratio, release),
+            "left": prestress_for_speed(SPEEDS, damping_ratio, release),
             "speed": SPEEDS,
             "panel": "prestress",
             "release": release,
-            "damping_ratio": ratio,
+            "damping_ratio": damping_ratio,
         }
         yield pd.DataFrame(line)
 
 
-def spring_lines(springs: pd.DataFrame) -> Iterator[pd.DataFrame]:
-    """Yield the front speed as a function of gamma dx^2, for each level and damping ratio."""
-    for level, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
-        # Only gamma dx^2 counts, so the lattice has dx = 1.
-        speeds = [_speed(level, gamma, 1.0, ratio, "total") for gamma in SPRING_STIFFNESSES]
+def spring_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
+    """Yield front speeds as functions of gamma dx^2, by level and damping ratio."""
+    for level, damping_ratio in runs[["left", "damping_ratio"]].drop_duplicates().values:
+        # The speed depends on gamma and dx only through gamma dx^2, so dx = 1 is enough.
+        speeds = [
+            _speed(level, stiffness, 1.0, damping_ratio, "total")
+            for stiffness in SPRING_STIFFNESSES
+        ]
         line = {
             "panel": "springs",
             "release": "total",
             "left": level,
-            "damping_ratio": ratio,
+            "damping_ratio": damping_ratio,
             "springs": SPRING_STIFFNESSES,
             "speed": speeds,
         }
@@ -85,28 +97,30 @@ def spring_lines(springs: pd.DataFrame) -> Iterator[pd.DataFrame]:
 
 
 def refined_lines(runs: pd.DataFrame) -> pd.DataFrame:
-    """Return front speeds as functions of the spacing, and their limits dx -> 0.
+    """Return front speeds as functions of the spacing dx, and their limits dx -> 0.
 
-    Along a line either beta or b = beta/dx is fixed: the column held says which of them, and the
-    column fixed has its value.
+    runs : parameters of simulated runs. The column held has the name of what is fixed while dx
+        varies, "beta" or "b" (for beta/dx), and the column fixed has its value.
     """
     rows = []
     for values, spacings in runs.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
         line = dict(zip(LINE_COLUMNS, values, strict=True))
-        level, gamma = line["left"], line["gamma"]
-        if line["held"] == "beta" and line["release"] == "elastic":
+        level, gamma, release = line["left"], line["gamma"], line["release"]
+        beta_is_fixed = line["held"] == "beta"
+        # Under the total rule there is no limit at fixed beta.
+        if beta_is_fixed and release == "elastic":
             speed = continuum_front_speed(level, gamma, line["fixed"])
             rows.append(line | {"panel": "limit", "speed": speed})
-        # The line has even points, and the spacings of the runs.
-        even = np.geomspace(spacings.min(), spacings.max(), SPACING_COUNT)
-        for dx in np.union1d(even, spacings):
-            ratio = line["fixed"] if line["held"] == "b" else line["fixed"] / dx
-            speed = _speed(level, gamma, dx, ratio, line["release"])
-            row = {"panel": "refined", "dx": dx, "damping_ratio": ratio, "speed": speed}
+        # The points are evenly spaced in the logarithm of dx, and those of the runs are added.
+        even_spacings = np.geomspace(spacings.min(), spacings.max(), SPACING_COUNT)
+        for dx in np.union1d(even_spacings, spacings):
+            damping_ratio = line["fixed"] / dx if beta_is_fixed else line["fixed"]
+            speed = _speed(level, gamma, dx, damping_ratio, release)
+            row = {"panel": "refined", "dx": dx, "damping_ratio": damping_ratio, "speed": speed}
             rows.append(line | row)
     return pd.DataFrame(rows)
 
 
-def _speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
-    """Return the front speed on a lattice; NaN if no front outruns the waves."""
-    return value_or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))
+def _speed(level: float, gamma: float, dx: float, damping_ratio: float, release: str) -> float:
+    """Return the front speed on a lattice; NaN if no front is faster than the waves."""
+    return value_or_nan(lambda: lattice_front_speed(level, gamma, dx, damping_ratio, release))

@@ -1,4 +1,7 @@
-"""Tabulate exact undamped transition times, for nucleation at a point and by a Gaussian."""
+"""Tabulate exact transition times without damping, divided by the paper's formula.
+
+They depend on how the rupture begins: at a single point, or at a Gaussian of the pre-stress.
+"""
 
 import numpy as np
 import pandas as pd
@@ -13,19 +16,23 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the ratio `over_paper` for each level and gamma; gamma is NaN for a point."""
+    """Return the exact time divided by the paper's formula, for each level and gamma.
+
+    The column gamma is NaN if the rupture begins at a point.
+    """
     rows = []
     for level in LEVELS:
         for gamma in (None, *GAMMAS):
-            rows.append({"left": level, "over_paper": over_paper(level, gamma), "gamma": gamma})
+            ratio = time_divided_by_formula(level, gamma)
+            rows.append({"left": level, "over_paper": ratio, "gamma": gamma})
     return pd.DataFrame(rows)
 
 
-def over_paper(level: float, gamma: float | None = None) -> float:
+def time_divided_by_formula(level: float, gamma: float | None = None) -> float:
     """Return the exact transition time divided by the paper's formula, pi/sqrt(gamma).
 
-    Rupture begins at a Gaussian of W = 1. If gamma is None it begins at a point, where the ratio
-    does not depend on gamma.
+    The rupture begins at a Gaussian of width W = 1, or at a point if gamma is None. For a point,
+    the ratio does not depend on gamma.
     """
     if gamma is None:
         return uniform_transition_time(level, 1.0) / np.pi

@@ -1,9 +1,10 @@
-"""Simulate the layer in two dimensions with slip weakening, and compare it with the paper.
+"""Simulate the layer in two dimensions, and compare its pulses with the paper's formulas.
 
-The strength of the fault falls linearly over the slip d_c (weakening), so the fracture energy is
-d_c/2. It is given as a fraction of G_0 = tau_0^2/(2 gamma), the energy that a length of the layer
-releases between the pre-stress and the kinetic friction. A run is measured at several stations,
-which are positions on the fault, and repeated on finer grids.
+The layer has the height 1. The fault is its bottom, whose strength falls linearly with slip, from 1
+to 0 over the slip d_c (weakening). So the fracture energy is d_c/2. It is given as a fraction of
+G_0 = tau_0^2/(2 gamma), the energy that a unit length of the layer releases if its stress falls
+from the pre-stress to 0. A run is measured at several positions on the fault, which are called
+stations, and repeated on finer grids.
 """
 
 import math
@@ -22,20 +23,20 @@ from slippulse.theory.law_pulses import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
 
-# gamma for lambda = G, which the paper has in mind; at smaller gamma pulses are many H wide.
+# Value of gamma if both Lamé constants are equal, and smaller values, at which pulses are wider.
 GAMMA = 2.0 / 3.0
 GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
-# Relative fracture energies at the pre-stress LEVEL, and other levels at one fracture energy.
+# Fracture energies divided by G_0 at the pre-stress LEVEL, and other levels at one fracture energy.
 LEVEL = 0.8
 FRACTURE_ENERGIES = (0.05, 0.09, 0.21, 0.42, 0.7, 0.9)
 OTHER_LEVELS = (0.5, 0.65, 0.95)
 OTHER_LEVELS_ENERGY = 0.42
-# Half-length of the region without friction, and the duration, at GAMMA. At other gamma all lengths
-# and times are multiplied by sqrt(GAMMA/gamma), like those of the paper's pulses.
+# Half-length of the region without friction, in which the rupture starts, and the duration. They
+# are the values at GAMMA. At other gamma all lengths and times are multiplied by sqrt(GAMMA/gamma),
+# because the width of the paper's pulses is proportional to 1/sqrt(gamma).
 NUCLEATION_HALF_LENGTH = 2.0
 DURATION = 48.0
-# Stations of a pulse at GAMMA. Each measurement averages over a window around the position.
-# Comparing the last two stations shows whether the pulse is steady.
+# Stations of the part pulse at GAMMA. A pulse is steady if it is the same at the last two.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
 # Stations at which the same pulses are followed farther, on two grids. A pulse has split where a
 # point slides for less than this fraction of the time at the first of these stations.
@@ -43,17 +44,17 @@ FAR_STATIONS = (16.0, 28.0, 40.0)
 SPLIT_FRACTION = 0.5
 # The front may become slower beyond the last of STATION_POSITIONS, by this fraction.
 SLOWER_FRONT = 0.01
-# Stations of other parts, as fractions of the path of the front.
+# Stations of most other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
-# Cells over the height. Pulses are brittle, and have finer grids, if the length gamma d_c, over
-# which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA, grids are
-# coarser. Runs with the product of duration and length of the solved part above LONG_RUN have the
-# two coarsest grids only, and are not followed farther.
+# Numbers of cells over the height. Pulses are brittle, and have finer grids, if the length
+# gamma d_c, over which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA,
+# grids are coarser. Runs in which the product of the duration and the length of the solved part is
+# larger than LONG_RUN have the two coarsest grids only, and are not followed farther.
 CELLS = (10, 20, 40, 80)
 BRITTLE_LENGTH = 0.19
 SMALL_GAMMA = 0.2
 LONG_RUN = 5000.0
-# A trailing edge may arrive later on a finer grid: by this fraction of its time, and by this time.
+# On a finer grid the last stick may be later, by at most this fraction of its time plus this time.
 LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
 # The paper's damping, and a smaller one that shows its influence at GAMMA and LEVEL.
 BETA, SMALLER_BETA = 1e-3, 1e-4
@@ -64,7 +65,7 @@ CRACK_LEVEL, CRACK_WEAKENING = 0.8, 0.8
 # Duration of the parts free and crack.
 OTHER_DURATION = 30.0
 # Part barrier: the level that stops the left front under a stress boundary, the width of the
-# Gaussian at the nucleation, weakening distances, and the duration in units of OTHER_DURATION.
+# Gaussian at the nucleation, weakening distances, and the duration divided by OTHER_DURATION.
 BARRIER_LEVEL = -0.75
 GAUSSIAN_WIDTH = 5.0
 WEAKENINGS = (0.05, 0.8)
@@ -78,10 +79,10 @@ STEP_POSITION = 10.0
 STEP_WEAKENING = 0.3
 STEP_LEVELS = (0.65, 0.8)
 STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0, 30.0)
-# Part patch: its duration, in units of the time at which a strip that slides uniformly sticks.
+# Part patch: its duration, divided by the time at which a strip that slides uniformly sticks.
 PATCH_RELATIVE_DURATION = 1.2
-# Part field: fracture energy of the pulse that is drawn, and time of the picture. One in two nodes
-# of the grid is drawn along each axis.
+# Part field: fracture energy of the pulse that is drawn, and time of the picture. Along each axis,
+# every second node of the grid is drawn.
 DRAWN_ENERGY = 0.21
 SNAPSHOT_TIME = 12.0
 DRAWN_STRIDE = 2
@@ -90,12 +91,23 @@ Rows = list[dict[str, Any]]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the measurements of all runs by part, and the part field for the picture.
+    """Return one row for each run, grid and station. The column ``part`` has the following values.
 
-    There is one row for each run, grid and station. Under a displacement boundary the parts are
-    pulse, far (the same pulses farther away), patch (the same until the region without friction has
-    stuck), step (a pulse enters another pre-stress), free (the top is free to rise) and coupled
-    (the strength depends on the normal stress). Under a stress boundary they are crack and barrier.
+    Under a displacement boundary:
+
+    pulse : pulses at several fracture energies and levels
+    far : the same pulses, farther away
+    patch : short runs, until the region in which the rupture starts has stuck
+    step : pulses that enter another pre-stress
+    free : pulses in a layer whose top is free to rise
+    coupled : pulses with a strength that depends on the normal stress
+
+    Under a stress boundary:
+
+    crack : cracks in uniform pre-stress
+    barrier : ruptures whose left front is stopped by negative pre-stress
+
+    The part field has the velocities in the layer that the figure shows as a picture.
     """
     rows: Rows = []
     for gamma in GAMMAS:
@@ -109,9 +121,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return the rows of pulses at several fracture energies and levels, near and far.
+    """Return the rows of the parts pulse and far.
 
-    The rows of the part pulse also have the numbers of `one_dimensional_theory`.
+    Those of the part pulse also have the numbers of `one_dimensional_theory`.
     """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
@@ -227,11 +239,12 @@ def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
 def patch_rows(gamma: float) -> Rows:
     """Return one row for each grid, with the time at which the nucleation region sticks.
 
-    This is the region without friction around x = 0, where the rupture starts. The column
-    strip_first_stick has the time at which a strip that slides uniformly would stick: a shear wave
-    has then run to the top and back.
+    This is the region without friction around x = 0, in which the rupture starts. The column
+    strip_first_stick has the time at which an infinite layer that slides uniformly would stick. In
+    this time a shear wave runs to the top of the layer and back.
     """
     shear_wave_speed = math.sqrt(0.5 * gamma)
+    # The layer has the height 1.
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
@@ -256,7 +269,7 @@ def crack_rows() -> Rows:
 
 
 def coupled_rows() -> Rows:
-    """Return the rows of pulses on both sides, if the strength depends on the normal stress."""
+    """Return the rows of pulses whose strength depends on the normal stress, on both sides."""
     weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
     scene = replace(scene, duration=COUPLED_DURATION)
@@ -269,9 +282,9 @@ def coupled_rows() -> Rows:
 
 
 def barrier_rows() -> Rows:
-    """Return the rows of ruptures under a stress boundary whose left front is stopped.
+    """Return the rows of ruptures under a stress boundary with a negative level on the left.
 
-    A negative level on the left stops it. The column balance_distance has the distance at which it
+    This level stops the left front. The column balance_distance has the distance at which the front
     stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
@@ -289,7 +302,10 @@ def barrier_rows() -> Rows:
 
 
 def weakening_of(relative_energy: float, tau0: float, gamma: float) -> float:
-    """Return the slip d_c over which the strength falls, for a fracture energy divided by G_0."""
+    """Return the slip d_c over which the strength falls.
+
+    relative_energy : fracture energy d_c/2, divided by G_0 = tau0^2/(2 gamma)
+    """
     return relative_energy * tau0**2 / gamma
 
 
@@ -299,12 +315,12 @@ def stretch(gamma: float) -> float:
 
 
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
-    """Return a scene in uniform pre-stress; a region without friction nucleates the rupture."""
+    """Return a scene in uniform pre-stress, whose rupture starts in a region without friction."""
     return LayerScene(
-        boundary,
-        gamma,
-        Prestress(tau0, tau0, peak=tau0),
-        weakening,
+        boundary=boundary,
+        gamma=gamma,
+        prestress=Prestress(tau0, tau0, peak=tau0),
+        weakening=weakening,
         duration=OTHER_DURATION * stretch(gamma),
         nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
     )
@@ -318,10 +334,10 @@ def across_a_step(
     grids: Sequence[int],
     stations: Sequence[float] = STEP_STATIONS,
 ) -> Rows:
-    """Measure a pulse that forms in the pre-stress ``before`` and enters ``level``.
+    """Measure a pulse that forms in the pre-stress ``before`` and then enters ``level``.
 
-    The pre-stress changes at STEP_POSITION on both sides. If both values are equal, the pre-stress
-    is uniform. In the rows, tau0 is the level that the pulse enters.
+    The pre-stress changes at STEP_POSITION on both sides, or is uniform if both levels are equal.
+    The column tau0 has the level that the pulse enters.
     """
     scene = uniform("displacement", gamma, before, weakening)
     if before != level:
@@ -336,9 +352,10 @@ def across_a_step(
 def at_stations(
     part: str, scene: LayerScene, grids: Sequence[int], stations: Sequence[float]
 ) -> Rows:
-    """Measure one scene at fixed stations on each grid; a run ends soon after the last one.
+    """Measure a pulse at fixed positions on the fault, on each grid.
 
-    stations : positions at GAMMA, which are stretched to the gamma of the scene
+    grids : numbers of cells over the height, the coarsest grid first
+    stations : positions at GAMMA; at the gamma of the scene they are farther out by `stretch`
     """
     scene = replace(scene, duration=DURATION * stretch(scene.gamma))
     positions = [station * stretch(scene.gamma) for station in stations]
@@ -354,31 +371,34 @@ def at_stations(
 
 
 def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> LayerScene:
-    """Return the scene with a duration and a trail that suffice to measure at all positions.
+    """Return the scene with a shorter duration and trail, which suffice to measure a pulse.
 
-    The scene is returned as it is if the pulse does not pass all of them.
+    The trail is the length behind the waves in which the layer is computed. The scene is returned
+    as it is if the pulse does not pass all positions.
 
     run : the run of the scene on a coarse grid
     """
     half_window = 0.5 * scene.nucleation
     first, last = min(positions) - half_window, max(positions) + half_window
     is_measured = (run.x >= first) & (run.x <= last)
-    sticks = run.stick_time[is_measured]
-    if not np.isfinite(sticks).all():
+    stick_times = run.stick_time[is_measured]
+    if not np.isfinite(stick_times).all():
         return scene
-    last_stick = float(sticks.max())
+    last_stick = float(stick_times.max())
     # The trailing edge may arrive later on a finer grid.
     margin = LATER_ABSOLUTE + LATER_RELATIVE * last_stick
-    # Compressional waves move at speed 1, so this is how far the trailing edge falls behind them.
-    lag = float((sticks - run.x[is_measured]).max())
-    return replace(scene, duration=last_stick + margin, trail=max(0.0, lag) + margin)
+    # Compressional waves run at speed 1, so this is how far the trailing edge is behind them.
+    distance_behind_waves = float((stick_times - run.x[is_measured]).max())
+    trail = max(0.0, distance_behind_waves) + margin
+    return replace(scene, duration=last_stick + margin, trail=trail)
 
 
 def along_path(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
 ) -> Rows:
-    """Measure one scene at fractions of the path of its front, for each grid and side.
+    """Measure a rupture at FRACTIONS_OF_PATH of the path of its front, on each grid and side.
 
+    grids : numbers of cells over the height
     sides : 1 for the right side of x = 0, -1 for the left
     """
     rows: Rows = []
@@ -401,7 +421,10 @@ def path_length(run: LayerRun, side: int) -> float:
 def measured(
     part: str, scene: LayerScene, run: LayerRun, side: int, positions: Sequence[float]
 ) -> Rows:
-    """Return one row for each position: the parameters, `whole_run` and `pulse_at_station`."""
+    """Return one row for each position, with the parameters and the measured numbers.
+
+    The numbers are those of the whole run and those of the pulse at the position.
+    """
     tau0, gamma = scene.prestress.right, scene.gamma
     parameters: dict[str, Any] = {
         "part": part,
@@ -423,19 +446,23 @@ def measured(
 
 
 def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
-    """Return the numbers of a run that do not belong to a station: sticks, energy and path."""
-    # The first stick is that of the middle of the region without friction. It is infinite if the
-    # middle never sticks, and NaN if the run was too short to follow it (with a finite trail).
+    """Return the numbers of a run that do not belong to a station.
+
+    first_stick : time at which the middle of the nucleation region sticks. Infinite if it never
+        sticks. NaN if the trail is finite, because the run may then end too early to see this.
+    earliest_stick, earliest_stick_position : time and distance from x = 0 of the first stick
+    end : position that the front has reached at the end of the run
+    """
     first_stick = float(run.stick_time[np.argmin(np.abs(run.x))])
     if not math.isfinite(first_stick):
         first_stick = math.inf
     if math.isfinite(scene.trail):
         first_stick = math.nan
-    sticks = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
+    stick_times = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
     return {
         "first_stick": first_stick,
-        "earliest_stick": float(sticks.min()),
-        "earliest_stick_position": float(abs(run.x[np.argmin(sticks)])),
+        "earliest_stick": float(stick_times.min()),
+        "earliest_stick_position": float(abs(run.x[np.argmin(stick_times)])),
         "largest_velocity": float(run.velocity[0].max()),
         "energy_residual": run.energy_residual,
         "end": side * path_length(run, side),
@@ -445,9 +472,11 @@ def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
 def pulse_at_station(run: LayerRun, position: float, window: float) -> dict[str, float]:
     """Return speed, width and slip of the pulse that passes a position.
 
-    The width is the front speed times the mean time for which the fault slides. Width and slip are
-    averages over a window of this length around the position. The speed is fitted over twice the
-    window, and is NaN if the front has not passed all of it.
+    The width is the front speed multiplied by the mean time for which a point slides. The speed is
+    NaN if the front has not passed the position and its surroundings.
+
+    window : length around the position over which sliding times and slips are averaged. The speed
+        is fitted over twice this length.
     """
     distance = np.abs(run.x - position)
     in_window, in_wide_window = distance <= 0.5 * window, distance <= window
@@ -468,8 +497,8 @@ def pulse_at_station(run: LayerRun, position: float, window: float) -> dict[str,
 def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
     """Return the pulse of the paper's one-dimensional equation, for the parameters of a scene.
 
-    paper : the paper's formulas, without weakening and damping
-    damped : with the weakening of the scene and the damping BETA
+    paper_... : by the paper's formulas, without weakening and damping
+    damped_... : with the weakening of the scene and the damping BETA
     less_damped_pulse_width : width with the damping SMALLER_BETA, at GAMMA and LEVEL only
     balance_pulse_slip : final slip with weakening and without damping, from the energy balance
     """
@@ -493,11 +522,12 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
 
 
 def field_rows(scene: LayerScene) -> pd.DataFrame:
-    """Return the horizontal velocity in the layer at the end of a scene, on some of its nodes.
+    """Return the horizontal velocity in the layer at the end of a scene, at some grid nodes.
 
-    The part of the layer that nothing can have reached is left out.
+    The part of the layer that no wave has reached is left out.
     """
     run = simulate_layer(scene)
+    # Waves run at most at speed 1, from the edge of the nucleation on.
     reach = scene.duration + 2.0 * scene.nucleation
     columns = np.flatnonzero(run.x <= reach)[::DRAWN_STRIDE]
     rows = np.arange(0, scene.cells + 1, DRAWN_STRIDE)

@@ -1,12 +1,13 @@
-"""Test whether a held top makes pulses steady that are unstable in a thick layer.
+"""Test whether pulses that are unstable in a thick layer are steady in a thin one.
 
-The strength recovers while a point slows down (`rate` of `slippulse.solver.layer.LayerScene`), so
-that friction alone can end a pulse. The same pulses run in a layer that is so thick that no wave
-returns from its top before they have passed, and in a thin layer. Lengths, times and slips of both
-are in units of the thickness of the thin layer. Each pulse runs on two grids.
+The strength of the fault recovers while a point slows down (see `rate` of
+`slippulse.solver.layer.LayerScene`), so that friction alone can end a pulse. The thick layer is so
+thick that no wave returns from its held top before the pulses have passed. Lengths, times and slips
+in both layers are in units of the thickness of the thin layer. Each pulse runs on two grids.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -19,86 +20,115 @@ NEEDS = {"settings": ()}
 GAMMA = 2.0 / 3.0
 # Slip velocity at which the strength is halved, and the slip over which it changes.
 RATE, WEAKENING = 0.05, 0.1
-# Pre-stress of the pulses of the thick layer, and the half-length of the region without friction in
+# Pulses of the thick layer: their pre-stress, and the half-length of the region without friction in
 # which each of them starts. Longer regions start wider pulses.
-THICK_LEVEL, THICK_HALF_LENGTHS = 0.41, (1.5, 5.0)
-# Pre-stress of the pulses of the thin layer, and the pre-stress at |x| < STEP_POSITION relative to
-# it. All start in a region without friction of this half-length.
-THIN_LEVELS, RELATIVE_LEVELS_BEFORE, STEP_POSITION = (0.52, 0.56), (0.94, 1.0, 1.1), 10.0
+THICK_LEVEL = 0.41
+THICK_HALF_LENGTHS = (1.5, 5.0)
+# Pulses of the thin layer: their pre-stress, the pre-stress at |x| < STEP_POSITION divided by it,
+# and the half-length of the region without friction.
+THIN_LEVELS = (0.52, 0.56)
+RELATIVE_LEVELS_BEFORE = (0.94, 1.0, 1.1)
+STEP_POSITION = 10.0
 THIN_HALF_LENGTH = 2.0
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A layer, and the times, positions and grids of its runs."""
+    """A layer, and what all its runs have in common.
+
+    trail : length behind the compressional wave in which the layer is computed. All pulses are
+        nearer to the wave while they pass the positions.
+    positions : positions on the fault at which the slip is recorded
+    coarse_cells, fine_cells : number of cells per unit of length on each grid
+    """
 
     thickness: float
     duration: float
-    # Columns farther than this behind the compressional wave are no longer advanced. At the
-    # positions, all pulses are nearer.
     trail: float
     positions: tuple[float, ...]
-    cells: tuple[int, int]  # per unit of length, on a coarse and on a fine grid
+    coarse_cells: int
+    fine_cells: int
 
 
-THICK = Layer(20.0, 52.0, 22.0, tuple(range(12, 33, 4)), (10, 20))
-THIN = Layer(1.0, 44.0, 12.0, (9.0, *range(12, 33, 4)), (20, 40))
+THICK = Layer(
+    thickness=20.0,
+    duration=52.0,
+    trail=22.0,
+    positions=tuple(range(12, 33, 4)),
+    coarse_cells=10,
+    fine_cells=20,
+)
+THIN = Layer(
+    thickness=1.0,
+    duration=44.0,
+    trail=12.0,
+    positions=(9.0, *range(12, 33, 4)),
+    coarse_cells=20,
+    fine_cells=40,
+)
 
 
 @dataclass(frozen=True)
 class Pulse:
-    """Pre-stress and start of a pulse in one of the layers."""
+    """The pre-stress of a pulse, and how it starts.
+
+    tau0, before : pre-stress beyond STEP_POSITION, and pre-stress before it
+    patch_half_length : half-length of the region without friction
+    """
 
     tau0: float
-    before: float  # pre-stress at distances up to STEP_POSITION
-    patch_half_length: float  # of the region without friction
+    before: float
+    patch_half_length: float
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of two parts of the study, which the column part names.
+    """Return the rows of two parts of the study. The column ``part`` has these values:
 
-    position : the slip that each pulse leaves (pulse_slip) on the fine grid, one row for each
-        position, and the slip on the coarse grid (coarse_slip)
-    run : one row for each pulse, with its slip at the last position, the relative change of slip
-        since the first position on both grids (change, coarse_change), and the largest relative
-        difference between the slips of the pulses at one level (spread)
+    position : final slip behind a pulse, one row for each pulse and position
+    run : final slip at the last position, one row for each pulse, with `numbers_of_run`. The column
+        spread has the largest relative difference between the slips of all pulses in the same layer
+        and pre-stress.
 
-    A pulse that has died leaves no slip.
+    The slip is 0 where a pulse has died before. It is given on the fine grid (pulse_slip) and on
+    the coarse grid (coarse_slip).
     """
-    thick = [Pulse(THICK_LEVEL, THICK_LEVEL, length) for length in THICK_HALF_LENGTHS]
-    thin = [
-        Pulse(level, ratio * level, THIN_HALF_LENGTH)
-        for level in THIN_LEVELS
-        for ratio in RELATIVE_LEVELS_BEFORE
+    thick_pulses = [Pulse(THICK_LEVEL, THICK_LEVEL, length) for length in THICK_HALF_LENGTHS]
+    thin_pulses = [
+        Pulse(level, relative_level * level, THIN_HALF_LENGTH)
+        for level, relative_level in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE)
     ]
-    positions = [slips_on_both_grids(THICK, pulse) for pulse in thick]
-    positions += [slips_on_both_grids(THIN, pulse) for pulse in thin]
-    runs = pd.DataFrame([numbers_of_run(rows) for rows in positions])
-    at_level = runs.groupby(["thickness", "tau0"])["pulse_slip"]
-    runs["spread"] = at_level.transform("max") / at_level.transform("min") - 1.0
-    all_positions = pd.concat(positions).assign(part="position")
-    return pd.concat([all_positions, runs.assign(part="run")], ignore_index=True)
+    rows_by_pulse = [slips_on_both_grids(THICK, pulse) for pulse in thick_pulses]
+    rows_by_pulse += [slips_on_both_grids(THIN, pulse) for pulse in thin_pulses]
+    runs = pd.DataFrame([numbers_of_run(rows) for rows in rows_by_pulse])
+    slip_at_level = runs.groupby(["thickness", "tau0"])["pulse_slip"]
+    runs["spread"] = slip_at_level.transform("max") / slip_at_level.transform("min") - 1.0
+    positions = pd.concat(rows_by_pulse).assign(part="position")
+    return pd.concat([positions, runs.assign(part="run")], ignore_index=True)
 
 
 def slips_on_both_grids(layer: Layer, pulse: Pulse) -> pd.DataFrame:
     """Return one row for each position, with the parameters and the slip on both grids."""
-    coarse_cells, fine_cells = layer.cells
     return pd.DataFrame(
         {
             "thickness": layer.thickness,
             **vars(pulse),
             "rate": RATE,
             "weakening": WEAKENING,
-            "cells": fine_cells,
+            "cells": layer.fine_cells,
             "sample_position": layer.positions,
-            "pulse_slip": slips(layer, pulse, fine_cells),
-            "coarse_slip": slips(layer, pulse, coarse_cells),
+            "pulse_slip": slips(layer, pulse, layer.fine_cells),
+            "coarse_slip": slips(layer, pulse, layer.coarse_cells),
         }
     )
 
 
 def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
-    """Return the last row of a pulse, with the relative changes of slip since the first one."""
+    """Return the row of the last position, with the changes of slip since the first position.
+
+    first_slip : slip at the first position, on the fine grid
+    change, coarse_change : relative change of slip from the first to the last position, on the fine
+        and on the coarse grid
+    """
     first, last = rows.iloc[0], rows.iloc[-1]
     changes = {
         "first_slip": first["pulse_slip"],
@@ -113,30 +143,44 @@ def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
 
     cells : number of cells per unit of length
 
-    Raises ValueError if a point still slides when waves may have returned from the top of the thick
-    layer, or at the end in the thin one.
+    Raises ValueError if the pulse has not passed a position in time. In the thick layer it must
+    pass before waves may return from the top, and in the thin layer before the end.
     """
     thickness = layer.thickness
-    # The layer is simulated in units of its own thickness.
+    # A run of the layer has units of its own thickness, so its results are converted here.
+    run = simulate_layer(scene_in_own_units(layer, pulse, cells))
+    positions = np.array(layer.positions)
+    distances = np.abs(thickness * run.x - positions[:, np.newaxis])
+    nearest_nodes = distances.argmin(axis=1)
+    slip = thickness * run.slip[nearest_nodes]
+    stick_times = thickness * run.stick_time[nearest_nodes]
+    # A wave from the nucleation returns from the top of the thick layer at these times.
+    latest_times = np.hypot(positions, 2.0 * thickness) if layer is THICK else layer.duration
+    has_stuck_in_time = stick_times < latest_times
+    still_sliding = positions[(slip > 0.0) & ~has_stuck_in_time]
+    if still_sliding.size:
+        raise ValueError(
+            f"{pulse} in a layer of {thickness:g}: still slides at {still_sliding[0]:g}"
+        )
+    return slip
+
+
+def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
+    """Return the scene of a run, with lengths, times and slips in units of its own thickness.
+
+    cells : number of cells per unit of length
+    """
+    thickness = layer.thickness
     step = STEP_POSITION / thickness
     steps = ((step, pulse.tau0), (-step, pulse.tau0)) if pulse.before != pulse.tau0 else ()
-    scene = LayerScene(
-        "displacement",
-        GAMMA,
-        Prestress(pulse.before, pulse.before, width=None, steps=steps),
-        WEAKENING / thickness,
-        layer.duration / thickness,
-        round(cells * thickness),
-        pulse.patch_half_length / thickness,
+    return LayerScene(
+        boundary="displacement",
+        gamma=GAMMA,
+        prestress=Prestress(pulse.before, pulse.before, width=None, steps=steps),
+        weakening=WEAKENING / thickness,
+        duration=layer.duration / thickness,
+        cells=round(cells * thickness),
+        nucleation=pulse.patch_half_length / thickness,
         rate=RATE,
         trail=layer.trail / thickness,
     )
-    run = simulate_layer(scene)
-    positions = np.array(layer.positions)
-    nodes = np.abs(thickness * run.x - positions[:, np.newaxis]).argmin(axis=1)
-    slip, stick_times = thickness * run.slip[nodes], thickness * run.stick_time[nodes]
-    # A wave from the nucleation returns from the top of the thick layer after this time.
-    returns = np.hypot(positions, 2.0 * thickness) if layer is THICK else layer.duration
-    for position in positions[(slip > 0.0) & ~(stick_times < returns)]:
-        raise ValueError(f"{pulse} in a layer of {thickness:g}: still slides at {position:g}")
-    return slip

@@ -1,7 +1,8 @@
-"""Map the stability of pulses in the two-dimensional layer by fracture energy and elasticity ratio.
+"""Find out at which gamma and fracture energy pulses in the two-dimensional layer are stable.
 
-Each pulse runs three times: in a uniform pre-stress, and sent into it from a lower and from a
-higher one. Its width is about sqrt(2/gamma - 1), so gamma sets the width divided by the height.
+Each pair of gamma and fracture energy is a point of a map, with three runs. One pulse forms in the
+final pre-stress, one comes into it from a lower pre-stress, and one from a higher pre-stress. The
+pulse width divided by the height of the layer is about sqrt(2/gamma - 1).
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,22 +16,24 @@ from .layer import LEVEL, across_a_step, weakening_of
 
 NEEDS = {"settings": ["figures.study_layer"]}
 
-# Pre-stress in which a pulse forms, divided by the pre-stress that it enters, by column name.
+# Pre-stress in which a pulse forms, divided by the pre-stress that it enters. The keys are the
+# beginnings of column names.
 RELATIVE_LEVELS_BEFORE = {"uniform": 1.0, "from_below": 0.9, "from_above": 1.1}
-# Stations of measurement at GAMMA: before the step at 10, halfway, and far beyond.
+# Positions at which pulses are measured: just before the pre-stress changes (at 10), halfway, and
+# far beyond. These are the positions at `layer.GAMMA`.
 STATION_POSITIONS = (9.0, 18.0, 24.0)
 # Slips count as equal if their relative difference is smaller than this.
 EQUAL_SLIP_TOLERANCE = 0.02
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row per gamma and fracture energy, with the slips of three runs and the outcome.
+    """Return one row for each point of the map, with the slips of its three runs and the outcome.
 
     Slips are those on the finer of two grids. The column coarse_outcome has the outcome on the
     other one.
 
-    If the settings have a chunk, such as [3, 8] for the third of eight, the table has the rows of
-    that chunk alone.
+    The settings may have a chunk, such as [3, 8] for the third of eight chunks. The table then has
+    only the rows of this chunk.
     """
     given = settings["figures"]["study_layer"]
     points = list(product(given["gamma"], given["fracture_energy"]))
@@ -45,8 +48,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def row_of_point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
     """Return the row of one point of the map; slips are 0 if the pulse has died.
 
-    energy : fracture energy divided by the energy that the layer releases
-    cells : cells over the height of the layer on the finer grid; the other has half as many
+    energy : fracture energy divided by the energy that the layer releases, G_0
+    cells : number of cells over the height of the layer on the finer grid; the other has half as
+        many
     """
     coarse, fine = slips_on_grids(gamma, energy, (cells // 2, cells))
     row = {"gamma": gamma, "tau0": LEVEL, "fracture_energy": energy, "cells": cells}
@@ -65,11 +69,11 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
         rows = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
         stations = len(STATION_POSITIONS)
         for grid, numbers_on_grid in enumerate(numbers):
-            entry, halfway, last = rows[grid * stations : (grid + 1) * stations]
+            before_step, halfway, last = rows[grid * stations : (grid + 1) * stations]
             if name == "uniform":
                 numbers_on_grid |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
             numbers_on_grid |= {
-                f"{name}_slip_before": entry["pulse_slip"],
+                f"{name}_slip_before": before_step["pulse_slip"],
                 f"{name}_slip_halfway": halfway["pulse_slip"],
                 f"{name}_slip": last["pulse_slip"],
             }
@@ -77,12 +81,15 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
 
 
 def outcome(slips: Mapping[str, float]) -> str:
-    """Classify what the pulses of one point of the map do, from their slips along the path.
+    """Classify the pulses of one point of the map, from their slips along the path.
+
+    The slip of the pulse in uniform pre-stress at the last position is called the steady slip.
 
     dying : the slip in uniform pre-stress falls along the path
-    growing : the slip of one of the three pulses rises
-    steady : the pulses from below and from above both reach the slip of the uniform pre-stress
-    lower dies : the pulse from above reaches it, and the one from below died before it entered
+    growing : the slip in uniform pre-stress rises along the path, or one of the other pulses rises
+        beyond the steady slip
+    steady : the pulses from below and from above both end with the steady slip
+    lower dies : the pulse from above ends with the steady slip, and the one from below has died
     not settled : everything else
     """
     steady_slip, halfway_slip = slips["uniform_slip"], slips["uniform_slip_halfway"]

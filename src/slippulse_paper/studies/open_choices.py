@@ -1,7 +1,8 @@
 """Compute the exact transitions of figure 5 at every combination of open choices.
 
-The choices are those that the paper leaves open: damping ratio, release rule, and, under a stress
-boundary, the nucleation and the fraction of its path at which the left front counts as arrested.
+The paper leaves open the damping ratio and the release rule. Under a stress boundary it also leaves
+open how the rupture starts (nucleation), and which fraction of its path the left front must have
+covered to count as arrested.
 """
 
 from typing import NamedTuple
@@ -26,18 +27,24 @@ NEEDS = {
 
 # Upper bound of the time of the first stick, divided by pi/sqrt(gamma).
 LATEST_FIRST_STICK = 1.7
-# A Gaussian is 0 to rounding beyond this number of its widths.
+# Beyond this number of its widths a Gaussian is smaller than rounding errors.
 GAUSSIAN_REACH = 12.0
-# Nodes and weights of the integral for the time that a front takes to cross a tent.
+# Nodes (between -1 and 1) and weights of Gauss-Legendre integration over a tent (see `stress`).
 TENT_NODES, TENT_WEIGHTS = np.polynomial.legendre.leggauss(24)
 # Columns of the paper's estimates.
 PAPER_COLUMNS = ["paper_transition_time", "paper_transition_length"]
+# Columns of an arrest that are times or lengths.
+ARREST_SIZES = ["transition_time", "transition_length", *PAPER_COLUMNS]
 
 
 class Arrest(NamedTuple):
-    """The arrest of the left front at W = 1, exact and by the paper's estimates.
+    """The arrest of the left front for a nucleation of width W = 1, exact and by the estimates.
 
-    The paper estimates that both fronts cover the distance |x_minus| at speed 1.
+    The transition length is the distance between the fronts at the transition time. By the paper's
+    estimates, both fronts cover the distance |x_minus| at the wave speed, 1.
+
+    nucleation : "Gaussian" or "tent"
+    fraction : fraction of |x_minus| that the left front has covered
     """
 
     nucleation: str
@@ -53,46 +60,43 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     There is one row for each run of figure 5 and each combination of choices.
     """
-    with_springs, without_springs = (
-        pd.DataFrame(parameters(settings["sweeps"][name])) for name in NEEDS["sweeps"]
-    )
+    with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
     with_springs = with_springs.query("left > 0")
-    # Only in negative pre-stress does the left front arrest.
+    without_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_stress"]))
+    # The left front arrests only in negative pre-stress.
     without_springs = without_springs.query("left < 0")
     values_by_choice = tables["open_choices"].groupby("choice")
     fraction_choices = values_by_choice.get_group("fraction")["value"]
-    # The choice "last release" is a text; it belongs to lattices.
+    # The choice "last release" is a text. It exists for lattices only, so it is left out.
     fractions = [value for value in fraction_choices if isinstance(value, float)]
     damping_choices = values_by_choice.get_group("damping_ratio")[["value", "release"]]
     parts = []
-    for ratio, release in damping_choices.values:
+    for damping_ratio, release in damping_choices.values:
         for rows in (
-            displacement(with_springs, ratio, release),
-            stress(without_springs, ratio, release, fractions),
+            displacement(with_springs, damping_ratio, release),
+            stress(without_springs, damping_ratio, release, fractions),
         ):
-            parts.append(rows.assign(damping_ratio=ratio, release=release))
+            parts.append(rows.assign(damping_ratio=damping_ratio, release=release))
     return pd.concat(parts, ignore_index=True)
 
 
-def displacement(runs: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame:
-    """Return the transitions under a displacement boundary, which are first sticks at x = 0.
+def displacement(runs: pd.DataFrame, damping_ratio: float, release: str) -> pd.DataFrame:
+    """Return the transitions under a displacement boundary, where x = 0 is the first to stick.
 
-    runs : left (the level on both sides), width and gamma of each run
+    runs : left (the level on both sides), width of the Gaussian, and gamma of each run
     """
     parts = []
     # Leaf springs do not change the fronts, so all runs of a level and width share them.
     for (level, width), group in runs.groupby(["left", "width"]):
         gammas = group["gamma"].to_numpy()
         latest_sticks = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
-        # The velocity at (0, t) depends on |x| with |x| + T(x) < t, where T is the release time,
-        # so only on |x| < t.
+        # Waves run at speed 1, so up to the time t only the positions |x| < t influence x = 0.
         reach = max(float(latest_sticks.max()), 2.0 * GAUSSIAN_REACH * width)
-        fronts = fast_fronts(Prestress(level, level, width), ratio, release, reach, gammas.max())
-        times = []
-        for gamma, until in zip(gammas, latest_sticks, strict=True):
-            (stick_time,) = Part(fronts, gamma, until).find_stick_times(np.zeros(1))
-            times.append(float(stick_time))
-        positions = front_positions(fronts, np.array(times), level, width, ratio, release)
+        prestress = Prestress(level, level, width)
+        fronts = fast_fronts(prestress, damping_ratio, release, reach, gammas.max())
+        times = stick_times_of_centre(fronts, gammas, latest_sticks)
+        speed = float(front_speed(level, damping_ratio, release))
+        positions = front_positions(fronts, times, speed, GAUSSIAN_REACH * width)
         rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
         rows["gamma"] = gammas
         rows["transition_time"] = times
@@ -102,36 +106,50 @@ def displacement(runs: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
     return pd.concat(parts)
 
 
+def stick_times_of_centre(
+    fronts: Curve, gammas: np.ndarray, latest_sticks: np.ndarray
+) -> np.ndarray:
+    """Return the stick time of x = 0 in ruptures that differ only in gamma.
+
+    latest_sticks : times until which a stick is searched, one for each gamma
+    """
+    times = []
+    for gamma, latest_stick in zip(gammas, latest_sticks, strict=True):
+        rupture = Part(fronts, gamma, until=latest_stick)
+        (stick_time,) = rupture.find_stick_times(np.array([0.0]))
+        times.append(float(stick_time))
+    return np.array(times)
+
+
 def front_positions(
-    fronts: Curve, times: np.ndarray, level: float, width: float, ratio: float, release: str
+    fronts: Curve, times: np.ndarray, speed: float, uniform_from: float
 ) -> np.ndarray:
     """Return the positions of the right front at some times.
 
-    Beyond the Gaussian the pre-stress is uniform, and the front runs at a constant speed.
+    speed : constant speed of the front in uniform pre-stress
+    uniform_from : position beyond which the pre-stress is uniform
     """
-    uniform_from = GAUSSIAN_REACH * width
-    speed = float(front_speed(level, ratio, release))
     positions = uniform_from + speed * (times - fronts.arrival(uniform_from))
+    # This is right only where the front is beyond ``uniform_from``.
     for index in np.flatnonzero(positions <= uniform_from):
         positions[index] = fronts.front_at(times[index], 0.0, 1.0)
     return positions
 
 
-def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> pd.DataFrame:
+def stress(
+    runs: pd.DataFrame, damping_ratio: float, release: str, fractions: list[float]
+) -> pd.DataFrame:
     """Return arrests under a stress boundary, for nucleation by a Gaussian and by a tent.
 
-    For the Gaussian there is one row for each fraction of |x_minus|. A tent is a pre-stress that
-    falls linearly from 1 at x = 0 to its level at a distance W. Its left front arrives at x_minus,
-    so there is one row, with the fraction 1.
+    For the Gaussian there is one row for each fraction of |x_minus|, because the left front never
+    arrives at x_minus. A tent is a pre-stress that falls linearly from 1 at x = 0 to its level at a
+    distance W. Its left front arrives at x_minus, so there is only one row, with the fraction 1.
 
-    runs : boundary, left (level on the left) and width W of each run. W is the only length without
-        leaf springs, so all times and lengths of a level are proportional to it.
+    runs : boundary, left (level on the left) and width W of each run
     """
-    # All columns except the nucleation and the fraction are times and lengths.
-    times_and_lengths = list(Arrest._fields[2:])
     parts = []
     for left, group in runs.groupby("left"):
-        crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
+        crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
         distance = -crack.balance_position
         arrests = []
         for fraction in fractions:
@@ -145,28 +163,31 @@ def stress(runs: pd.DataFrame, ratio: float, release: str, fractions: list[float
                 paper_transition_length=2.0 * distance,
             )
             arrests.append(arrest)
-        arrests.append(tent_arrest(left, ratio, release))
+        arrests.append(tent_arrest(left, damping_ratio, release))
         at_width_1 = pd.DataFrame(arrests)
         rows = group[["boundary", "left", "width"]].merge(at_width_1, how="cross")
-        rows[times_and_lengths] = rows[times_and_lengths].mul(rows["width"], axis=0)
+        # Without leaf springs W is the only length, so all times and lengths are proportional to W.
+        rows[ARREST_SIZES] = rows[ARREST_SIZES].mul(rows["width"], axis=0)
         parts.append(rows)
     return pd.concat(parts)
 
 
-def tent_arrest(left: float, ratio: float, release: str) -> Arrest:
-    """Return the arrest for nucleation by a tent with W = 1."""
-    # On the right the pre-stress falls evenly from 1 to 0 over the distance 1, so the time in which
-    # the right front crosses the tent is the mean slowness (1/speed) over these levels. The nodes
-    # of the integration lie between -1 and 1.
+def tent_arrest(left: float, damping_ratio: float, release: str) -> Arrest:
+    """Return the arrest for nucleation by a tent with W = 1.
+
+    The pre-stress of a tent falls linearly from 1 at x = 0 to 0 at x = 1 and to ``left`` at x = -1.
+    """
+    # The time in which the right front crosses the tent is the mean of 1/speed over the levels from
+    # 0 to 1, because the tent falls evenly over the distance 1.
     levels = 0.5 + 0.5 * TENT_NODES
-    slownesses = 1.0 / front_speed(levels, ratio, release)
+    slownesses = 1.0 / front_speed(levels, damping_ratio, release)
     crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
-    # The integral of the pre-stress is 1/2 on the right and (1 + left)/2 on the left of x = 0. The
-    # negative level beyond the tent balances it at x_minus.
+    # Over the tent, the integral of the pre-stress is 1/2 on the right of x = 0 and (1 + left)/2 on
+    # the left. The negative level between the tent and x_minus balances it.
     tent_integral = 1.0 + 0.5 * left
     distance = 1.0 + tent_integral / -left
-    # The last wave that drives the left front enters at the end of the tent on the right. Beyond
-    # it the right front runs at the wave speed.
+    # The last wave that drives the left front starts at x = 1 when the right front arrives there,
+    # and runs to x_minus. In the same time the right front runs as far. Both have speed 1.
     return Arrest(
         nucleation="tent",
         fraction=1.0,

@@ -1,4 +1,4 @@
-"""Compare the scheme of the authors' published solver with the exact solution."""
+"""Compare the numerical scheme of the authors' published solver with ours and with exact theory."""
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,7 @@ from slippulse.theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window"]}
 
-# The scene of the authors' public notebook for the paper, and its lattice.
+# The scene of the authors' public notebook for the paper, its time step and its lattice.
 PRESTRESS = Prestress(0.6, 0.6)
 GAMMA = 0.65
 BETA = 0.01
@@ -25,31 +25,41 @@ QUANTITIES = ("front_speed", "first_stick_time", "pulse_slip")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each of QUANTITIES, with its value by three computations.
+    """Return one row for each of QUANTITIES, with three values.
 
-    published : by the scheme of the authors' solver
-    localised : by our localised scheme, on a lattice with the same spacing
-    exact : by exact theory
+    published : computed by the scheme of the authors' solver
+    localised : computed by our localised scheme, on a lattice with the same spacing
+    exact : from exact theory
     """
-    window = settings["measure"]["front_window"]
-    ratio = BETA / SPACING
-    pulse = steady_pulse(PRESTRESS.left, GAMMA, BETA, damping_ratio=ratio)
-    first_stick = exact_transition_displacement(PRESTRESS, GAMMA, ratio).time
-    scene = Scene("displacement", PRESTRESS, DURATION, SPACING, GAMMA, BETA)
+    front_window = settings["measure"]["front_window"]
+    damping_ratio = BETA / SPACING
+    pulse = steady_pulse(PRESTRESS.left, GAMMA, BETA, damping_ratio=damping_ratio)
+    first_stick = exact_transition_displacement(PRESTRESS, GAMMA, damping_ratio).time
+    scene = Scene(
+        boundary="displacement",
+        prestress=PRESTRESS,
+        duration=DURATION,
+        dx=SPACING,
+        gamma=GAMMA,
+        beta=BETA,
+    )
     columns = {
         "quantity": QUANTITIES,
-        "published": measured(published_run(), window),
-        "localised": measured(simulate_on_lattice(scene), window),
+        "published": measured(published_run(), front_window),
+        "localised": measured(simulate_on_lattice(scene), front_window),
         "exact": [pulse.speed, first_stick, pulse.slip],
     }
     return pd.DataFrame(columns)
 
 
 def published_run() -> xr.Dataset:
-    """Simulate a lattice by the published scheme; return release times, stick times and final slip.
+    """Simulate a lattice by the published scheme.
 
-    Both ends are held. A stuck block is released where the size of the total force, damping
-    included, reaches 1. Steps are those of the Euler-Cromer method, and events lie at their ends.
+    The steps are those of the Euler-Cromer method. A stuck block is released at the end of the step
+    in which the absolute value of its total force, damping included, has reached 1. The blocks at
+    both ends of the lattice are held.
+
+    Returns release times, stick times and final slip.
     """
     x = SPACING * (np.arange(BLOCK_COUNT) - BLOCK_COUNT // 2)
     tau = PRESTRESS(x)
@@ -62,7 +72,7 @@ def published_run() -> xr.Dataset:
         damping = BETA * np.diff(velocity, 2) / SPACING**2
         force[1:-1] += coupling + damping
         is_released = ~is_sliding & (np.abs(force) >= 1.0)
-        # Only the first release of a block counts.
+        # Only the first release of a block is recorded.
         release_time[is_released & np.isnan(release_time)] = step * TIME_STEP
         is_sliding |= is_released
         is_sliding[[0, -1]] = False
@@ -82,13 +92,16 @@ def published_run() -> xr.Dataset:
     return xr.Dataset(fields, {"x": x})
 
 
-def measured(run: xr.Dataset, window: float) -> list[float]:
+def measured(run: xr.Dataset, front_window: float) -> list[float]:
     """Return the values of QUANTITIES on a lattice.
 
-    They are the final speed of the right front, the time of the first stick, and the slip of the
-    outermost block on the right that has stuck.
+    They are the speed of the right front over the last part of its path, the time of the first
+    stick, and the slip of the outermost block on the right that has stuck.
+
+    front_window : last fraction of the path over which the front speed is measured
     """
-    speed = fit_front(run, window).slope
+    speed = fit_front(run, front_window).slope
     stick_time = run["stick_time"]
     is_behind_pulse = stick_time.notnull() & (run["x"] > 0.0)
-    return [speed, float(stick_time.min()), float(run["slip"][is_behind_pulse][-1])]
+    slip_behind_pulse = run["slip"][is_behind_pulse][-1]
+    return [speed, float(stick_time.min()), float(slip_behind_pulse)]

@@ -1,4 +1,7 @@
-"""Tabulate the exact final slip of a pulse that enters another pre-stress, and its memory."""
+"""Tabulate the exact final slip of pulses that enter another pre-stress.
+
+A pulse depends only on the pre-stress that it has met within a finite distance, its memory.
+"""
 
 from typing import Any
 
@@ -13,8 +16,8 @@ from ..configuration.expand import expand
 
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
-# Positions at which the slip is tabulated: distances before the step, and distances beyond it in
-# units of the memory.
+# Positions at which the slip is tabulated, relative to the step of the pre-stress. Those beyond the
+# step are in units of the memory.
 DISTANCES_BEFORE = np.linspace(-10.0, 0.0, 21)[:-1]
 DISTANCES_BEYOND = np.concatenate(
     [np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace(1.0, 1.4, 21)]
@@ -25,15 +28,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each scene and distance x from the step, with the final slip there.
 
     before, level : pre-stress before the step and beyond it
-    steady_before, steady : slips of the steady pulses in the two
-    memory : distance over which a pulse forgets what it met
+    steady_before, steady : slip of a steady pulse in each of the two levels of pre-stress
+    memory : distance beyond the step from which on the pulse is steady again
     """
     scenes, _ = expand(settings["sweeps"]["pulses_across_a_step"])
     return pd.concat([rows_of_scene(scene) for scene in scenes], ignore_index=True)
 
 
 def rows_of_scene(scene: Scene) -> pd.DataFrame:
-    """Return the final slip of one pulse, which passes from one level to another at a step."""
+    """Return the rows of one scene, in which a pulse passes from one level to another at a step."""
+    # The last step is on the right.
     position, level = scene.prestress.steps[-1]
     before = scene.prestress.right
     # In the limit dx -> 0 damping acts only through the front speed.

@@ -1,4 +1,4 @@
-"""Tabulate the exact pulses for figures 3, 8 and 9 by distance from their largest velocity."""
+"""Tabulate the exact pulses for figures 3, 8 and 9, with their largest velocity at x = 0."""
 
 import numpy as np
 import pandas as pd
@@ -15,7 +15,7 @@ NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 POINT_COUNT = 200
 # A curve extends ahead of the pulse and behind it by these fractions of the pulse width.
 MARGIN_AHEAD, MARGIN_BEHIND = 0.08, 0.25
-# An infinite tail is cut off below this fraction of the largest velocity.
+# An infinite tail is cut off where the velocity is below this fraction of the largest one.
 TAIL_CUT = 1e-3
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
@@ -23,7 +23,7 @@ FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return slip, velocity and acceleration of each pulse, as functions of the position x.
 
-    The largest velocity is at x = 0. The columns simulation and run name the pulse.
+    The columns simulation and run name the pulse.
     """
     parts = []
     for name, sweep in settings["sweeps"].items():
@@ -36,20 +36,23 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def displacement_profile(run: Run) -> pd.DataFrame:
     """Return the exact steady pulse under a displacement boundary.
 
-    It has sharp corners at the front and at the trailing edge, so both sides of each are included.
+    Its curves have sharp corners at the front and at the trailing edge. There are points on both
+    sides of each corner.
     """
-    level, ratio = run.prestress.right, run.damping_ratio
-    pulse = steady_pulse(level, run.gamma, run.beta, damping_ratio=ratio, release=run.release)
-    relative = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT)
-    trailing_edge = -pulse.width
-    corners = [
-        trailing_edge,
+    level, damping_ratio = run.prestress.right, run.damping_ratio
+    pulse = steady_pulse(
+        level, run.gamma, run.beta, damping_ratio=damping_ratio, release=run.release
+    )
+    # Positions are relative to the front, so they are negative behind it.
+    trailing_edge, front = -pulse.width, 0.0
+    both_sides_of_corners = [
         np.nextafter(trailing_edge, -np.inf),
-        0.0,
-        1e-12 * pulse.width,
+        trailing_edge,
+        front,
+        front + 1e-12 * pulse.width,
     ]
-    # The distance xi from the front is negative behind it.
-    xi = np.unique(np.concatenate([relative * pulse.width, corners]))
+    in_widths = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT)
+    xi = np.unique(np.concatenate([in_widths * pulse.width, both_sides_of_corners]))
     fields = dict(zip(FIELDS, pulse.profile(xi), strict=True))
     return pd.DataFrame({"x": xi - pulse.peak_position} | fields)
 
@@ -57,21 +60,22 @@ def displacement_profile(run: Run) -> pd.DataFrame:
 def stress_profile(run: Run) -> pd.DataFrame:
     """Return the exact pulse under a stress boundary, far from its nucleation.
 
-    Its velocity is known; slip is the integral of the velocity, and acceleration its derivative.
+    Theory gives its velocity. The slip is the integral of the velocity over time, and the
+    acceleration is its derivative.
     """
     crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
-    delay, velocity = crack.far_pulse()
-    # x - t in ascending order, from the tail to the front
-    order = np.argsort(delay, kind="stable")
-    delay, velocity = delay[order], velocity[order]
-    first_fast = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
-    start = max(0, first_fast - 1)
-    peak = delay[np.argmax(velocity)]
-    x, velocity = delay[start:] - peak, velocity[start:]
-    # A derivative needs points that are apart.
+    # The pulse moves unchanged at the wave speed 1, so it depends on x - t only.
+    x_minus_t, velocity = crack.far_pulse()
+    from_tail_to_front = np.argsort(x_minus_t, kind="stable")
+    x_minus_t, velocity = x_minus_t[from_tail_to_front], velocity[from_tail_to_front]
+    end_of_tail = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
+    start = max(0, end_of_tail - 1)
+    peak_position = x_minus_t[np.argmax(velocity)]
+    x, velocity = x_minus_t[start:] - peak_position, velocity[start:]
+    # The derivative needs points with some distance between them.
     is_apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, velocity = x[is_apart], velocity[is_apart]
-    # The pulse moves unchanged at the wave speed 1, so du/dt = -du/dx. The integral begins at the
+    # A derivative with respect to t is minus that with respect to x. The integral begins at the
     # front, where the slip is 0.
     slip = cumulative_trapezoid(velocity[::-1], -x[::-1], initial=0.0)[::-1]
     acceleration = -np.gradient(velocity, x)

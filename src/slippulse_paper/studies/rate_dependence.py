@@ -1,7 +1,8 @@
-"""Study friction that is linear in slip rate: the limit beyond which pulses do not stick.
+"""Study ruptures under friction that is linear in the slip rate.
 
-The friction has a term -alpha du/dt, where alpha is the rate strengthening. Some ruptures have leaf
-springs and some do not. They come from lattices and from the exact solution.
+The equation of motion has an additional term -alpha du/dt, where alpha is the rate strengthening.
+Beyond a critical alpha, pulses do not stick. Ruptures with and without leaf springs come from
+lattices and from the exact solution.
 """
 
 from functools import cache
@@ -12,7 +13,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from slippulse.measurement.regime import is_pulse
 from slippulse.model.balance import prestress_balance_position
 from slippulse.model.friction_laws.rate import LinearRate
 from slippulse.model.prestress import Prestress
@@ -24,15 +24,9 @@ from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.pulse import steady_pulse
 from slippulse.theory.rupture import Rupture
 
-from .right_side import (
-    CRACK,
-    CREEPING,
-    STICKING,
-    PulseSize,
-    pulse_at,
-    right_of_centre,
-    sliding_part,
-)
+from . import right_side
+from .outermost_fronts import outermost_fronts
+from .right_side import PulseSize
 
 NEEDS = {"settings": ["measure"]}
 
@@ -43,22 +37,24 @@ LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 CRITICAL_FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
 # Spacing divided by the level, because the pulse width is proportional to the level.
 SPACING_OVER_LEVEL = 0.12
-# With this order and step the decay behind a crack ends by rounding or by the nucleation.
+# Order and largest time step divided by dx. They are so accurate that velocities behind a crack
+# decay until they are as small as rounding errors.
 ORDER, MAX_STEP = 8, 0.25
-# A pulse becomes steady over a time inversely proportional to the excess of the front speed over
-# the wave speed; the run lasts MEMORY_TIMES such times, at least MIN_DURATION.
+# The time in which a pulse becomes steady is inversely proportional to v - 1, the excess of the
+# front speed over the wave speed. A run lasts at least as long as MEMORY_TIMES/(v - 1), and at
+# least MIN_DURATION.
 MIN_DURATION = 30.0
 MEMORY_TIMES = 5.0
-# A rupture without a trailing edge is recognised by its sliding region, which grows by more than
-# this factor over the second half of a run, or by velocities below this fraction of the largest.
+# A rupture has no trailing edge if its sliding part grows by more than this factor in the second
+# half of a run, or if its smallest velocity is below this fraction of its largest one.
 MIN_GROWTH = 1.1
 QUIET_VELOCITY = 1e-9
-# Level at which widths, slips and maps are shown; end time and critical fractions of the maps.
+# Level at which the figure shows pulse widths, slips and maps of two ruptures. The maps have this
+# end time, numbers of times and positions, and rate strengthening divided by the critical value.
 SHOWN_LEVEL = 0.5
 MAP_END = 14.0
-MAPPED_FRACTIONS = {STICKING: 0.6, CREEPING: 1.5}
-# Numbers of times and of positions of a map.
-MAP_SHAPE = (57, 96)
+MAP_TIME_COUNT, MAP_POSITION_COUNT = 57, 96
+MAPPED_FRACTIONS = {right_side.STICKING: 0.6, right_side.CREEPING: 1.5}
 # Runs without leaf springs: rate strengthening, pre-stress, spacings and times.
 ALPHAS = (0.0, 0.5, 2.0)
 ARRESTING_PRESTRESS = Prestress(-0.5, 0.0)
@@ -70,11 +66,11 @@ class Front(NamedTuple):
     """The speed of a front, and the rate strengthening above which its pulse does not stick."""
 
     speed: float
-    critical: float
+    critical_alpha: float
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of the parts of the figure, which the column role names.
+    """Return the rows of the parts of the figure. The column ``role`` has the following values.
 
     With leaf springs:
 
@@ -86,15 +82,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     Without leaf springs:
 
     arrest : left front and largest velocity as functions of time, on lattices
-    asymptote : the same two, as theory predicts them for late times
+    asymptote : the same quantities, as theory predicts them for late times
     """
+    # The centre of a pulse counts as at rest below this fraction of the largest velocity.
     still_fraction = settings["measure"]["still"]
-    critical = _front(SHOWN_LEVEL).critical
-    maps = [_map(regime, fraction * critical) for regime, fraction in MAPPED_FRACTIONS.items()]
+    critical_alpha = _front(SHOWN_LEVEL).critical_alpha
+    maps = []
+    for regime, fraction in MAPPED_FRACTIONS.items():
+        maps.append(_velocity_map(regime, fraction * critical_alpha))
     arrests = [_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
     parts = {
-        "lattice": _lattices(still_fraction),
-        "limit": _limit(),
+        "lattice": _lattice_rows(still_fraction),
+        "limit": _critical_rate_strengthenings(),
         "steady": _steady_pulses(),
         "map": pd.concat(maps),
         "arrest": pd.concat(arrests),
@@ -112,55 +111,59 @@ def _front(level: float) -> Front:
     return Front(speed, critical_rate_strengthening(GAMMA, speed))
 
 
-def _lattices(still_fraction: float) -> pd.DataFrame:
+def _lattice_rows(still_fraction: float) -> pd.DataFrame:
     """Run lattices at all levels and fractions of the critical rate strengthening."""
     # Below this value slip grows without bound, and the model refuses it.
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
     for level, fraction in product(LEVELS, CRITICAL_FRACTIONS):
-        if fraction * _front(level).critical > smallest_alpha:
-            rows.append(_lattice(level, fraction, still_fraction))
+        if fraction * _front(level).critical_alpha > smallest_alpha:
+            rows.append(_lattice_row(level, fraction, still_fraction))
     return pd.DataFrame(rows)
 
 
-def _limit() -> pd.DataFrame:
+def _critical_rate_strengthenings() -> pd.DataFrame:
     """Return the critical rate strengthening as a function of the level."""
     levels = np.linspace(0.05, 0.9, 60)
-    critical = [_front(level).critical for level in levels]
-    return pd.DataFrame({"level": levels, "rate_strengthening": critical})
+    critical_alphas = [_front(level).critical_alpha for level in levels]
+    return pd.DataFrame({"level": levels, "rate_strengthening": critical_alphas})
 
 
 def _steady_pulses() -> pd.DataFrame:
-    """Return width and slip of steady pulses at SHOWN_LEVEL, up to near the critical value."""
-    speed, critical = _front(SHOWN_LEVEL)
+    """Return width and slip of exact steady pulses at SHOWN_LEVEL, by rate strengthening.
+
+    The largest rate strengthening is just below the critical one, at which the width is infinite.
+    """
+    speed, critical_alpha = _front(SHOWN_LEVEL)
     rows = []
-    for alpha in critical * np.linspace(-0.97, 0.97, 80):
-        # In the limit dx -> 0 damping acts only through the front speed.
-        pulse = steady_pulse(SHOWN_LEVEL, GAMMA, 0.0, speed, rate_strengthening=alpha)
-        rows.append((pulse.rate_strengthening, pulse.width, pulse.slip))
-    return pd.DataFrame(rows, columns=["rate_strengthening", "pulse_width", "pulse_slip"])
+    for alpha in critical_alpha * np.linspace(-0.97, 0.97, 80):
+        # In the limit dx -> 0 damping acts only through the front speed, so beta is 0.
+        pulse = steady_pulse(SHOWN_LEVEL, GAMMA, beta=0.0, speed=speed, rate_strengthening=alpha)
+        row = {"rate_strengthening": pulse.rate_strengthening}
+        rows.append(row | {"pulse_width": pulse.width, "pulse_slip": pulse.slip})
+    return pd.DataFrame(rows)
 
 
-def _lattice(level: float, fraction: float, still_fraction: float) -> dict[str, Any]:
-    """Simulate one run and return its regime and pulse; NaN if the pulse does not stick.
+def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[str, Any]:
+    """Simulate one run, and return its regime and its pulse; NaN if the pulse does not stick.
 
     fraction : rate strengthening divided by the critical value
     still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
         rest
     """
-    speed, critical = _front(level)
-    alpha, dx = fraction * critical, SPACING_OVER_LEVEL * level
-    duration = MIN_DURATION + MEMORY_TIMES / (speed - 1.0)
+    front_speed_at_level, critical_alpha = _front(level)
+    alpha, dx = fraction * critical_alpha, SPACING_OVER_LEVEL * level
+    duration = MIN_DURATION + MEMORY_TIMES / (front_speed_at_level - 1.0)
     scene = Scene(
         boundary="displacement",
-        prestress=Prestress(level, level),
-        duration=duration,
-        dx=dx,
         gamma=GAMMA,
+        friction=LinearRate(alpha),
+        prestress=Prestress(level, level),
+        dx=dx,
         beta=DAMPING_RATIO * dx,
+        duration=duration,
         order=ORDER,
         max_step=MAX_STEP,
-        friction=LinearRate(alpha),
     )
     run = simulate_on_lattice(scene)
     regime, pulse = _regime_and_pulse(run, duration, still_fraction)
@@ -179,40 +182,39 @@ def _lattice(level: float, fraction: float, still_fraction: float) -> dict[str, 
 def _regime_and_pulse(
     run: xr.Dataset, duration: float, still_fraction: float
 ) -> tuple[str, PulseSize]:
-    """Return the regime at the end of a run, and the pulse; its size is NaN if it does not stick.
+    """Return the regime at the end of a run, and the size of the pulse; NaN if it does not stick.
 
-    If no block sticks behind the pulse, the sliding part keeps growing, or ends in a tail of tiny
-    velocities.
+    A pulse sticks if its sliding part has stopped growing and ends at a trailing edge. Otherwise it
+    ends in a tail in which velocities become smaller and smaller.
     """
-    right = right_of_centre(run)
-    halfway, end = sliding_part(right, 0.5 * duration), sliding_part(right, duration)
+    right = right_side.right_of_centre(run)
+    halfway = right_side.sliding_part(right, 0.5 * duration)
+    end = right_side.sliding_part(right, duration)
+    keeps_growing = end.width >= MIN_GROWTH * halfway.width
     velocity = right["slip_velocity"].values
-    largest = velocity.max()
+    largest_velocity = velocity.max()
     # The innermost block that still slides is the first one with a velocity above 0.
     innermost_velocity = velocity[velocity > 0.0][0]
-    keeps_growing = end.width >= MIN_GROWTH * halfway.width
-    has_quiet_tail = innermost_velocity / largest <= QUIET_VELOCITY
+    has_quiet_tail = innermost_velocity / largest_velocity <= QUIET_VELOCITY
     if not keeps_growing and not has_quiet_tail:
-        return STICKING, pulse_at(right, duration)
+        return right_side.STICKING, right_side.pulse_at(right, duration)
     centre_velocity = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
-    regime = CREEPING if is_pulse(centre_velocity, largest, still_fraction) else CRACK
+    regime = right_side.regime_without_sticks(centre_velocity, largest_velocity, still_fraction)
     return regime, PulseSize(np.nan, np.nan)
 
 
-def _map(regime: str, alpha: float) -> pd.DataFrame:
-    """Return slip velocities of an exact rupture by time and position.
+def _velocity_map(regime: str, alpha: float) -> pd.DataFrame:
+    """Return slip velocities of the right half of an exact rupture, by time and position.
 
-    A sticking pulse runs to the left and a creeping one to the right, so that both fit into one
-    map.
+    One map shows two ruptures, so the positions of the sticking pulse get a minus sign.
     """
     prestress = Prestress(SHOWN_LEVEL, SHOWN_LEVEL)
     rupture = Rupture(prestress, GAMMA, DAMPING_RATIO, duration=MAP_END, rate_strengthening=alpha)
-    time_count, position_count = MAP_SHAPE
-    times = np.linspace(0.0, MAP_END, time_count)
-    right_end = rupture.front_ends[0][1].x
-    x = np.linspace(0.0, right_end, position_count)
+    times = np.linspace(0.0, MAP_END, MAP_TIME_COUNT)
+    right_end = outermost_fronts(rupture).right
+    x = np.linspace(0.0, right_end.x, MAP_POSITION_COUNT)
     velocity = rupture.map(times, x, ("slip_velocity",))["slip_velocity"]
-    drawn_x = x if regime == CREEPING else -x
+    drawn_x = x if regime == right_side.CREEPING else -x
     grid = xr.DataArray(velocity, [("time", times), ("position", drawn_x)], name="slip_velocity")
     rows = grid.to_series().reset_index()
     return rows.assign(regime=regime, rate_strengthening=alpha, level=SHOWN_LEVEL)
@@ -221,7 +223,7 @@ def _map(regime: str, alpha: float) -> pd.DataFrame:
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     """Return the left front and the largest velocity at TIMES, on a lattice without leaf springs.
 
-    The column gap has the distance that the front has yet to run to its final position x_minus.
+    The column gap has the distance from the front to its final position x_minus.
     """
     duration = float(TIMES[-1])
     scene = Scene(
@@ -247,14 +249,15 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
 
 
 def _asymptote(alpha: float) -> pd.DataFrame:
-    """Return the left front and the largest velocity that `_arrest` approaches at late times.
+    """Return the theoretical left front and largest velocity at late times, in the same columns.
 
-    Then slip spreads by diffusion from x_minus: it is U erfc(y sqrt(alpha/t)/2) at the distance y
-    from there.
+    At late times the slip at the distance y from x_minus is U erfc(y sqrt(alpha/t)/2), because it
+    spreads by diffusion. The final slip U is the integral of y times the pre-stress over y. The
+    largest velocity is the largest time derivative of the slip. The gap is so long that the
+    pre-stress in it balances the strain at x_minus, U sqrt(alpha/(pi t)).
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
     x = np.linspace(x_minus, 12.0, 20_001)
-    # U is the first moment of the pre-stress about x_minus.
     final_slip = float(np.trapezoid((x - x_minus) * ARRESTING_PRESTRESS(x), x))
     columns = {
         "time": TIMES,

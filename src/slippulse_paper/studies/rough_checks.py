@@ -1,9 +1,12 @@
-"""Checks of the rough ensembles on some of their seeds.
+"""Check the results of `rough_prestress` on some seeds of its ensembles.
 
-Part grid: death rates on finer lattices. Part length: death rates on longer tracks. Part balance:
-deaths under a stress boundary, compared with the balance of the pre-stress. Part exact: final slip,
-compared with the exact solution. Part memory: how far beyond a bump of the pre-stress the final
-slip still depends on it.
+The checks are the parts of the table:
+
+grid : death rates on finer lattices
+length : death rates on longer tracks
+balance : deaths under a stress boundary, compared with the balance of the pre-stress
+exact : final slip, compared with the exact solution
+memory : distance beyond a bump of the pre-stress up to which the final slip depends on the bump
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -42,7 +45,8 @@ EXACT_SEEDS = 2
 EXACT_DURATION = 12.0
 EXACT_SPACINGS = (0.05, 0.025)
 COMPARED_BLOCK_DISTANCE = 0.5
-# Part memory: seeds, and the Gaussian bump, which ends some widths from its position.
+# Part memory: seeds, and the bump, which is a Gaussian. It ends, for all practical purposes, at
+# this number of widths from its position.
 BUMP_SEEDS = 10
 BUMP_POSITION = 15.0
 BUMP_HEIGHT = 0.1
@@ -56,7 +60,7 @@ Profile = Mapping[str, Any]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of all checks; the column part names the check (see the module)."""
+    """Return the rows of all checks. The column ``part`` has the name of the check."""
     dying, settling, stress = (settings["sweeps"][name] for name in NEEDS["sweeps"])
     first_stress_ensemble = next(ensembles_of(stress))
     parts = [grid_rows(dying), length_rows(dying)]
@@ -112,8 +116,8 @@ def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
 def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Return the death rates in both halves of longer tracks, over some seeds of all ensembles.
 
-    The tracks and the duration are longer than those of the study by LENGTH_FACTOR. The column stop
-    has the end of each half.
+    A track is the region of rough pre-stress. Tracks and duration are LENGTH_FACTOR times as long
+    as in the study. The column stop has the end of each half.
     """
     profiles: list[Profile] = []
     for ensemble in ensembles_of(sweep):
@@ -125,7 +129,7 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     for scene in scenes_of(sweep, profiles, duration=duration, dx=[LENGTH_SPACING]):
         run = simulated_run(scene)
         fates += [fate_of_pulse(run, side, end) for side in (1, -1)]
-    # In the first half, pulses that leave it alive are censored at its end.
+    # A pulse that leaves the first half alive counts as alive at the end of this half.
     in_first_half = [
         Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
     ]
@@ -137,7 +141,7 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
 
 
 def with_longer_track(profile: Profile) -> Profile:
-    """Return a profile whose rough pre-stress reaches farther by LENGTH_FACTOR on both sides."""
+    """Return a profile whose rough pre-stress reaches LENGTH_FACTOR times as far on both sides."""
     rough = profile["rough"]
     ends = {name: LENGTH_FACTOR * rough[name] for name in ("start", "stop")}
     return {**profile, "rough": {**rough, **ends}}
@@ -146,8 +150,9 @@ def with_longer_track(profile: Profile) -> Profile:
 def balance_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Compare deaths on lattices with the balance of the pre-stress, one row for each spacing.
 
-    A pulse on a lattice dies before it reaches the balance position; the column change has the
-    median distance between them, over all pulses that die within BALANCE_DURATION.
+    By theory a pulse dies at its balance position, up to which the integral of the pre-stress is 0.
+    On a lattice it dies before it gets there. The column change has the median of the distance that
+    is left, over all pulses that die within BALANCE_DURATION.
     """
     profiles = ensemble[:BALANCE_SEEDS]
     integrals = [prestress_integral(profile) for profile in profiles]
@@ -197,8 +202,8 @@ def exact_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.Data
 def memory_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Return how much a bump of the pre-stress changes the final slip beyond it.
 
-    There is one row for each of RELATIVE_DISTANCES, with the median (change) and the largest value
-    (high) of the relative change over some seeds.
+    There is one row for each of RELATIVE_DISTANCES. The column change has the median over some
+    seeds of the relative change, and the column high has the largest one.
     """
     plain = [dict(profile) for profile in ensemble[:BUMP_SEEDS]]
     bump = [BUMP_POSITION, BUMP_HEIGHT, BUMP_WIDTH]

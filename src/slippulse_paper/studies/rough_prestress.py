@@ -1,4 +1,4 @@
-"""Ensembles of pulses on a rough pre-stress: how far they run, and the slip they leave behind.
+"""Measure how far pulses run on a rough pre-stress, and the slip that they leave behind.
 
 An ensemble is a set of runs whose pre-stress is drawn from the same random field with different
 seeds. Under a displacement boundary, pulses run to both sides, and their deaths are compared with
@@ -74,7 +74,7 @@ class Ensemble(NamedTuple):
 
 
 def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of these parts of the study, which the column part names.
+    """Return the rows of all parts of the study. The column ``part`` has these values:
 
     ensemble : one row for each ensemble, with its death rate and its other numbers
     survival : the survival curve of each ensemble, one row for each distance
@@ -90,7 +90,8 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
     parts = [displacement_rows(ensemble) for ensemble in by_boundary["displacement"]]
 
     under_stress = by_boundary["stress"]
-    (smooth,) = (one for one in under_stress if one.parameters["deviation"] == 0.0)
+    # One of the ensembles has no roughness.
+    (smooth,) = (ensemble for ensemble in under_stress if ensemble.parameters["deviation"] == 0.0)
     smooth_profile = smooth.profiles[0]
     # This is twice the largest velocity that the pulse would have without roughness.
     smooth_push = push_at(prestress_integral(smooth_profile), CELL_MIDDLES.size - 1)
@@ -119,10 +120,10 @@ def fate_of_pulse(run: Recorded, side: int, stop: float) -> Fate:
     """Return how far the pulse on one side of x = 0 has gone, and whether it died there.
 
     The pulse has gone as far as the outermost block that was released. It has died if all released
-    blocks have stuck again. The rough pre-stress ends at the distance ``stop``; a pulse that gets
-    there is no longer followed and counts as alive.
+    blocks have stuck again.
 
     side : 1 for the right side, -1 for the left
+    stop : distance at which the rough pre-stress ends; a pulse that gets there counts as alive
     """
     distances = side * run["x"]
     released = (distances > 0.0) & np.isfinite(run["release_time"])
@@ -153,7 +154,7 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
 def local_state(ensemble: Ensemble) -> dict[str, float]:
     """Compare final slip and front speed with steady pulses at the local and the mean pre-stress.
 
-    Both are in units of the steady pulse at the mean pre-stress.
+    Slip and speed are divided by those of the steady pulse at the mean pre-stress.
     """
     parameters = ensemble.parameters
     level, damping_ratio = parameters["level"], parameters["damping_ratio"]
@@ -192,8 +193,8 @@ def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]
     """Compare the slowness of fronts (time per distance) with that of steady fronts.
 
     slowness : mean over all runs, divided by the slowness of the steady pulse
-    slowness_off : largest deviation of a run from the mean of the slownesses of steady fronts at
-        the local pre-stress
+    slowness_off : largest relative deviation of a run from the slowness that theory predicts, which
+        is the mean over all blocks of the slowness of a steady front at the local pre-stress
     """
     exact_slownesses = 1.0 / front_speed(SPEED_LEVELS, ensemble.parameters["damping_ratio"])
     slownesses, local_slownesses = [], []
@@ -214,7 +215,9 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     """Return the rows of one ensemble under a stress boundary: ensemble, pulse and survival.
 
     Only the right pulse counts. Its death and its velocity are compared with the integral of the
-    pre-stress of its own run, and the survival curve with a random walk.
+    pre-stress of its own run. The survival curve is compared with that of a random walk.
+
+    smooth_push : push of the pulse without roughness (see `push_at`)
     """
     parameters = ensemble.parameters
     fates = [fate_of_pulse(run, 1, parameters["stop"]) for run in ensemble.runs]
@@ -248,7 +251,7 @@ def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, flo
 
     The velocity is half of the push. Its variance grows with distance like that of a random walk.
 
-    alive : rows of the part pulse
+    alive : rows of the part pulse, for the pulses that have not died
     variance_rate : variance of the push per distance, from `diffusivity`
     """
     errors = (alive["velocity"] - alive["exact_velocity"]).abs()
@@ -280,16 +283,22 @@ def prestress_integral(profile: Mapping[str, Any]) -> np.ndarray:
 
 
 def push_at(integral: np.ndarray, index: int) -> float:
-    """Return the push of a pulse at the cell with this index: the pre-stress integral from x_*.
+    """Return the push of a pulse, which is the integral of the pre-stress from x_* to the pulse.
 
-    The left front stops at x_* < 0, where the integral (see `prestress_integral`) is smallest.
+    The left front stops at x_* < 0, where the integral is smallest.
+
+    integral : integral up to each of CELL_MIDDLES, from `prestress_integral`
+    index : index of the cell that the pulse has reached
     """
     return float(integral[index] - integral[CELL_MIDDLES < 0.0].min())
 
 
 def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame:
-    """Return survival over LONG_DISTANCE for more seeds, by the balance of the pre-stress alone.
+    """Return the survival of more pulses over LONG_DISTANCE, without a simulation.
 
+    Each pulse dies where the integral of its pre-stress has fallen to 0.
+
+    ensemble : has the parameters of the rough pre-stress
     smooth_profile : the profile of the run without roughness
     """
     field_parameters = ensemble.profiles[0]["rough"] | {
@@ -317,11 +326,12 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
 def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     """Return the velocity of the right pulse at the end of its run, simulated and by theory.
 
-    The pulse has its largest velocity at its crest. By theory this is half of the integral of the
-    pre-stress from x_* to the origin of the wave that the crest meets there. Also return whether
-    the pulse is a crack: then the blocks near the nucleation are still sliding.
+    velocity : simulated velocity at the crest of the pulse, where it is largest
+    exact_velocity : half of the integral of the pre-stress from x_* to the position at which the
+        wave that meets the crest left the right front
+    is_crack : True if the blocks near the nucleation still slide
 
-    integral : of the pre-stress, up to each of CELL_MIDDLES
+    The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
     crest = crest_position(run, integral)
     integral_at_origin = float(np.interp(origin_on_front(run, crest), CELL_MIDDLES, integral))
@@ -350,10 +360,12 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
 
 
 def origin_on_front(run: Recorded, position: float) -> float:
-    """Return where the wave that is at a position at the end left the right front.
+    """Return the position at which a wave has left the right front.
 
     The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
     the end.
+
+    position : position of the wave at the end
     """
     is_on_front = (run["x"] > 0.0) & np.isfinite(run["release_time"])
     x, time = run["x"][is_on_front], run["release_time"][is_on_front]

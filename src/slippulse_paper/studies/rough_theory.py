@@ -17,15 +17,19 @@ from slippulse.theory.barrier import barrier_depth
 
 # The death rate is maximised over these barriers, given as -(stress of the barrier)/(mean level).
 RELATIVE_BARRIERS = np.geomspace(0.03, 10.0, 12)
-# -zeta(1/2): how far behind 0 a walk is absorbed whose steps are an Ornstein-Uhlenbeck process, in
-# units of their deviation times their correlation length (Doering, Hagan and Levermore 1987).
+# A random walk with exponentially correlated steps that ends at 0 is like a Brownian motion that
+# ends below 0. This is the distance from 0 to that end, divided by the standard deviation of the
+# steps and by their correlation length. It is -zeta(1/2) (Doering, Hagan and Levermore 1987).
 MILNE = 1.4603545088095868
 # Length of the field over which sums over the spectrum run, in correlation lengths.
 PERIOD_IN_CORRELATION_LENGTHS = 400
 
 
 def spectrum(parameters: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the wave numbers of a periodic rough field, and the variance that each contributes."""
+    """Return the wave numbers of a rough field, and the variance that each of them contributes.
+
+    The field is periodic here, so that the wave numbers are discrete.
+    """
     correlation_length, spacing = parameters["correlation_length"], parameters["spacing"]
     point_count = round(PERIOD_IN_CORRELATION_LENGTHS * correlation_length / spacing)
     wave_numbers = 2.0 * np.pi * np.fft.fftfreq(point_count, spacing)
@@ -64,17 +68,20 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 @cache
 def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: float) -> float:
-    """Return the exact critical depth of a barrier, computed once for ensembles of equal level."""
+    """Return the exact depth to which a pulse enters a barrier.
+
+    It is computed only once for all ensembles that have the same level.
+    """
     return barrier_depth(level, barrier, gamma, damping_ratio)
 
 
 def diffusivity(parameters: Mapping[str, Any]) -> float:
     """Return the variance of the integral of a rough field over a long distance, per distance.
 
-    It is the integral of the autocovariance of the field over all distances, which is 2 pi times
-    its power spectrum at the wave number 0. The spectrum is that of `spectrum`, proportional to
-    (1 + k^2 l^2)^-(H + 1/2), and its integral over k is the variance of the field. The integral of
-    this power is sqrt(pi) Gamma(H)/(l Gamma(H + 1/2)).
+    It is 2 pi times the power spectrum of the field at the wave number k = 0. The spectrum is
+    proportional to (1 + k^2 l^2)^-(H + 1/2), where l is the correlation length and H the Hurst
+    exponent, and its integral over k is the variance of the field. The gamma functions come from
+    this integral, which is sqrt(pi) Gamma(H)/(l Gamma(H + 1/2)) without the factor.
     """
     hurst, deviation = parameters["hurst"], parameters["deviation"]
     shape = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
@@ -86,11 +93,11 @@ def first_passage(
 ) -> np.ndarray:
     """Return the probability that the push of a pulse stays positive over a distance.
 
-    The push is the integral of the pre-stress from where the left front stopped up to the pulse,
-    and the pulse dies when it reaches 0. As the pulse advances, the push makes a random walk whose
-    steps are correlated. Far from 0 this is Brownian motion with drift. Near 0 the correlation
-    matters. It is taken into account by letting the Brownian motion end not at 0 but below it, at a
-    distance that is known exactly for exponential correlation (`MILNE`).
+    The push is the integral of the pre-stress from where the left front stopped up to the pulse.
+    The pulse dies when its push reaches 0. As the pulse advances, the push makes a random walk with
+    correlated steps. Far from 0 this is like a Brownian motion with drift. Near 0 the correlation
+    matters: the Brownian motion must end at a distance below 0, which is known exactly for
+    exponential correlation (`MILNE`).
 
     distance : distances over which pulses go on
     push : push of each pulse at the beginning; the two arrays are broadcast against each other
@@ -106,10 +113,10 @@ def first_passage(
 
 
 def balance_position(x: np.ndarray, prestress_integral: np.ndarray) -> float:
-    """Return the position x > 0 where the pre-stress on the way of the pulse has balanced to 0.
+    """Return the first position x > 0 up to which the integral of the pre-stress is 0.
 
-    The pre-stress is integrated from x_* < 0, where its integral up to x is smallest. Infinite if
-    the integral stays positive.
+    The integral starts at x_* < 0, where the left front stopped. This is where the integral from
+    any origin is smallest. The position is infinite if the integral from x_* stays positive.
 
     x : positions in ascending order
     prestress_integral : integral of the pre-stress up to each position, from any origin

@@ -1,7 +1,8 @@
 """Compare measured and derived limits of the time step, for every scheme and damping ratio.
 
-The measured limit is the largest step at which a lattice run stays stable. A growing mode makes
-slip velocities negative, so that blocks stick; in the runs of this study nothing sticks otherwise.
+The measured limit is the largest step at which a lattice run is stable. If the run is unstable, a
+growing wave makes slip velocities negative, so that blocks stick. For no other reason does a block
+stick in the runs of this study.
 """
 
 import math
@@ -20,18 +21,20 @@ from slippulse.solver.lattice import UnstableRun
 
 NEEDS = {"settings": ()}
 
-# No damping, the paper's figures (0.1), and the decades in which the form of the limit changes.
+# No damping, the damping ratio of the paper's figures (0.1), and one value in each decade.
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
-# The bisection searches between these fractions of the derived limit, to a relative resolution.
-# Orders with weak growth have a derived limit far below the step at which the growth is visible.
+# The bisection searches between these fractions of the derived limit, and ends at this relative
+# accuracy. The range is wide, because some orders grow so slowly just above their derived limit
+# that a run does not show it.
 SMALLEST_FRACTION, LARGEST_FRACTION = 0.7, 12.0
-RESOLUTION = 0.01
-# A mode beyond the bound grows from rounding in STEP_COUNT steps, before a wave crosses the blocks.
+RELATIVE_ACCURACY = 0.01
+# Numbers of sliding blocks on each side of x = 0, and of time steps. An unstable wave grows from
+# rounding errors to a visible size in so many steps. This is before a wave has crossed the blocks.
 BLOCK_COUNT, STEP_COUNT = 400, 400
-# No stress releases blocks at this pre-stress. Beyond walls of it the lattice stays at rest.
+# At this pre-stress no block is ever released. Walls of it enclose the sliding blocks.
 HELD_PRESTRESS = -1.0e9
 WALLS = ((BLOCK_COUNT + 0.5, HELD_PRESTRESS), (-BLOCK_COUNT - 0.5, HELD_PRESTRESS))
-# Number of steps between two checks for sticks; in a run that blows up, blocks stick repeatedly.
+# Number of time steps between two checks for sticks.
 CHECK_INTERVAL = 100
 # Pre-stress of both measurements, by the column of the table.
 PROFILES = {
@@ -46,8 +49,9 @@ PROFILES = {
 class StableFraction(NamedTuple):
     """The largest stable step divided by the derived limit.
 
-    ``place`` is "within" if the bisection found it. It is "below" or "above" if it lies beyond the
-    smallest or the largest fraction that was tried, and the fraction is then that end.
+    place : "within" if the bisection found the fraction. It is "below" if even the smallest
+        fraction is unstable, or "above" if even the largest one is stable. The fraction is then
+        the smallest or the largest one.
     """
 
     fraction: float
@@ -58,19 +62,26 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each scheme, order and damping ratio, with steps in units of dx.
 
     derived : the derived limit
-    measured, measured_rupture : the largest step at which nothing sticks, for each of PROFILES.
-        There are also its ratio to the derived limit (measured_ratio), and where it lies in the
-        searched range (measured_limit, see `StableFraction`).
+    measured, measured_rupture : the largest step at which no block sticks, for each of PROFILES
+    measured_ratio, measured_rupture_ratio : this step divided by the derived limit
+    measured_limit, measured_rupture_limit : ``place`` of `StableFraction`
     """
-    schemes = [("fixed_step", 1)]
-    schemes += [("localised", order) for order in ORDERS]
+    schemes_and_orders = [("fixed_step", 1)]
+    schemes_and_orders += [("localised", order) for order in ORDERS]
     rows = []
-    for (scheme, order), ratio in product(schemes, DAMPING_RATIOS):
-        derived = largest_step(scheme, order, ratio, 0.0)
-        row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": derived}
-        for name, profile in PROFILES.items():
-            stable = partial(is_stable, profile, derived, scheme, order, ratio)
-            fraction, place = largest_stable(stable)
+    for (scheme, order), damping_ratio in product(schemes_and_orders, DAMPING_RATIOS):
+        derived = largest_step(scheme, order, damping_ratio, 0.0)
+        row = {
+            "scheme": scheme,
+            "order": order,
+            "damping_ratio": damping_ratio,
+            "derived": derived,
+        }
+        for name, prestress in PROFILES.items():
+            is_stable_fraction = partial(
+                is_stable, prestress, derived, scheme, order, damping_ratio
+            )
+            fraction, place = largest_stable(is_stable_fraction)
             row[name] = derived * fraction
             row[f"{name}_ratio"] = fraction
             row[f"{name}_limit"] = place
@@ -78,19 +89,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def largest_stable(stable: Callable[[float], bool]) -> StableFraction:
-    """Find the largest stable fraction of the derived limit by bisection of its logarithm.
-
-    stable : function that returns True if a fraction is stable
-    """
+def largest_stable(is_stable_fraction: Callable[[float], bool]) -> StableFraction:
+    """Find the largest stable fraction of the derived limit by bisection of its logarithm."""
     lower, upper = SMALLEST_FRACTION, LARGEST_FRACTION
-    if not stable(lower):
+    if not is_stable_fraction(lower):
         return StableFraction(lower, "below")
-    if stable(upper):
+    if is_stable_fraction(upper):
         return StableFraction(upper, "above")
-    while upper > (1.0 + RESOLUTION) * lower:
+    while upper > (1.0 + RELATIVE_ACCURACY) * lower:
         middle = math.sqrt(lower * upper)
-        if stable(middle):
+        if is_stable_fraction(middle):
             lower = middle
         else:
             upper = middle
@@ -98,25 +106,31 @@ def largest_stable(stable: Callable[[float], bool]) -> StableFraction:
 
 
 def is_stable(
-    profile: Prestress, derived: float, scheme: str, order: int, ratio: float, fraction: float
+    prestress: Prestress,
+    derived: float,
+    scheme: str,
+    order: int,
+    damping_ratio: float,
+    fraction: float,
 ) -> bool:
-    """Run a lattice with a fraction of the derived limit as step; return True if nothing sticks.
+    """Run a lattice with a fraction of the derived limit as step; return True if no block sticks.
 
     The run ends at the first stick.
     """
     step = fraction * derived
     scene = Scene(
         boundary="stress",
-        prestress=profile,
-        # A chain between walls reverses when a wave has crossed it.
+        prestress=prestress,
+        # When waves from the walls have crossed the blocks, these stick for a physical reason. The
+        # run ends before.
         duration=min(STEP_COUNT * step, 0.8 * BLOCK_COUNT),
         dx=1.0,
         gamma=0.0,
-        beta=ratio,
+        beta=damping_ratio,
         release="total",
         scheme=scheme,
         max_step=1e-4,
-        # The textbook scheme has no adjustable order.
+        # The textbook scheme does not use the order, but a Scene needs one.
         order=max(order, 3),
     )
     # A Scene refuses a step beyond the limit, so the step is set afterwards.
@@ -125,6 +139,7 @@ def is_stable(
     lattice.call_steps = CHECK_INTERVAL
 
     def stop_at_first_stick(_progress: float) -> None:
+        """Stop the run if a block has stuck."""
         if lattice.tally.sticks > 0:
             raise UnstableRun
 

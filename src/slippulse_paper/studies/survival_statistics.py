@@ -1,7 +1,7 @@
 """Survival statistics of pulses, some of which die and some of which outlive their simulation.
 
-A pulse that is still alive at the end of its run has gone at least its recorded distance. Such a
-`Fate` is censored: the estimates use the distance, but count no death.
+A pulse that is alive at the end of its run would have gone farther than its recorded distance.
+Statisticians call such an observation censored. The estimates use its distance, but count no death.
 """
 
 import math
@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from scipy.stats import CensoredData, beta, chi2, ecdf
 
-# Two-sided confidence of all bands and intervals, and the probability beyond each of their ends.
+# Confidence level of all bands and intervals, and the probability beyond each of their two ends.
 CONFIDENCE = 0.95
 PROBABILITY_BEYOND_END = 0.5 * (1.0 - CONFIDENCE)
 
@@ -53,21 +53,21 @@ def survival(fates: Sequence[Fate]) -> pd.DataFrame:
 
 
 def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
-    """Return the number of deaths per distance beyond ``start``, with its confidence interval.
+    """Return the number of deaths divided by the distance that all pulses have gone in total.
 
-    The distance is the sum over all pulses of how far they went beyond ``start``.
+    Only deaths and distances beyond ``start`` count. The result also has the confidence interval.
     """
     passed = [fate for fate in fates if fate.distance > start]
     deaths = sum(fate.died for fate in passed)
-    distance = sum(fate.distance - start for fate in passed)
+    total_distance = sum(fate.distance - start for fate in passed)
     low, high = poisson_interval(deaths)
     return {
         "pulses": len(fates),
         "deaths": deaths,
-        "distance": distance,
-        "rate": deaths / distance,
-        "rate_low": low / distance,
-        "rate_high": high / distance,
+        "distance": total_distance,
+        "rate": deaths / total_distance,
+        "rate_low": low / total_distance,
+        "rate_high": high / total_distance,
         "confidence": CONFIDENCE,
     }
 
@@ -75,9 +75,9 @@ def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
 def survival_exponent(fates: Sequence[Fate], start: float) -> dict[str, float]:
     """Return the exponent a of a survival fraction that falls as distance^-a beyond ``start``.
 
-    This is the estimate of maximum likelihood, with its confidence interval: the number of deaths
-    divided by the sum of log(distance/start) over all pulses that passed ``start``. All are NaN if
-    no pulse died there.
+    The estimate of maximum likelihood is the number of deaths beyond ``start``, divided by the sum
+    of log(distance/start) over all pulses that passed ``start``. The result also has its confidence
+    interval. The exponent and the interval are NaN if no pulse died beyond ``start``.
     """
     passed = [fate for fate in fates if fate.distance > start]
     deaths = sum(fate.died for fate in passed)
