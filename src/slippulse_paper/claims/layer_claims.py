@@ -228,10 +228,10 @@ def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
 
 
 def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
-    """Return True for each rupture that stops at a barrier on the left and has a pulse on the right.
+    """Return True for each rupture that stops at a barrier and has a pulse on the other side.
 
-    The left front must stop before the balance position. The pulse must have passed the second last
-    station by the end.
+    The left front must stop before the balance position. The pulse on the right must have passed
+    the second last station by the end.
 
     coarser : see `finest_rows`
     """
