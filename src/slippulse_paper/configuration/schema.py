@@ -725,7 +725,11 @@ class LayerMap(Block):
     fracture_energy: Distinct[Positive] = key(
         "fracture energies of slip weakening [tau_0^2/(2 gamma)]"
     )
-    cells: int = key("number of grid cells over the height of the layer", ge=10, le=200)
+    cells: int = key(
+        "number of grid cells over the height of the layer; a second grid has half as many",
+        ge=10,
+        le=200,
+    )
     chunks: int = key(
         "number of jobs among which the points of the map are split, at most one per point",
         1,

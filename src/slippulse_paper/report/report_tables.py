@@ -34,6 +34,8 @@ STUDIED_QUANTITIES = (
 # Parts of the study of the two-dimensional layer, by their name in the table of its runs.
 LAYER_PARTS = {
     "pulse": "displacement held",
+    "coupled": "displacement held, strength follows pressure",
+    "free": "top free to rise",
     "step": "displacement held, step of pre-stress",
     "crack": "stress held",
     "barrier": "stress held, barrier on the left",
@@ -271,7 +273,9 @@ def layer_runs(study: pd.DataFrame) -> str:
     rows = []
     for part, title in LAYER_PARTS.items():
         runs = study[study["part"] == part].sort_values("cells", kind="stable")
-        finest = runs.drop_duplicates(["gamma", "tau0", "weakening", "before"], keep="last")
+        finest = runs.drop_duplicates(
+            ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
+        )
         for tau0, group in finest.groupby("tau0"):
             # The column cells has the number of cells over the height of the layer.
             lengths = group["gamma"] * group["weakening"] * group["cells"]
