@@ -436,7 +436,7 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
         # The argument is the tolerance of the claim, which does not limit the gap or the exponent.
         extra_verdict=lambda _tolerance: verdict_on_both,
         further={
-            "median distance from the last release to x_minus, over all sweeps [H]": gap,
+            "median gap in H between the last release and x_minus, over all sweeps": gap,
             "exponent": power,
         },
         template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
