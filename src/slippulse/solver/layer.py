@@ -61,7 +61,7 @@ class LayerScene:
     # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. No
     # wave is faster, so this changes no event at x until the time x + trail.
     trail: float = math.inf
-    # Damping beta: stresses are increased by beta times their rate, as the elastic force in `Scene`.
+    # Damping: beta times the rate of each stress is added to it, as to the elastic force in `Scene`.
     beta: float = 0.0
 
     def __post_init__(self) -> None:
@@ -333,14 +333,12 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # Without a trail, all columns behind the wave are advanced, including those at x < 0.
     trail = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation, trail)
-    all_fields = (fields, fields, fields)
-    if scene.beta > 0.0:
-        all_fields = (fields, *(with_own_stresses(fields) for _ in range(2)))
-    advance_layer(elastic, all_fields, fault, dt, (0, steps - 1), columns)
+    every_field = all_fields(elastic, fields)
+    advance_layer(elastic, every_field, fault, dt, (0, steps - 1), columns)
     # The energy is balanced at the time of the velocities, between two times of the stresses.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
-    advance_layer(elastic, all_fields, fault, dt, (steps - 1, steps), columns)
+    advance_layer(elastic, every_field, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     residual = float(abs(energy - work_without_friction) / work_of_prestress)
     return LayerRun(
@@ -353,10 +351,18 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     )
 
 
-def with_own_stresses(fields: Fields) -> Fields:
-    """Return fields with the same velocities and with other stresses, which are 0."""
-    stresses = {name: np.zeros_like(getattr(fields, name)) for name in ("sxx", "syy", "sxy")}
-    return fields._replace(**stresses)
+def all_fields(elastic: Elastic, fields: Fields) -> tuple[Fields, Fields, Fields]:
+    """Return the elastic fields, those one step before, and those that include damping.
+
+    All of them share the velocities. Without damping they also share the stresses.
+    """
+    if elastic.damping == 0.0:
+        return fields, fields, fields
+    names = ("sxx", "syy", "sxy")
+    earlier, total = (
+        fields._replace(**{name: getattr(fields, name).copy() for name in names}) for _ in range(2)
+    )
+    return fields, earlier, total
 
 
 class LayerState(NamedTuple):
