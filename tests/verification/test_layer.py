@@ -35,9 +35,7 @@ def test_a_strip_that_slides_as_one_has_the_strength_of_its_velocity():
     fault.nucleus[:], fault.sliding[:], fault.strength[:] = False, True, 0.85
     all_fields = layer.all_fields(elastic, fields)
     everything = layer.Columns(centre=x.size // 2, nucleation=x.size, trail=x.size)
-    layer.advance_layer(
-        elastic, (fields, fields, fields), fault, 0.5 * h, (0, 6 * cells), everything
-    )
+    layer.advance_layer(elastic, all_fields, fault, 0.5 * h, (0, 6 * cells), everything)
     # On the grid the velocity still rings a little.
     velocity, middle = fields.vx[0, x.size // 2], x.size // 2
     steady = 1.0 / (1.0 + velocity / (scene.slip_scale * rate))

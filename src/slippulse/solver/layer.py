@@ -61,7 +61,7 @@ class LayerScene:
     # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. No
     # wave is faster, so this changes no event at x until the time x + trail.
     trail: float = math.inf
-    # Damping: beta times the rate of each stress is added to it, as to the elastic force in `Scene`.
+    # Damping: beta times its rate is added to each stress, as to the elastic force in `Scene`.
     beta: float = 0.0
 
     def __post_init__(self) -> None:
