@@ -308,5 +308,5 @@ def test_energy_limits_the_slip_and_the_crossing_time_limits_the_sliding(evidenc
 
 def test_the_table_of_runs_has_one_row_for_each_part_and_level(study):
     rows = layer_runs(study("layer")).splitlines()[2:]
-    assert len(rows) == 6
-    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 4 + 1 + 2
+    assert len(rows) == 9
+    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 3 + 3 + 4 + 1 + 2

@@ -494,9 +494,9 @@ class SlowFront:
         # rounding errors are negligible.
         is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
         largest_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if is_negative else negligible)
-        # The last sample before the first one whose motion is too large.
+        # The last sample before the first one whose motion is too large, or the entry itself.
         is_negligible = np.append(np.abs(motions) <= largest_motion, False)
-        last = int(np.argmin(is_negligible)) - 1
+        last = max(0, int(np.argmin(is_negligible)) - 1)
         motion = float(motions[last])
         is_end_of_panel = last == ENTRY_FRACTIONS.size - 1
         moves_on = not is_negative or is_end_of_panel or motions[last + 1] >= motion

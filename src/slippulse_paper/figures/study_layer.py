@@ -1,8 +1,9 @@
-"""Pulses of the layer in the plane: what sets speed, width and slip, and which are steady.
+"""Pulses of the layer in the plane: their speed, width, slip and stability.
 
 The fracture energy is always divided by the energy G_0 that the layer releases. The width of a
-pulse is compared with sqrt(2/gamma - 1), which is the distance that a front at the speed of the
-longitudinal wave runs while a shear wave crosses the layer.
+pulse is compared with sqrt(2/gamma - 1) layer thicknesses: at this distance behind the tip of a
+rupture, shear waves from the top of the layer reach the fault. (The tip runs at the speed of the
+longitudinal wave.)
 """
 
 import numpy as np
@@ -29,7 +30,7 @@ from slippulse.plotting.style import (
 NEEDS = {"studies": ["layer", "layer_map"]}
 
 QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
-# Parameters that distinguish the pulses.
+# Parameters that identify a pulse.
 PULSE_COLUMNS = ["gamma", "tau0", "fracture_energy"]
 # The paper's formulas, and the pulse in one dimension with the same friction.
 THEORY_COLUMNS = [
@@ -42,6 +43,7 @@ GAMMA_COLOURS = (BLUE, YELLOW, GREEN, PURPLE)
 COUPLING_COLOURS = (BLUE, ORANGE, BLACK)
 # Colours end at this fraction of the largest velocity, which only the tip of the pulse has.
 BRIGHTEST_FRACTION = 0.6
+# Markers of what the pulses of a point of the map do.
 OUTCOMES: dict[str, Look] = {
     "steady": {"marker": "o", "color": GREEN, "label": "steady"},
     "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"}
@@ -60,7 +62,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         `drawn_pulses`)
     free : the same for pulses in a layer whose top is free to rise
     coupled : width along the path of pulses whose strength depends on the normal stress
-    map : outcome as a function of gamma and fracture energy
+    map : what a pulse does (column outcome) for each gamma and fracture energy
     """
     study = tables["layer"]
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
@@ -111,12 +113,15 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _crossing_width(gamma: float | pd.Series) -> float | pd.Series:
-    """Return sqrt(2/gamma - 1), the width that pulses are compared with; gamma may be a Series."""
+    """Return sqrt(2/gamma - 1), the width with which pulses are compared, in layer thicknesses."""
     return np.sqrt(2.0 / gamma - 1.0)
 
 
 def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
-    """Draw the velocity in the layer, and the shear front that starts from its top at the tip."""
+    """Draw the velocity in the layer, and as a dashed line the shear front from its top.
+
+    The shear front leads from the top of the layer, above the tip of the rupture, to the fault.
+    """
     # One row for each height and one column for each position.
     grid = field.pivot(index="y", columns="x", values="velocity")
     brightest = BRIGHTEST_FRACTION * float(grid.to_numpy().max())
@@ -237,7 +242,10 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
-    """Mark what the pulses of each point do, as a function of fracture energy and width."""
+    """Mark what the pulse of each point does: whether it is steady, grows, dies, or neither.
+
+    The axes are the fracture energy and the width sqrt(2/gamma - 1).
+    """
     for outcome, rows in points.groupby("outcome"):
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
         axes.plot(rows["fracture_energy"], _crossing_width(rows["gamma"]), **look)
