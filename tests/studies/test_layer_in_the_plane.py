@@ -61,6 +61,22 @@ def test_pulses_are_followed_until_some_of_them_split(study):
     assert drift[far["whole"].to_numpy()].abs().max().max() < 0.012
 
 
+def test_damping_keeps_pulses_from_splitting(study):
+    damped = study("layer").query("part == 'damped' and station == 3")
+    assert damped["split_position"].isna().all() and (damped["sliding_again"] == 0.0).all()
+    # Among them are all pulses that split without damping on one grid at least.
+    split = study("layer").query("part == 'far'").dropna(subset=["split_position"])
+    assert set(damped["fracture_energy"]) == set(split["fracture_energy"])
+    # Width and slip converge, here from 20 to 40 cells.
+    values = damped.pivot(
+        index="fracture_energy", columns="cells", values=["pulse_width", "pulse_slip"]
+    )
+    assert (
+        values.xs(40, axis="columns", level="cells") / values.xs(20, axis="columns", level="cells")
+        - 1.0
+    ).abs().max().max() < 0.05
+
+
 def test_the_plane_widens_the_pulse_that_friction_has_narrowed(pulses):
     last = finest(pulses)
     formula, line = last["paper_pulse_width"], last["damped_pulse_width"]

@@ -89,7 +89,8 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
     # The part far has one more pulse, which belongs to the part step.
     decided = decided[decided.index.isin(pulses.index)]
-    return Qualitative(decided=list(decided), template_values=split_pulses(evidence))
+    values = split_pulses(evidence, evidence.tolerance(id))
+    return Qualitative(decided=list(decided), template_values=values)
 
 
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
@@ -170,7 +171,7 @@ def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
 
 
 def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.Series:
-    """Return whether each pulse is steady on both grids, for the part far or coupled.
+    """Return whether each pulse is steady on both grids, for the part far, damped or coupled.
 
     A pulse is steady if speed and slip change by less than the tolerance between the last two
     stations, and if no point slides again behind it. The answer is None if the pulse splits, since
@@ -188,11 +189,13 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
     return steady[0].astype(object).where(is_decided, None)
 
 
-def split_pulses(evidence: Evidence) -> dict[str, float]:
+def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses of the part far split, with which fracture energies, and where.
 
     Positions are those on the finest grid and on the next coarser one. One more pulse was followed,
-    which belongs to the part step.
+    which belongs to the part step. With damping, all pulses that split are counted again.
+
+    tolerance : see `steady_on_two_grids`
     """
     rows = rows_at_station(evidence)
     pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
@@ -200,6 +203,7 @@ def split_pulses(evidence: Evidence) -> dict[str, float]:
     counted, step = followed[is_counted], followed[~is_counted]
     split = counted[counted["split_position"].notna()]
     coarser = finest_rows(rows, "far", coarser=1).loc[split.index, "split_position"]
+    damped = steady_on_two_grids(evidence, "damped", tolerance)
     return {
         "pulses": float(len(pulses)),
         "followed": float(len(counted)),
@@ -214,6 +218,8 @@ def split_pulses(evidence: Evidence) -> dict[str, float]:
         "step_split": float(step["split_position"].min()),
         # Positions are in units of H at the largest gamma, and in longer units at smaller gamma.
         "distance": float(followed["sample_position"].min()),
+        "damped": float(len(damped)),
+        "damped_steady": float(sum(answer is True for answer in damped)),
         "near_distance": float(pulses["sample_position"].min()),
     }
 
@@ -426,7 +432,7 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
     The largest changes are those of pulses that are steady: of speed and slip between the last two
     stations (far_speed, far_slip), and of the slip from the first station on (from_near_slip).
     """
-    numbers = split_pulses(evidence)
+    numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
     is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", np.inf)]
     for name, quantity, before_last in (
         ("far_speed", "speed", 1),

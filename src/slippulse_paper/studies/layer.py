@@ -97,6 +97,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     pulse : pulses at several fracture energies and levels
     far : the same pulses, farther away
+    damped : those that split, with the paper's damping
     patch : short runs, until the region in which the rupture starts has stuck
     step : pulses that enter another pre-stress
     free : pulses in a layer whose top is free to rise
@@ -121,7 +122,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return the rows of the parts pulse and far.
+    """Return the rows of the parts pulse, far and damped.
 
     Those of the part pulse also have the numbers of `one_dimensional_theory`.
     """
@@ -143,7 +144,7 @@ def pulse_rows(gamma: float) -> Rows:
 def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS.
 
-    A pulse that splits is followed on all finer grids, too.
+    A pulse that splits is followed on all finer grids, too, and on two grids with damping.
     """
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
@@ -164,6 +165,10 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
         near += measured("pulse", scene, run, 1, positions)
         if is_followed:
             far += followed("far", scene, run, 1)
+    if any(math.isfinite(row["split_position"]) for row in far):
+        for cells in followed_grids:
+            scene = replace(long_scene, cells=cells, beta=BETA)
+            far += followed("damped", scene, simulate_layer(scene), 1)
     return near, far
 
 
