@@ -18,7 +18,8 @@ MAX_NAMED_DIFFERENCES = 4
 class Alterations:
     """Differences between a configuration and the shipped one, for each resolved simulation.
 
-    ``simulations`` has the list of changes, as `changes` returns them, for each simulation.
+    ``simulations`` has the list of changes of each simulation, by name. `changes` explains its
+    entries.
     """
 
     def __init__(self, shipped: Configuration, altered: Configuration) -> None:
@@ -31,7 +32,7 @@ class Alterations:
             shipped_simulation = shipped_simulations.get(name, simulation)
             before = resolve(shipped_simulation, shipped.model, {})
             after = resolve(simulation, altered.model, {})
-            # The extent of samples follows from other keys, and beta replaces the damping ratio.
+            # These keys follow from other keys, whose changes are listed.
             derived_keys = {"samples.extent"}
             if "beta" in after:
                 derived_keys.add("damping_ratio")
@@ -41,9 +42,10 @@ class Alterations:
             ]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
-        """Return one line on the differences in some simulations and below some keys.
+        """Return one line that names altered parameters, such as 'altered: b = 0.05'.
 
-        An example is 'altered: b = 0.05'. The text is empty if nothing differs.
+        These are the parameters of ``simulations``, and the values of the configuration whose
+        dotted key begins with one of ``keys``. The text is empty if nothing differs.
         """
         relevant_changes: list[Mapping[str, Any]] = []
         for name in simulations:
@@ -52,7 +54,7 @@ class Alterations:
         for change in changes(self.shipped.given(), self.altered.given()):
             if change["key"].startswith(relevant_keys):
                 relevant_changes.append(change)
-        # Several simulations may have the same change.
+        # Several simulations may have the same change, which is named once.
         equations = [*dict.fromkeys(map(_equation, relevant_changes))]
         named = equations[:MAX_NAMED_DIFFERENCES]
         if len(equations) > MAX_NAMED_DIFFERENCES:
@@ -60,10 +62,11 @@ class Alterations:
         return f"altered: {', '.join(named)}" if named else ""
 
     def overridden_defaults(self) -> list[str]:
-        """Return a line for each altered default of the model that some simulations override."""
+        """Return a warning for each altered default of the model that some simulations override."""
         lines = []
         for change in changes(self.shipped.model.plain(), self.altered.model.plain()):
             key = change["key"]
+            # A simulation with its own beta does not use the default damping ratio either.
             overriding_keys = {key, "beta"} if key == "damping_ratio" else {key}
             overriding = [
                 name
@@ -85,7 +88,7 @@ def _equation(change: Mapping[str, Any]) -> str:
 
 
 def _value_text(value: Any) -> str:
-    """Return a value of the configuration as text, if it is short enough for a note."""
+    """Return a value of the configuration as text, or 'other values' if it is nested or empty."""
     if value is None:
         return "absent"
     if not isinstance(value, list | dict):

@@ -29,27 +29,27 @@ TABLES = frozenset({"points", "file", "rough"})
 def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return an overlay in which each profile that names a file also has the points of the file.
 
-    Relative paths are relative to ``folder``. Raises ConfigError with the profile, the file and the
-    row if a file cannot be used.
+    The path of a file may be relative to ``folder``. Raises ConfigError with the profile, the file
+    and the row if a file cannot be used.
     """
 
-    def read(profile: Any, key: str) -> Any:
-        """Return a profile with its points. ``key`` is its place in the configuration."""
+    def add_points(profile: Any, key: str) -> Any:
+        """Return a profile, whose dotted key is ``key``, with the points of its file."""
         names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
-        # If there are points, this overlay was read before.
+        # A profile has both if this function has been called before.
         if not names_file or "points" in profile:
             return profile
         try:
-            columns = _columns(folder / profile["file"], in_si="layer" in profile)
+            columns = _columns_of_file(folder / profile["file"], in_si="layer" in profile)
         except ValueError as error:
             raise ConfigError(f"{key}.file: {error}") from None
         return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
-    return _changed(overlay, read)
+    return _with_changed_profiles(overlay, add_points)
 
 
-def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
-    """Return positions and stresses of a file, in m and Pa for a scene with a layer."""
+def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
+    """Return the positions and stresses in a file, in m and Pa or in non-dimensional units."""
     if in_si:
         x, stress = read_in_si(path)
         return x.tolist(), stress.tolist()
@@ -57,8 +57,13 @@ def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
     return table.x, table.prestress
 
 
-def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
-    """Return an overlay in which each scene and each profile of a simulation is changed."""
+def _with_changed_profiles(
+    overlay: Mapping[str, Any], change: Callable[[Any, str], Any]
+) -> dict[str, Any]:
+    """Return an overlay in which each scene and each profile of a simulation is changed.
+
+    ``change`` gets a scene or a profile, and its dotted key.
+    """
     changed = dict(overlay)
     scenes, simulations = overlay.get("scenes"), overlay.get("simulations")
     # An overlay has not been checked yet, and so any value may have any type.
@@ -68,14 +73,14 @@ def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> d
         }
     if isinstance(simulations, Mapping):
         changed["simulations"] = {
-            name: _changed_simulation(simulation, f"simulations.{name}", change)
+            name: _with_changed_list(simulation, f"simulations.{name}", change)
             for name, simulation in simulations.items()
         }
     return changed
 
 
-def _changed_simulation(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
-    """Return a simulation in which each profile is changed."""
+def _with_changed_list(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
+    """Return a simulation in which each entry of its list of profiles is changed."""
     if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
         return simulation
     profiles = [
@@ -114,8 +119,8 @@ def _prestress_of_table(text: str) -> Prestress:
     """Return the pre-stress of a profile with a table, given as JSON, which can be cached."""
     profile = json.loads(text)
     x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
-    rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
-    return Prestress.through(x, tau, **rest)
+    gaussians = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
+    return Prestress.through(x, tau, **gaussians)
 
 
 def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
