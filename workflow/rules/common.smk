@@ -305,7 +305,8 @@ def setting(key):
 def check_packages_and_lock():
     """Exit if installed packages differ from requirements.lock, or if another run uses this folder.
 
-    Otherwise take the lock of this folder, and print which altered defaults have no effect.
+    Otherwise take the lock of this folder, and print which altered defaults of the model some
+    simulations override.
     """
     if problem := package_problem(PROJECT / "requirements.lock"):
         sys.exit(problem)

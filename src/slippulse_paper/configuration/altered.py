@@ -30,15 +30,17 @@ class Alterations:
         for name, simulation in self._altered_simulations.items():
             # A simulation that is not shipped is compared with itself under the shipped model.
             shipped_simulation = shipped_simulations.get(name, simulation)
-            before = resolve(shipped_simulation, shipped.model, {})
-            after = resolve(simulation, altered.model, {})
-            # These keys follow from other keys, whose changes are listed.
-            derived_keys = {"samples.extent"}
+            # Presets are not compared, and so no accuracy is given.
+            before = resolve(shipped_simulation, shipped.model, accuracy={})
+            after = resolve(simulation, altered.model, accuracy={})
+            # This key follows from others, whose changes are listed.
+            omitted_keys = {"samples.extent"}
             if "beta" in after:
-                derived_keys.add("damping_ratio")
+                # A simulation with beta does not use the damping ratio.
+                omitted_keys.add("damping_ratio")
             all_changes = changes(before, after)
             self.simulations[name] = [
-                change for change in all_changes if change["key"] not in derived_keys
+                change for change in all_changes if change["key"] not in omitted_keys
             ]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
@@ -50,9 +52,9 @@ class Alterations:
         relevant_changes: list[Mapping[str, Any]] = []
         for name in simulations:
             relevant_changes += self.simulations.get(name, [])
-        relevant_keys = tuple(keys)
+        first_parts = tuple(keys)
         for change in changes(self.shipped.given(), self.altered.given()):
-            if change["key"].startswith(relevant_keys):
+            if change["key"].startswith(first_parts):
                 relevant_changes.append(change)
         # Several simulations may have the same change, which is named once.
         equations = [*dict.fromkeys(map(_equation, relevant_changes))]

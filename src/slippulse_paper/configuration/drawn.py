@@ -47,9 +47,9 @@ CONDITIONS: dict[str, Callable[[Run], bool]] = {
 
 
 def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Return a line for each figure and simulation of which the figure cannot draw any run.
+    """Return a line for each simulation of a figure if the figure can draw none of its runs.
 
-    ``draws`` has the DRAWS of each figure, which has a key of CONDITIONS for each simulation.
+    ``draws`` has the DRAWS of each figure: a key of CONDITIONS for each of its simulations.
     """
     accuracy, simulations = accuracy_of(config), all_simulations(config)
     problems = []

@@ -57,8 +57,10 @@ def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
     if "promise" in accuracy:
         # A required accuracy also limits the step that a simulation sets itself.
         step = min(step, accuracy["max_step"])
-    # A grid study of a fixed spacing uses longer steps instead of larger spacings.
-    return step * simulation["coarser"] if "fixed" in simulation["spacing"] else step
+    if "fixed" in simulation["spacing"]:
+        # A grid study uses larger steps, since it cannot use larger spacings.
+        return step * simulation["coarser"]
+    return step
 
 
 def _default_time_step(simulation: Mapping, run: Run, friction: Friction) -> float:

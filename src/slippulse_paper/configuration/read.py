@@ -128,25 +128,26 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
     return merged
 
 
-def _parse_texts(value: Any, path: str = "") -> Any:
+def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
     """Return values of the command line, with each text read as YAML.
 
-    Snakemake leaves some numbers as texts. ``path`` is the dotted key of ``value``.
+    Snakemake leaves some numbers as texts. ``path`` has the keys that lead to ``value``.
     """
     if isinstance(value, Mapping):
-        prefix = f"{path}." if path else ""
-        return {key: _parse_texts(entry, f"{prefix}{key}") for key, entry in value.items()}
+        return {key: _parse_texts(entry, (*path, key)) for key, entry in value.items()}
     if isinstance(value, list):
         return [_parse_texts(entry, path) for entry in value]
     if not isinstance(value, str):
         return value
-    if path == "preset" and value.isalnum():
+    if path == ("preset",) and value.isalnum():
         # The name of a preset, such as 01, stays text.
         return value
     try:
         scalar = _load(value)
     except (YAMLError, ConfigError):
-        raise ConfigError(f"{path}: {short_repr(value)}; allowed: a plain value") from None
+        problem = f"{dotted(path)}: {short_repr(value)}"
+        raise ConfigError(f"{problem}; allowed: a plain value") from None
+    # A text that looks like a list or a mapping stays text.
     is_scalar = not isinstance(scalar, Mapping | list)
     return scalar if is_scalar else value
 
@@ -205,6 +206,7 @@ def _reason_of_parser(error: MarkedYAMLError) -> str:
         mark = error.context_mark
     line = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
+        # The message continues with the values of the key.
         return f"{line}{problem.partition(' with value')[0]}; allowed: each key once"
     return f"not YAML ({line}{problem[:120]}); {LIKE_SHIPPED}"
 
