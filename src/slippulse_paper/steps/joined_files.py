@@ -54,6 +54,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     for path, chunk, numbers in zip(paths, chunks, run_numbers, strict=True):
         if len(chunk) != lattices * len(numbers):
             raise UnreadableFile(path, NOT_ONE_SWEEP)
+        # Each row gets the number of its lattice, and the number of its run in the sweep.
         chunk.index = pd.MultiIndex.from_product([range(lattices), numbers])
     # The chunk with the first run determines the order of the columns.
     first_runs = [numbers[0] for numbers in run_numbers]
@@ -93,6 +94,7 @@ def join_grid_studies(
     if sum(counts) != len(measured):
         raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
+        # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets
