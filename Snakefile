@@ -41,8 +41,8 @@ onstart:
     # Without the profile of this folder, Snakemake starts a separate process for each job.
     if workflow.execution_settings.use_threads:
         WORKERS.start(workflow.cores)
-        # A limit of the rate of jobs lets Snakemake consider all waiting jobs again and again, which
-        # takes a twentieth of the processor time. Local jobs need no limit.
+        # With a limit of the rate of jobs, Snakemake considers all waiting jobs many times per
+        # second. This takes a twentieth of the processor time, and local jobs need no limit.
         workflow.scheduler.job_rate_limiter = None
 
 

@@ -46,8 +46,8 @@ def small_sweep(config: dict, name: str) -> dict:
     simulation = copy.deepcopy(config["simulations"][name])
     for profile in simulation.get("profiles", []):
         seeds = profile.get("rough", {}).get("seed")
-        if isinstance(seeds, list):
-            profile["rough"]["seed"] = seeds[:SEEDS]
+        if isinstance(seeds, dict):
+            profile["rough"]["seed"] = {"from": 1, "to": SEEDS}
     for key, count in MAX_VALUES.items():
         values = simulation.get(key, [])
         if not name.startswith("regimes") and len(values) > count:

@@ -89,7 +89,7 @@ def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
     for (boundary, role, _, regime), part in drawn.table.groupby(SHAPE):
         corners = part[["left", "right"]].to_numpy()
         shapes.setdefault((boundary, role), []).append((regime, corners))
-    for run in pd.concat([drawn.measured[sweep] for sweep in phases.DRAWN]).itertuples():
+    for run in pd.concat([drawn.measured[sweep] for sweep in phases.LEVEL_COUNTS]).itertuples():
         levels, on_line = [run.left, run.right], run.left * run.right == 0.0
         without_line = on_line and (max(levels) > 0.0 or levels == [0.0, 0.0])
         if run.exact_regime not in REGIMES or without_line:

@@ -9,9 +9,15 @@ import xarray as xr
 import slippulse as sp
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.problems import ConfigError
+from slippulse_paper.configuration.profiles import ExpandedProfiles
 from slippulse_paper.configuration.read import read_config, read_overlay
-from slippulse_paper.configuration.resolve import all_simulations, resolve, scene_simulation
-from slippulse_paper.configuration.runs import profile_labels
+from slippulse_paper.configuration.resolve import (
+    all_simulations,
+    corners,
+    resolve,
+    scene_simulation,
+)
+from slippulse_paper.configuration.runs import profile_labels, run_count
 
 POINTS = ((-2.0, 0.3), (0.0, 1.0), (3.0, 0.4), (3.0, 0.2))
 TEXT = "x,tau\n-2,0.3\n0,1\n3,0.4\n3,0.2\n"
@@ -165,6 +171,45 @@ def test_profiles_of_a_sweep_become_points_with_one_rough_profile_per_seed(shipp
     )
     chunk = profile_labels(sweep | {"chunk": [2, 2]})
     assert [label["profile"] for label in chunk] == [1, 1, 2, 3, 4]
+
+
+def test_lists_of_a_rough_profile_give_all_combinations_with_the_seeds_fastest(shipped):
+    lists = {"level": [0.3, 0.4], "hurst": [0.2, 0.5], "seed": {"from": 3, "to": 5}}
+    sweep = resolved_of({"simulations": {"mine": profile_sweep({"rough": ROUGH | lists})}}, shipped)
+    expected = [
+        {**ROUGH, "level": level, "hurst": hurst, "seed": seed}
+        for level in (0.3, 0.4)
+        for hurst in (0.2, 0.5)
+        for seed in (3, 4, 5)
+    ]
+    scenes, _ = expand(sweep)
+    for scene, background in zip(scenes[::2], expected, strict=True):
+        assert scene.prestress == sp.Prestress.through(*sp.rough(**background), width=1.0)
+    assert run_count(sweep) == len(scenes) == 24
+    labels = profile_labels(sweep)
+    assert [label["profile"] for label in labels] == [*np.repeat([1, 2, 3, 4], 6)]
+    # The checks before a run take the first and the last seed of each ensemble.
+    seeds = [profile["rough"]["seed"] for profile in ExpandedProfiles(corners(sweep)["profiles"])]
+    assert seeds == [3, 5] * 4
+
+
+def test_a_range_of_seeds_is_a_list_of_them(shipped):
+    scenes = []
+    for seeds in ([3, 4, 5], {"from": 3, "to": 5}):
+        sweep = profile_sweep({"rough": ROUGH | {"seed": seeds}})
+        scenes.append(expand(resolved_of({"simulations": {"mine": sweep}}, shipped))[0])
+    assert scenes[0] == scenes[1]
+
+
+def test_the_runs_of_a_long_range_are_counted_without_making_their_profiles(shipped):
+    sweep = profile_sweep({"rough": ROUGH | {"seed": {"from": 0, "to": 10**12}}})
+    resolved = resolved_of({"simulations": {"mine": sweep}}, shipped)
+    assert run_count(resolved) == 2 * (10**12 + 1)
+
+
+def profile_sweep(*profiles: dict) -> dict:
+    """Return a simulation with these profiles, on blocks that resolve them."""
+    return SWEEP | {"profiles": [*profiles], "dx": [0.02]}
 
 
 def test_profiles_without_a_table_have_no_labels(shipped):

@@ -11,8 +11,7 @@ rule join:
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        # A sweep of a million runs took 1.2 kB for each run. Other sweeps may take twice as much.
-        mem_mb=lambda wildcards, attempt: attempt * (1000 + joined_runs(wildcards) // 400),
+        mem_mb=lambda wildcards, input, attempt: attempt * joined_megabytes(wildcards, input),
     params:
         settings=joined_settings,
         code=code_of("join"),

@@ -238,13 +238,24 @@ def note_of(needs, *keys):
     return ALTERED.note(sorted(simulations), settings)
 
 
+@cache
+def sweep_of(name):
+    """Return a resolved simulation."""
+    return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY)
+
+
+@cache
+def bound_of(name):
+    """Return the upper bound on the cost of each chunk of a simulation."""
+    return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
+
+
 # Snakemake evaluates the params of all waiting jobs whenever a job has ended.
 @cache
 def settings_of(job):
     """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8."""
     name, _, chunk = job.partition("/")
-    simulation = SIMULATIONS[name]
-    whole_sweep = resolve(simulation, CONFIG.model, ACCURACY)
+    whole_sweep = sweep_of(name)
     sweep = {**whole_sweep, "chunk": chunk_numbers(chunk)} if chunk else whole_sweep
     scheme = sweep["scheme"]
     # Under a displacement boundary no number depends on the fraction.
@@ -259,8 +270,7 @@ def settings_of(job):
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         # The bound is a function, since most rules do not use it and it takes time.
-        "bound": cache(lambda: bound_of_sweep(whole_sweep, simulation.chunks)),
-        "runs": run_count(whole_sweep),
+        "bound": lambda: bound_of(name),
     }
 
 
@@ -401,10 +411,14 @@ def joined_settings(wildcards):
     return {"kind": kind, "record": SIMULATIONS[name].record if name in SIMULATIONS else []}
 
 
-def joined_runs(wildcards):
-    """Return the number of runs in a joined file, or 0 for a study, which is small."""
-    _, name = JOINED[wildcards.joined]
-    return settings_of(name)["runs"] if name in SIMULATIONS else 0
+def joined_megabytes(wildcards, input):
+    """Return the memory that is needed to join the files of chunks, in MB."""
+    kind, name = JOINED[wildcards.joined]
+    if kind == "data":
+        return 1000 + 3 * input.size_mb
+    # A table of a million runs took 1.2 kB for each run. Other tables may take twice as much.
+    runs = run_count(sweep_of(name)) if name in SIMULATIONS else 0
+    return 1000 + runs // 400
 
 
 def study_of(wildcards):

@@ -9,6 +9,9 @@ rule study:
     log:
         "results/logs/study/{study}.log",
     priority: 2
+    resources:
+        # A study has all its data in memory.
+        mem_mb=lambda wildcards, input, attempt: attempt * (1000 + 2 * input.size_mb),
     params:
         settings=study_settings,
         code=lambda wildcards: code_of(

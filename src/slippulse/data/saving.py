@@ -4,7 +4,6 @@ The files are written with h5py, in the layout of netCDF-4, and contain no time 
 data therefore give files with equal bytes.
 """
 
-from io import BytesIO
 from pathlib import Path
 
 import h5py
@@ -22,8 +21,12 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """
     if configuration():
         dataset = dataset.assign_attrs(configuration=configuration())
-    content = BytesIO()
-    with h5py.File(content, "w", track_order=True) as file:
+    write_whole(path, lambda unfinished: _write(dataset, unfinished))
+
+
+def _write(dataset: xr.Dataset, path: Path) -> None:
+    """Write a Dataset to a new file."""
+    with path.open("w+b") as target, h5py.File(target, "w", track_order=True) as file:
         file.attrs.update(dataset.attrs)
         stored = {}
         for name, variable in dataset.variables.items():
@@ -43,4 +46,3 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
             dimensions = () if name in dataset.sizes else variable.dims
             for axis, dimension in enumerate(dimensions):
                 stored[name].dims[axis].attach_scale(stored[dimension])
-    write_whole(path, lambda unfinished: unfinished.write_bytes(content.getbuffer()))

@@ -54,5 +54,7 @@ def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceI
     values = np.empty(item.shape, item.dtype)
     item.read(*spaces, values)
     if values.dtype.kind == "O":
-        values = np.array([text.decode() for text in values.flat], dtype=str).reshape(values.shape)
+        # An array of fixed-width texts would need the memory of the longest text for every run.
+        texts = [text.decode() for text in values.flat]
+        values = np.array(texts, dtype=object).reshape(values.shape)
     return values

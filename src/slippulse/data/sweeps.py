@@ -54,7 +54,10 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     variables: dict[str, tuple] = {}
     for name in runs[0].attrs:
         if name != "versions":
-            variables[name] = "point", np.array([run.attrs[name] for run in runs])
+            values = [run.attrs[name] for run in runs]
+            # An array of fixed-width texts would need the memory of the longest text for every run.
+            dtype = object if isinstance(values[0], str) else None
+            variables[name] = "point", np.array(values, dtype=dtype)
     fields = [*FRONT_VARIABLES] if "fronts" in record else []
     fields += FIELD_VARIABLES if "fields" in record else []
     if fields:

@@ -1,7 +1,8 @@
 """Positions and speeds of fronts and trailing edges.
 
 The release times of the blocks give the path of a front, and their stick times give the path of a
-trailing edge. Each function takes the name of these times as ``edge``.
+trailing edge. The argument ``edge`` of a function selects one of them by the name of its times,
+"release_time" or "stick_time".
 """
 
 from typing import NamedTuple
@@ -10,9 +11,9 @@ import numpy as np
 
 from ..data.points import AnyRun
 
-# A front pauses if one wait between two neighbouring blocks takes a large part of the time in which
-# the measured stretch is crossed: more than this fraction, and more than this number of times the
-# mean wait.
+# A front pauses between two neighbouring blocks if it waits there for a large part of the time of
+# the whole fitted path: for more than this fraction, and also for more than this number of mean
+# waits.
 PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS = 0.2, 4.0
 # A straight line is fitted to at least this number of blocks.
 MIN_FITTED_BLOCKS = 4
@@ -32,16 +33,18 @@ NO_LINE = Line(np.nan, np.nan, np.nan)
 def front_path(
     run: AnyRun, side: str = "right", edge: str = "release_time"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the event times of the blocks on one side, and the distances of these blocks from 0.
+    """Return the path of a front (or trailing edge) on one side: its times, and its distances.
 
-    Both arrays are in the order of distance. Blocks without the event are left out.
+    There is one time and one distance from x = 0 for each block that was released (or has stuck).
+    Both arrays are in the order of distance.
     """
-    x, time = np.asarray(run["x"]), np.asarray(run[edge])
+    distances, times = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
-        x, time = -x[::-1], time[::-1]
-    start = np.searchsorted(x, 0.0)
-    reached = np.isfinite(time[start:])
-    return time[start:][reached], x[start:][reached]
+        distances, times = -distances[::-1], times[::-1]
+    start = np.searchsorted(distances, 0.0)
+    distances, times = distances[start:], times[start:]
+    was_reached = np.isfinite(times)
+    return times[was_reached], distances[was_reached]
 
 
 def limit_time(run: AnyRun) -> float:
@@ -55,21 +58,26 @@ def limit_time(run: AnyRun) -> float:
 
 
 def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") -> float:
-    """Return the time until which a front (or trailing edge) is known; infinite if always."""
-    if np.isinf(limit_time(run)) or edge == "stick_time":
-        return limit_time(run)
+    """Return the time until which a front (or trailing edge) is known; infinite if always.
+
+    A front that is faster than the waves stays known after `limit_time`, because no wave from the
+    unknown part of the rupture catches up with it. The front is known until the end, unless the
+    block ahead of its last release is in the unknown part at the end.
+    """
+    limit = limit_time(run)
+    if np.isinf(limit) or edge == "stick_time":
+        return limit
     times, distances = front_path(run, side)
     if not times.size:
-        return limit_time(run)
-    # No wave from the unknown part of the rupture catches up with a supersonic front. The front is
-    # unknown only if nothing is known of the block ahead of it. If slip was not recorded, this
-    # is so from the time at which a wave from the limit of the exact solution reaches the block.
-    ahead = (1.0 if side == "right" else -1.0) * (distances[-1] + run.attrs["dx"])
-    wave_arrival = limit_time(run) + abs(ahead - run.attrs["limit_position"])
-    block = int(np.argmin(np.abs(np.asarray(run["x"]) - ahead)))
+        return limit
+    next_distance = distances[-1] + run.attrs["dx"]
+    next_position = next_distance if side == "right" else -next_distance
     if "slip" in run:
-        is_unknown = np.isnan(run["slip"][block])
+        next_block = int(np.argmin(np.abs(np.asarray(run["x"]) - next_position)))
+        is_unknown = np.isnan(run["slip"][next_block])
     else:
+        # The unknown part begins at the limit position, and spreads at the wave speed 1.
+        wave_arrival = limit + abs(next_position - run.attrs["limit_position"])
         is_unknown = wave_arrival <= run.attrs["end_time"]
     return float(np.max(times)) if is_unknown else np.inf
 
@@ -81,30 +89,32 @@ def front_position(
 
     It is NaN before the first event, and where an exact solution does not know it.
     """
-    times, distances = front_path(run, side, edge)
+    block_times, block_distances = front_path(run, side, edge)
     time = np.asarray(time, dtype=float)
-    if times.size == 0:
+    if block_times.size == 0:
         return np.full(time.shape, np.nan)
-    # If a block is released after a block that is farther away, the front does not move back.
-    latest = np.maximum.accumulate(times)
+    # The front has reached a block when this block and all blocks before it have been released.
+    arrivals = np.maximum.accumulate(block_times)
     # np.interp needs increasing times. Of several blocks with the same time, the farthest is kept.
-    is_farthest = np.concatenate([np.diff(latest) > 0.0, [True]])
-    distance = np.interp(time, latest[is_farthest], distances[is_farthest])
-    is_unknown = (time < latest[0]) | (time > known_until(run, side, edge))
+    is_farthest = np.concatenate([np.diff(arrivals) > 0.0, [True]])
+    distance = np.interp(time, arrivals[is_farthest], block_distances[is_farthest])
+    is_unknown = (time < arrivals[0]) | (time > known_until(run, side, edge))
     return np.where(is_unknown, np.nan, distance)
 
 
 def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
-    """Return when a front reaches a distance, and how long it waited at most between two blocks.
+    """Return the time at which a front reaches a distance, and its longest wait on the way there.
 
-    Both are NaN if the front does not reach the distance.
+    A wait is the time from the release of a block to that of the next block. Both numbers are NaN
+    if the front does not reach the distance.
     """
     times, distances = front_path(run, side)
     if times.size == 0 or distances[-1] < distance:
         return np.nan, np.nan
-    latest = np.maximum.accumulate(times)
-    waits = np.diff(latest[: np.searchsorted(distances, distance) + 1])
-    return float(np.interp(distance, distances, latest)), float(np.max(waits, initial=0.0))
+    # The front has reached a block when this block and all blocks before it have been released.
+    arrivals = np.maximum.accumulate(times)
+    waits = np.diff(arrivals[: np.searchsorted(distances, distance) + 1])
+    return float(np.interp(distance, distances, arrivals)), float(np.max(waits, initial=0.0))
 
 
 def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
@@ -117,14 +127,14 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     if an exact solution does not know the whole path.
     """
     times, distances = front_path(run, side)
-    chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
-    if chosen.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
+    is_in_window = distances >= (1.0 - window) * np.max(distances, initial=0.0)
+    if is_in_window.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
         return NO_LINE
-    times, distances = times[chosen], distances[chosen]
+    times, distances = times[is_in_window], distances[is_in_window]
     waits = np.diff(np.maximum.accumulate(times))
-    longest_wait = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
+    shortest_pause = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
     # The number of the first block after the last pause; 0 if there is no pause.
-    after_pause = int(np.max(np.flatnonzero(waits > longest_wait) + 1, initial=0))
+    after_pause = int(np.max(np.flatnonzero(waits > shortest_pause) + 1, initial=0))
     if 0 < after_pause <= times.size - MIN_FITTED_BLOCKS:
         line = fit_line(times[after_pause:], distances[after_pause:])
         if line.slope > 1.0:

@@ -1,8 +1,9 @@
-"""Estimate the parameters of the published space-time figure from what can be read off it.
+"""Estimate the parameters of the published space-time figure from readings.
 
-For each release rule and each of several damping ratios, a study has fitted spacing, pre-stress and
-gamma to the readings. `interpolate_fits` interpolates these fits between the damping ratios, and
-`infer_parameters` finds the best damping ratio and its confidence regions (profile likelihood).
+A reading is a number that was read off the figure, such as the slope of the front. For each release
+rule and each of several damping ratios, a study has fitted the pre-stress tau_0 and gamma to the
+readings. `interpolate_fits` interpolates these fits between the damping ratios. `infer_parameters`
+finds the damping ratio that fits best, and its confidence regions (profile likelihood).
 """
 
 from functools import partial
@@ -20,81 +21,119 @@ INDEPENDENT_PREFIX = "independent "
 
 
 def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
-    """Interpolate the fits of one release rule between damping ratios, cubic in log(beta/dx).
+    """Interpolate the fits of one release rule between damping ratios.
+
+    The interpolation is a cubic spline in log(beta/dx).
+
+    profile : table of the fits, with one row for each studied damping ratio and reading
 
     The result has one row for each of INTERPOLATED_RATIOS damping ratios. Its columns are
-    damping_ratio, dx, tau0, gamma, tau0_error, gamma_error, chi2, and the pull of each reading,
-    (predicted - drawn)/reading_error. Chi-square is the sum of squares of the independent pulls,
-    in which errors that several readings share are taken into account.
+    damping_ratio, dx, tau0, gamma, tau0_error, gamma_error, chi2, and one column for each reading
+    with its pull, (predicted - drawn)/reading_error.
+    """
+    studied = _one_row_per_ratio(profile)
+    studied_log_ratios = np.log(studied.index.to_numpy())
+    log_ratios = np.linspace(studied_log_ratios[0], studied_log_ratios[-1], INTERPOLATED_RATIOS)
+    values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
+    fits = pd.DataFrame(values, columns=studied.columns)
+    # Several readings share a part of their errors, so chi-square is the sum of the squares of the
+    # independent pulls. Readings without a weight were not fitted.
+    fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
+    fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
+    chi_square = (fitted_pulls**2).sum(axis=1)
+    independent_columns = [name for name in fits if name.startswith(INDEPENDENT_PREFIX)]
+    fits = fits.drop(columns=independent_columns)
+    return fits.assign(chi2=chi_square, damping_ratio=np.exp(log_ratios))
+
+
+def _one_row_per_ratio(profile: pd.DataFrame) -> pd.DataFrame:
+    """Return the fits with one row for each studied damping ratio.
+
+    Each reading has a column with its pull, and one with its independent pull, whose name begins
+    with INDEPENDENT_PREFIX. Independent pulls are combinations of pulls that are not correlated
+    with each other (see `independent_combinations`).
     """
     by_reading = partial(profile.pivot, index="damping_ratio", columns="reading")
     pulls = by_reading(values="pull")
     independent = by_reading(values="independent_pull").add_prefix(INDEPENDENT_PREFIX)
     columns = ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
-    # The fit at each studied damping ratio.
     numbers = profile.groupby("damping_ratio")[columns].first()
-    studied = pd.concat([pulls, independent, numbers], axis=1)
-    studied_log_ratios = np.log(studied.index.to_numpy())
-    log_ratios = np.linspace(studied_log_ratios[0], studied_log_ratios[-1], INTERPOLATED_RATIOS)
-    values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
-    fits = pd.DataFrame(values, columns=studied.columns)
-    # Only readings with a weight are fitted.
-    fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
-    chi_square = (fitted_pulls**2).sum(axis=1)
-    fits = fits.drop(columns=independent.columns)
-    return fits.assign(chi2=chi_square, damping_ratio=np.exp(log_ratios))
+    return pd.concat([pulls, independent, numbers], axis=1)
 
 
 def independent_combinations(errors: np.ndarray, shared_errors: np.ndarray) -> np.ndarray:
     """Return a matrix that turns deviations of readings into independent ones with errors of 1.
 
     errors : error of each reading
-    shared_errors : part of this error that all readings with such a part have in common
+    shared_errors : the part of this error that the readings have in common; 0 for a reading that
+        shares no error with others, whose deviation is only divided by its error
 
-    A reading without a shared error is only divided by its error.
+    The matrix is the inverse of the Cholesky factor of the covariance of the readings.
     """
     covariance = np.outer(shared_errors, shared_errors) + np.diag(errors**2 - shared_errors**2)
     return np.linalg.inv(np.linalg.cholesky(covariance))
 
 
 def chi_square_rise(confidence: float, parameters: int = 1) -> float:
-    """Return how far chi-square rises above its minimum at the edge of a confidence region."""
+    """Return how far chi-square rises from its minimum to the edge of a confidence region.
+
+    confidence : probability that the region contains the true parameters, such as 0.95
+    parameters : number of parameters that the region limits
+    """
     return float(chdtri(parameters, 1.0 - confidence))
 
 
 def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
     """Return the fit of each release rule to the published figure, and compare the rules.
 
-    The result has a fit for each release rule by its name, the fit with the smallest chi-square as
-    "best", and the difference of chi-square between the worst and the best rule as "difference". A
-    fit has chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, the pulls by reading,
-    and regions: the confidence region of the damping ratio by confidence level, with NaN for an end
-    that lies outside the studied damping ratios.
+    The result maps the name of each release rule to its fit (see `_fit_of_rule`), "best" to the fit
+    with the smallest chi-square, and "difference" to the difference of chi-square between the worst
+    and the best rule.
 
+    table : the table of the study published_figure
     part : "profile" for fits without the drawn arrows, "arrows" for fits with them
 
     Source: profile likelihood, where the readings have Gaussian errors.
     """
     fits: dict[str, Any] = {}
     for release, rows in table[table["part"] == part].groupby("release"):
-        by_ratio = interpolate_fits(rows)
-        best = by_ratio.loc[by_ratio["chi2"].idxmin()]
-        names = ("chi2", "damping_ratio", "dx", "tau0", "gamma")
-        fit: dict[str, Any] = {name: float(best[name]) for name in names}
-        # Three parameters are fitted: tau_0, gamma and the damping ratio.
-        dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
-        fit |= {"release": release, "dof": dof, "regions": {}}
-        rise = by_ratio["chi2"] - by_ratio["chi2"].min()
-        for confidence in CONFIDENCE_LEVELS:
-            inside = chi_square_rise(confidence) - rise >= 0.0
-            ends = by_ratio.loc[inside, "damping_ratio"].iloc[[0, -1]]
-            # If the region extends to the first or last studied ratio, its end there is unknown.
-            is_outermost = ends.index.isin([by_ratio.index[0], by_ratio.index[-1]])
-            low, high = ends.where(~is_outermost)
-            fit["regions"][confidence] = float(low), float(high)
-        fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
-        fits[str(release)] = fit
+        fits[str(release)] = _fit_of_rule(rows) | {"release": release}
     best_fit = min(fits.values(), key=lambda fit: fit["chi2"])
     worst_fit = max(fits.values(), key=lambda fit: fit["chi2"])
     return fits | {"best": best_fit, "difference": worst_fit["chi2"] - best_fit["chi2"]}
+
+
+def _fit_of_rule(rows: pd.DataFrame) -> dict[str, Any]:
+    """Return the fit at the best damping ratio, from the rows of one release rule.
+
+    It has chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, the pulls by reading, and
+    the `confidence_regions`.
+    """
+    by_ratio = interpolate_fits(rows)
+    best = by_ratio.loc[by_ratio["chi2"].idxmin()]
+    names = ("chi2", "damping_ratio", "dx", "tau0", "gamma")
+    fit: dict[str, Any] = {name: float(best[name]) for name in names}
+    # Three parameters are fitted: tau_0, gamma and the damping ratio.
+    fit["dof"] = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
+    fit["regions"] = confidence_regions(by_ratio)
+    fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
+    return fit
+
+
+def confidence_regions(fits: pd.DataFrame) -> dict[float, tuple[float, float]]:
+    """Return the lower and upper end of the damping ratio for each of CONFIDENCE_LEVELS.
+
+    An end is NaN if it lies outside the studied damping ratios.
+
+    fits : fits by damping ratio, in ascending order
+    """
+    rise = fits["chi2"] - fits["chi2"].min()
+    regions = {}
+    for confidence in CONFIDENCE_LEVELS:
+        is_inside = rise <= chi_square_rise(confidence)
+        ends = fits.loc[is_inside, "damping_ratio"].iloc[[0, -1]]
+        # If the region extends to the first or last studied ratio, its end there is unknown.
+        is_outermost = ends.index.isin([fits.index[0], fits.index[-1]])
+        low, high = ends.where(~is_outermost)
+        regions[confidence] = float(low), float(high)
+    return regions

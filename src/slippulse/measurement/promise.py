@@ -1,8 +1,9 @@
-"""The accuracy that a simulation promises: the numbers it covers, and a test by a grid study.
+"""The accuracy that a simulation promises: which numbers it covers, and whether it is kept.
 
-A simulation with the setting ``accuracy`` promises a relative uncertainty for some of its measured
-numbers. `covered_numbers` finds them for a run. `judge_promises` compares the promise with the
-uncertainties of a grid study, and `summarise_promises` reports the result in one line.
+A simulation with the setting ``accuracy`` promises a largest relative uncertainty for some of its
+measured numbers. `covered_numbers` returns the names of these numbers for a run. `judge_promises`
+compares the promise with the uncertainties of a grid study, and `summarise_promises` reports the
+result in one line.
 """
 
 import math
@@ -16,8 +17,8 @@ from ..model.prestress import prestress_from
 SPEED_NUMBERS = {"front_speed_left": ("left",), "front_speed_right": ("right",)}
 TRANSITION_NUMBERS = ("transition_time", "transition_length")
 PULSE_NUMBERS = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
-# For each boundary, the numbers that a promise can cover, and the sides whose fronts must be fast
-# for it to do so.
+# For each boundary, the numbers that a promise can cover. A number is covered only if the front is
+# fast on each of the sides after its name.
 REQUIRED_FAST_SIDES: dict[str, dict[str, tuple[str, ...]]] = {
     "displacement": {
         **SPEED_NUMBERS,
@@ -26,37 +27,54 @@ REQUIRED_FAST_SIDES: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "stress": SPEED_NUMBERS | dict.fromkeys((*TRANSITION_NUMBERS, "largest_velocity"), ()),
 }
-# A front in a lower pre-stress is hardly faster than the waves. Its error falls only with a power
-# of 2/3 to 1 of dx, and in negative pre-stress three spacings can agree and still be far from the
-# limit.
+# A front counts as fast if the pre-stress on its path is at least this. In a lower pre-stress the
+# front is hardly faster than the waves, and its error falls only with a power of 2/3 to 1 of dx. In
+# negative pre-stress, three spacings can agree with each other and still be far from the limit.
 MIN_PRESTRESS = 0.05
 # If damping is weaker, oscillations of the lattice decide how long the left front stands still.
 MIN_DAMPING_RATIO = 0.05
-# The left front becomes slower and slower. A larger fraction of its path would need a finer
-# lattice.
+# The left front becomes slower and slower. To measure when it has covered a larger fraction of its
+# path, the lattice would have to be finer.
 MAX_COVERED_FRACTION = 0.95
+# The summary names at most this number of runs that missed their promise.
+MAX_REPORTED_MISSES = 5
 
 
 def covered_numbers(run: Mapping, fraction: float) -> set[str]:
-    """Return the names of the numbers of a measured row that a promise covers.
+    """Return the names of the measured numbers that a promise covers; none for a flagged run.
 
-    fraction : the part of |x_minus| at which the transition under a stress boundary is measured
+    run : the row of a run in the measured table
+    fraction : under a stress boundary, the transition is measured when the left front has covered
+        this fraction of the balance distance |x_minus|
     """
     if run["run_flags"]:
         return set()
-    fast, required = fast_sides(run), REQUIRED_FAST_SIDES[run["boundary"]]
-    names = {name for name, sides in required.items() if fast.issuperset(sides)}
+    fast = fast_sides(run)
+    required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
+    names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}
+    names -= _excluded_numbers(run, fraction)
+    return {name for name in names if math.isfinite(run.get(name, math.nan))}
+
+
+def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
+    """Return the names of numbers whose accuracy cannot be promised for this run.
+
+    As the spacing falls, they do not tend to a limit, or their errors fall too slowly.
+
+    run, fraction : see `covered_numbers`
+    """
+    names: set[str] = set()
     if run.get("pulse_state") != "steady":
-        names.difference_update(PULSE_NUMBERS)
-    # The largest velocity tends to a limit only where a front is arrested on the left, and the
-    # pulse runs into pre-stress 0. Between two fronts that continue to run, it grows without limit.
+        names.update(PULSE_NUMBERS)
+    # The largest velocity grows without limit between two fronts that continue to run. It tends to
+    # a limit only if the left front is arrested and the pulse runs into pre-stress 0.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
-        names.discard("largest_velocity")
+        names.add("largest_velocity")
     if run["boundary"] == "stress":
         is_resolved = run.get("transition_state") == "resolved" and fraction <= MAX_COVERED_FRACTION
         if not is_resolved or run["damping_ratio"] < MIN_DAMPING_RATIO:
-            names.difference_update(TRANSITION_NUMBERS)
-    return {name for name in names if math.isfinite(run.get(name, math.nan))}
+            names.update(TRANSITION_NUMBERS)
+    return names
 
 
 def fast_sides(run: Mapping) -> set[str]:
@@ -66,19 +84,19 @@ def fast_sides(run: Mapping) -> set[str]:
     Otherwise, the profile is evaluated up to the end of the path. A side whose front has an unknown
     path is not among the returned sides.
     """
-    sides = set()
     if "lowest_prestress_left" in run:
         lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
-        # A sweep may mix tables and other profiles; the numbers of the others are NaN.
+        # In a sweep that also has other profiles than tables, these numbers of the others are NaN.
         if all(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
+    sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):
         # The position of the front at the end, by the straight line that was fitted to its path.
         speed, intercept = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
         front = sign * (intercept + speed * run["end_time"])
         if math.isfinite(front):
-            crossed = np.linspace(0.0, front, int(abs(front) / run["dx"]) + 2)
-            if np.min(prestress_from(run)(crossed)) >= MIN_PRESTRESS:
+            crossed_positions = np.linspace(0.0, front, int(abs(front) / run["dx"]) + 2)
+            if np.min(prestress_from(run)(crossed_positions)) >= MIN_PRESTRESS:
                 sides.add(side)
     return sides
 
@@ -86,14 +104,15 @@ def fast_sides(run: Mapping) -> set[str]:
 def judge_promises(
     study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float
 ) -> pd.DataFrame:
-    """Add the columns ``promised`` and ``kept`` to a grid study.
+    """Add to a grid study whether each of its numbers keeps the promised uncertainty.
 
+    study : the grid study, with one row for each number of each run
     measured : the measured table at the finest spacing
     promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
     fraction : see `covered_numbers`
 
-    ``promised`` is NaN if the number is not covered. ``kept`` is "true", "false", or empty text if
-    the number is not covered.
+    The new column ``promised`` has the promise, and ``kept`` is "true" or "false". If the promise
+    does not cover a number, ``promised`` is NaN and ``kept`` is an empty text.
     """
     flags = measured["run_flags"].astype(object).fillna("")
     rows = measured.assign(run_flags=flags).to_dict("records")
@@ -107,21 +126,28 @@ def judge_promises(
 
 
 def summarise_promises(study: pd.DataFrame, promise: float) -> str:
-    """Report in one line how many runs kept their promise, and the largest misses.
+    """Report in one line how many runs kept their promise, and which runs missed it.
+
+    Of each run that missed it, the worst number is reported with its relative uncertainty.
 
     study : a grid study with the columns that `judge_promises` adds
     """
     if not math.isfinite(promise):
         return "its spacing is user-defined and promises nothing"
     missed = study[study["kept"] == "false"]
-    covered_runs = study.loc[study["kept"] != "", "point"].nunique()
-    kept_runs = covered_runs - missed["point"].nunique()
-    text = f"accuracy {promise:g} kept by {kept_runs} of {covered_runs} runs"
+    covered_count = study.loc[study["kept"] != "", "point"].nunique()
+    kept_count = covered_count - missed["point"].nunique()
+    text = f"accuracy {promise:g} kept by {kept_count} of {covered_count} runs"
     relative = (missed["uncertainty"] / missed["value"].abs()).fillna(np.inf)
-    worst = []
-    for point, errors in relative.groupby(missed["point"]):
-        worst.append(f"{point} ({missed.loc[errors.idxmax(), 'quantity']} {errors.max():.1e})")
-    if worst:
-        text += f"; missed by {', '.join(worst[:5])}{' ...' if len(worst) > 5 else ''}"
-    uncovered_runs = study["point"].nunique() - covered_runs
-    return text + (f"; {uncovered_runs} have no number that it covers" if uncovered_runs else "")
+    misses = []
+    for point, uncertainties in relative.groupby(missed["point"]):
+        quantity = missed.loc[uncertainties.idxmax(), "quantity"]
+        misses.append(f"{point} ({quantity} {uncertainties.max():.1e})")
+    if misses:
+        text += f"; missed by {', '.join(misses[:MAX_REPORTED_MISSES])}"
+    if len(misses) > MAX_REPORTED_MISSES:
+        text += " ..."
+    uncovered_count = study["point"].nunique() - covered_count
+    if uncovered_count:
+        text += f"; {uncovered_count} have no number that it covers"
+    return text

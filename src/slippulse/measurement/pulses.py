@@ -1,7 +1,7 @@
 """The leading pulse of a finished run: the pulse behind the front on the right.
 
-`leading_pulse` measures it. The other functions measure shapes in the frame of the pulse, whose
-coordinate xi = distance - front is 0 at the front and negative behind it.
+`leading_pulse` measures it. The functions that need the shape of the pulse use the frame that moves
+with it. The coordinate of this frame is xi = x - front, which is negative behind the front.
 """
 
 from typing import NamedTuple
@@ -37,7 +37,6 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
 
     window : the last fraction of the front's path, from which its speed is measured
     """
-    end, dx = run.attrs["end_time"], run.attrs["dx"]
     speed = fit_front(run, window).slope
     start = np.searchsorted(run["x"], 0.0)
     distance = np.asarray(run["x"])[start:]
@@ -59,64 +58,84 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         leading = pulses[-1]
         leading_velocity[leading] = velocity[leading]
     peak, peak_distance = parabola_peak(distance, leading_velocity)
-    stick_times, stuck_distances = front_path(run, edge="stick_time")
-    width, final_slip = np.nan, np.nan
-    behind_peak = stuck_distances < peak_distance
-    if np.count_nonzero(behind_peak) >= 4 and pulses:
-        # The trailing edge is extrapolated, at the front speed, from the four blocks that stuck
-        # last.
-        last_distances = stuck_distances[behind_peak][-4:]
-        elapsed = end - stick_times[behind_peak][-4:]
-        trailing = float(np.mean(last_distances + speed * elapsed))
-        width = front - trailing
-        # The final slip is that of stuck blocks closely behind the trailing edge, which are not
-        # remains of the nucleation.
-        in_outer_half = (distance > 0.5 * trailing) & (distance < trailing - 2.0 * dx)
-        has_stuck = in_outer_half & (velocity <= 0.0)
-        if has_stuck.any():
-            farthest = distance[has_stuck].max()
-            is_near = distance > farthest - max(0.5 * width, 4.0 * dx)
-            final_slip = float(np.mean(slip[has_stuck & is_near]))
+    trailing_edge = _trailing_edge(run, peak_distance, speed) if pulses else np.nan
+    width = front - trailing_edge
+    # The slip is measured at stuck blocks behind the trailing edge. Those in the inner half of its
+    # path are left out, because the nucleation has influenced them.
+    dx = run.attrs["dx"]
+    is_in_outer_half = (distance > 0.5 * trailing_edge) & (distance < trailing_edge - 2.0 * dx)
+    has_stuck = is_in_outer_half & (velocity <= 0.0)
+    slip_length = max(0.5 * width, 4.0 * dx)
     return LeadingPulse(
         front=front,
         speed=speed,
         width=width,
         peak_velocity=peak,
         peak_distance=peak_distance,
-        slip=final_slip,
+        slip=_mean_near_end(distance[has_stuck], slip[has_stuck], slip_length),
         pulses=len(pulses),
     )
+
+
+def _mean_near_end(distance: np.ndarray, values: np.ndarray, length: float) -> float:
+    """Return the mean of the values within a length from the largest distance; NaN if none."""
+    if not distance.size:
+        return np.nan
+    is_near_end = distance > distance.max() - length
+    return float(np.mean(values[is_near_end]))
+
+
+def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
+    """Return the distance of the trailing edge from x = 0 at the end of a run.
+
+    The four blocks behind the peak that stuck last are extrapolated to the end at the front speed.
+    NaN if there are fewer of them.
+    """
+    stick_times, distances = front_path(run, edge="stick_time")
+    is_behind_peak = distances < peak_distance
+    if np.count_nonzero(is_behind_peak) < 4:
+        return np.nan
+    last_distances = distances[is_behind_peak][-4:]
+    elapsed = run.attrs["end_time"] - stick_times[is_behind_peak][-4:]
+    return float(np.mean(last_distances + speed * elapsed))
 
 
 def front_at_end(
     run: AnyRun, distance: np.ndarray, velocity: np.ndarray, speed: float
 ) -> tuple[float, bool]:
-    """Return the distance of the right front at the end, and True if the front has stopped.
+    """Return the distance of the right front from x = 0 at the end, and True if it has stopped.
 
-    The distance is NaN if no block was released, or if an exact solution does not know it. The
-    arrays have the blocks on the right.
+    The distance is NaN if no block was released, or if an exact solution does not know it.
+
+    distance, velocity : distances and slip velocities of the blocks on the right
+    speed : front speed
     """
     release_times, released_distances = front_path(run)
     if not released_distances.size or np.isfinite(known_until(run)):
         return np.nan, False
-    # The next block has not been released: the front is at most one block beyond the last release.
-    ahead, dx = float(speed * (run.attrs["end_time"] - release_times[-1])), run.attrs["dx"]
-    last_distance = released_distances[-1]
-    # The front has stopped if the last released block is at rest and if, at its speed, the front
-    # would have released the next block by now.
+    last_distance, dx = float(released_distances[-1]), run.attrs["dx"]
+    # The front moves on at its speed after the last release.
+    moved_on = float(speed * (run.attrs["end_time"] - release_times[-1]))
+    # It has stopped if it should have released the next block by now, and if the last released
+    # block is at rest.
     at_rest = not velocity[np.searchsorted(distance, last_distance)] > 0.0
-    if at_rest and not 0.0 <= ahead <= dx:
-        return float(last_distance), True
-    return float(last_distance) + min(max(ahead, 0.0), dx), False
+    if at_rest and not 0.0 <= moved_on <= dx:
+        return last_distance, True
+    # Since the next block has not been released, the front has not reached it.
+    return last_distance + min(max(moved_on, 0.0), dx), False
 
 
 def sliding_stretches(velocity: np.ndarray) -> list[slice]:
-    """Return the pulses among neighbouring blocks, in the order of the blocks.
+    """Return the pulses in a row of blocks: the slices of neighbouring blocks that slide.
 
-    The last one is the leading pulse, at any velocity. Much slower stretches are left out.
+    velocity : slip velocities of the blocks
+
+    The last stretch of sliding blocks is the leading pulse. Stretches that are much slower than it
+    are left out.
     """
-    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False))
-    stretches = list(map(slice, edges[0::2].tolist(), edges[1::2].tolist()))
+    # Blocks at which a stretch begins, and blocks behind the end of a stretch, alternate.
+    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
+    stretches = list(map(slice, edges[0::2], edges[1::2]))
     if not stretches:
         return []
     least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])
@@ -142,7 +161,10 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
 
 
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
-    """Return slip, slip velocity and slip acceleration on the right, with "xi" = x - front."""
+    """Return slip, slip velocity and slip acceleration of the blocks on the right, by name.
+
+    Their positions relative to the front of the pulse have the name "xi".
+    """
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
     start = np.searchsorted(run["x"], 0.0)
     fields = {name: np.asarray(run[name])[start:] for name in names}
@@ -152,23 +174,23 @@ def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
 def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
     """Return the amplitude of the slip acceleration across a pulse.
 
-    It is the projection of the acceleration on a half wave of the pulse width. The largest value
-    would be that of the oscillations behind the front of an undamped lattice. NaN if the pulse has
-    fewer than 4 blocks.
+    It is the amplitude of the half cosine wave that fits the acceleration best between the front
+    and the trailing edge. (The largest acceleration would not do: on an undamped lattice it belongs
+    to the oscillations behind the front.) NaN if the pulse has fewer than 4 blocks.
     """
     fields = comoving(run, pulse)
-    inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
-    shape = np.cos(np.pi * fields["xi"][inside] / pulse.width)
-    if shape.size < 4:
+    is_in_pulse = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
+    wave = np.cos(np.pi * fields["xi"][is_in_pulse] / pulse.width)
+    if wave.size < 4:
         return np.nan
-    return float(np.sum(fields["slip_acceleration"][inside] * shape) / np.sum(shape**2))
+    return float(np.sum(fields["slip_acceleration"][is_in_pulse] * wave) / np.sum(wave**2))
 
 
 def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Return the relative variation of the final slip that the pulse has left behind recently.
+    """Return by how much the final slip varies along the last third of the trailing edge's path.
 
-    It is the range of slip over the last third of the path of the trailing edge, divided by the
-    slip of the pulse; NaN if there is no such path.
+    It is the largest minus the smallest slip there, divided by the slip of the pulse. NaN if there
+    is no such path.
     """
     fields = comoving(run, pulse)
     # The path of the trailing edge begins at x = 0. Four blocks at its end are left out.

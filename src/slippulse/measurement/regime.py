@@ -1,7 +1,8 @@
 """Regime of a run: crack or pulse, one-way or two-way, growing, steady, decaying or arrested.
 
-`classify_regime` finds the regime of a run. `is_pulse` is the only definition of a pulse, and
-`pulse_regime` names the regime of one or two pulses; theory uses both as well.
+`classify_regime` finds the regime of a run. `is_pulse` defines the difference between a crack and a
+pulse, and `pulse_regime` names the regime of one or two pulses. Predictions and studies use both
+functions, too.
 """
 
 import numpy as np
@@ -19,8 +20,8 @@ REGIMES = (
     "pulse, one-way, steady",
     "pulse, one-way, decaying",
 )
-# Regime of a prediction that theory does not decide, and of an exact solution whose end is not
-# completely known.
+# Regime of a prediction if theory does not decide it, and of an exact solution if its slip velocity
+# at the end is not known everywhere.
 UNDECIDED = "undecided"
 
 
@@ -29,24 +30,28 @@ def classify_regime(
 ) -> dict[str, float | str]:
     """Return the regime of a run with samples (one of REGIMES), and the numbers that decide it.
 
-    A rupture is two-way if it runs on both sides of x = 0. It runs on a side if the front there is
-    as fast as the waves over the last third of the run, to within ``steady_tolerance``. If neither
-    front is, the rupture runs where, at the end, a block slides at least at ``still_fraction``
-    times the largest velocity. A crack that runs on one side only has "one front slow" if the other
-    front still moves. A rupture is arrested if no block was released in the last tenth of the
-    duration, or if the velocity at the end is at most ``still_fraction`` times an earlier one. A
-    one-way pulse grows, decays or is steady according to the change of its largest velocity over
-    the last third of the run.
+    - Arrested: see `_is_arrested`.
+    - Crack or pulse: see `is_pulse`.
+    - Two-way: the rupture runs on both sides of x = 0. It runs on a side if the front there is as
+      fast as the waves over the last third of the run. If neither front is, the rupture runs on the
+      sides on which a block slides at the end.
+    - One front slow: a crack runs on one side only, and the other front still moves.
+    - Growing, steady or decaying: the change of the largest velocity of a one-way pulse over the
+      last third of the run.
+
+    still_fraction : a block counts as at rest below this fraction of the largest velocity
+    steady_tolerance : largest change of a steady pulse; by this much, the speed of a front may be
+        below the wave speed 1
     """
     change = _change_of_largest_velocity(run)
     x, final_velocity = _final_velocity(run)
     largest = float(np.max(final_velocity))
     centre = float(final_velocity[int(np.argmin(np.abs(x)))])
     left_speed, right_speed = (_late_speed(run, side) for side in ("left", "right"))
-    slowest_fast = 1.0 - steady_tolerance
-    fast_sides = int(left_speed >= slowest_fast) + int(right_speed >= slowest_fast)
-    slides = final_velocity >= still_fraction * largest
-    sliding_sides = int(np.any(slides[x < 0.0])) + int(np.any(slides[x > 0.0]))
+    lowest_fast_speed = 1.0 - steady_tolerance
+    fast_sides = int(left_speed >= lowest_fast_speed) + int(right_speed >= lowest_fast_speed)
+    is_sliding = final_velocity >= still_fraction * largest
+    sliding_sides = int(np.any(is_sliding[x < 0.0])) + int(np.any(is_sliding[x > 0.0]))
     running_sides = fast_sides if fast_sides > 0 else sliding_sides
     ways = "two-way" if running_sides == 2 else "one-way"
     # On a crack that runs on one side, the slower front still moves if its speed is not nearly 0.
@@ -83,8 +88,8 @@ def _change_of_largest_velocity(run: AnyRun) -> float:
 def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and slip velocities at the end of a run.
 
-    They are those of all blocks if recorded, else those of the samples, which may miss a narrow or
-    distant pulse.
+    They are those of all blocks if these were recorded. Otherwise they are those of the samples,
+    which may miss a narrow or distant pulse.
     """
     if "slip_velocity" in run:
         return np.asarray(run["x"]), np.asarray(run["slip_velocity"])
@@ -92,7 +97,13 @@ def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_arrested(run: AnyRun, largest: float, still_fraction: float) -> bool:
-    """Return True if the rupture is nearly at rest at the end, or was released last long before."""
+    """Return True if the rupture is nearly at rest at the end, or released its last block early.
+
+    Early means before the last tenth of the duration. Nearly at rest means that the largest
+    velocity at the end is at most ``still_fraction`` times the largest one of the whole run.
+
+    largest : the largest velocity at the end
+    """
     last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
     largest_ever = max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
     at_rest = largest <= still_fraction * largest_ever
@@ -102,30 +113,36 @@ def _is_arrested(run: AnyRun, largest: float, still_fraction: float) -> bool:
 def is_pulse(centre: float, largest: float, still_fraction: float) -> bool:
     """Return True for a pulse: the nucleation point is (nearly) at rest while the rupture runs.
 
-    centre, largest : slip velocity at the nucleation point, and the largest one anywhere
-    still_fraction : fraction of the largest velocity below which the nucleation point counts as at
-        rest
+    centre : slip velocity at the nucleation point
+    largest : largest slip velocity anywhere
+    still_fraction : the nucleation point counts as at rest below this fraction of ``largest``
     """
     return centre < still_fraction * largest
 
 
 def _late_speed(run: AnyRun, side: str) -> float:
-    """Return the mean front speed over the last third of a run; 0 if the front starts later."""
-    window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
-    distances = front_position(run, window, side)
-    if not np.isfinite(distances).all():
+    """Return the mean front speed over the last third of a run.
+
+    It is 0 if the front starts later, or if its position is not known at the end.
+    """
+    start, end = 2.0 / 3.0 * run.attrs["end_time"], run.attrs["end_time"]
+    start_distance, end_distance = front_position(run, [start, end], side)
+    if np.isnan(start_distance) or np.isnan(end_distance):
         return 0.0
-    return float(np.diff(distances)[0] / np.diff(window)[0])
+    return float((end_distance - start_distance) / (end - start))
 
 
 def pulse_regime(ways: str, change: float, tolerance: float) -> str:
     """Return the regime of one or two pulses.
 
     ways : "one-way" or "two-way"
-    change : relative change of the largest velocity; a pulse is steady up to the tolerance
+    change : relative change of the largest velocity of a one-way pulse
+    tolerance : largest change of a steady pulse
     """
     if ways == "two-way":
         return "pulses, two-way"
     if change > tolerance:
         return "pulse, one-way, growing"
-    return f"pulse, one-way, {'decaying' if change < -tolerance else 'steady'}"
+    if change < -tolerance:
+        return "pulse, one-way, decaying"
+    return "pulse, one-way, steady"

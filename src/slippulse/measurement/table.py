@@ -1,7 +1,8 @@
 """All measured numbers of one run, as one row of a measured table.
 
 `measure_run` calls the other modules of this package for fronts, transition, pulse and regime. The
-functions below it measure the shape of the pulse and the waves of the lattice.
+functions below it measure the pre-stress that the fronts have crossed, the shape of the pulse, and
+the waves of the lattice.
 """
 
 import hashlib
@@ -12,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import prestress_from
+from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
@@ -20,8 +21,8 @@ from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_puls
 from .regime import classify_regime
 from .transition import transition_displacement, transition_stress
 
-# Columns that identify a run or describe its computation. `Scene.from_attributes` can make the
-# scene of the run from them.
+# Columns that identify a run or describe its computation. From them, `Scene.from_attributes` can
+# rebuild the scene of the run.
 _PARAMETERS = """
     boundary left right width peak steps_and_bumps gamma beta damping_ratio dx max_step duration
     release scheme order half_lattice friction_ratio resolved_blocks run_flags steps block_updates
@@ -31,13 +32,16 @@ _PARAMETERS = """
 PARAMETERS = (*_PARAMETERS.split(), *EXTRA_TERMS)
 # Columns that also identify the profile of a run, if the pre-stress is a table.
 LABELS = ("profile", "seed")
-# The points of a longer table are only in the data file. The measured row has a digest of them.
+# A row holds the points of a pre-stress table with at most this number of points. Of a longer table
+# it holds a digest; the points are in the data file.
 MAX_POINTS_IN_ROW = 32
 PULSE_FIELDS = ("front", "width", "peak_velocity", "slip")
 # Waves of the lattice can be measured only if at least this number of blocks slide.
 MIN_BLOCKS_WITH_WAVES = 12
 # Beyond this number of widths from its centre a Gaussian is taken to be 0.
 GAUSSIAN_END_IN_WIDTHS = 6.0
+# The far field is measured only if it has at least this number of sampled positions.
+MIN_FAR_SAMPLES = 8
 
 
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
@@ -45,14 +49,15 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
 
     settings : the settings under ``measure`` in the configuration (see config/README.md)
 
-    A number whose data were not recorded is left out. The pulse is None if slip velocity was not
-    recorded.
+    A number is left out if the data that it needs were not recorded. The pulse is None if slip
+    velocity was not recorded.
     """
     attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
-    steps = prestress_from(run.attrs).steps
+    # The level into which the right front runs: that beyond the last step, if there are steps.
     row["beyond"] = row["right"]
+    steps = prestress_from(run.attrs).steps
     if steps:
         _, row["beyond"] = steps[-1]
     row |= columns_of_table(run, settings["front_window"])
@@ -90,28 +95,28 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
 def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
     """Return the labels of the profile and, if the pre-stress is a table, further columns.
 
-    These are a digest of a long table, the lowest pre-stress that each front has crossed (NaN if it
-    has crossed none), and the pre-stress that it crossed last.
+    lowest_prestress_SIDE is the lowest pre-stress that a front has crossed; NaN if it has crossed
+    none. level_ahead_SIDE is the level that it crossed last; NaN if the pre-stress is not constant
+    over the window. steps_and_bumps has a digest in place of the points of a long table.
 
-    window : the last fraction of a front's path; if the pre-stress is not constant there, the
-        pre-stress crossed last is NaN
+    window : the last part of a front's path, as a fraction of the path
     """
     profile = prestress_from(run.attrs)
     row: dict[str, float | str] = {name: run.attrs[name] for name in LABELS if name in run.attrs}
     if not profile.points:
         return row
     if len(profile.points) > MAX_POINTS_IN_ROW:
-        text = run.attrs["steps_and_bumps"]
-        parts = json.loads(text)
-        digest = hashlib.sha256(text.encode()).hexdigest()[:16]
-        parts["points"] = f"{len(profile.points)} points, {digest}"
-        row["steps_and_bumps"] = json.dumps(parts)
-    x, released = np.asarray(run["x"]), np.isfinite(np.asarray(run["release_time"]))
+        recorded_profile = run.attrs["steps_and_bumps"]
+        profile_parts = json.loads(recorded_profile)
+        digest = hashlib.sha256(recorded_profile.encode()).hexdigest()[:16]
+        profile_parts["points"] = f"{len(profile.points)} points, {digest}"
+        row["steps_and_bumps"] = json.dumps(profile_parts)
+    x, was_released = np.asarray(run["x"]), np.isfinite(np.asarray(run["release_time"]))
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        crossed = released & (sign * x >= 0.0)
-        tau = np.asarray(run["prestress"])[crossed]
+        was_crossed = was_released & (sign * x >= 0.0)
+        tau = np.asarray(run["prestress"])[was_crossed]
         row[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
-        distance = np.abs(x[crossed])
+        distance = np.abs(x[was_crossed])
         is_in_window = distance >= (1.0 - window) * np.max(distance, initial=0.0)
         crossed_last = tau[is_in_window]
         is_constant = crossed_last.size > 0 and np.ptp(crossed_last) == 0.0
@@ -120,11 +125,13 @@ def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
 
 
 def measure_transition(run: AnyRun, fraction: float) -> dict:
-    """Return the numbers of the transition; none if the paper defines no transition for the run.
+    """Return the numbers of the transition by name; none if the run has no defined transition.
 
-    The paper defines it for equal positive levels under a displacement boundary, and for a negative
-    level on the left and 0 on the right, without steps, under a stress boundary. Under a
-    displacement boundary, it is measured for a table with different positive levels, too.
+    Under a displacement boundary, the paper defines a transition for equal positive levels. For a
+    table, it is measured for different positive levels, too. Under a stress boundary, the paper
+    defines it for a negative level on the left and the level 0 on the right, without steps.
+
+    fraction : see `transition_stress`
     """
     left, right = run.attrs["left"], run.attrs["right"]
     profile = prestress_from(run.attrs)
@@ -133,33 +140,35 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
         are_allowed = left == right or bool(profile.points)
         return transition_displacement(run) if are_positive and are_allowed else {}
     if left < 0.0 and right == 0.0 and not profile.steps:
-        # With a barrier on the right, the integral of the pre-stress may not be positive, so that
-        # there is no balance position.
+        # A barrier on the right can make the integral of the pre-stress negative. Then there is no
+        # balance position.
         with suppress(ArithmeticError):
             return transition_stress(run, fraction)
     return {}
 
 
 def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Return the full width of the pulse at half of its peak slip velocity.
+    """Return the width of the pulse between the two positions with half of its peak velocity.
 
-    NaN if slip velocity does not fall below half of the peak on both sides of it, or is not known.
+    NaN if slip velocity does not fall below half of the peak on both sides of it, or if it is not
+    known.
     """
     if np.isnan(pulse.peak_velocity):
         return np.nan
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     peak = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
-    half = 0.5 * float(velocity[peak])
-    is_below = velocity < half
+    half_velocity = 0.5 * float(velocity[peak])
+    is_below = velocity < half_velocity
     below_left, below_right = np.flatnonzero(is_below[:peak]), np.flatnonzero(is_below[peak:])
     if not below_left.size or not below_right.size:
         return np.nan
-    # Velocity passes the half between a block below it and the next block towards the peak.
+    # On each side, the velocity is half of the peak somewhere between the nearest block below this
+    # value and its neighbour towards the peak.
     last_left, first_right = int(below_left[-1]), peak + int(below_right[0])
     left_pair, right_pair = [last_left, last_left + 1], [first_right, first_right - 1]
-    left = np.interp(half, velocity[left_pair], xi[left_pair])
-    right = np.interp(half, velocity[right_pair], xi[right_pair])
+    left = np.interp(half_velocity, velocity[left_pair], xi[left_pair])
+    right = np.interp(half_velocity, velocity[right_pair], xi[right_pair])
     return float(right - left)
 
 
@@ -169,7 +178,7 @@ def lattice_noise(run: AnyRun) -> float:
     Only blocks on the right are used. NaN if too few of them slide, or if a velocity is not known.
     """
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
-    # Unknown velocities are NaN. Written with ~, they are included, and the result is NaN.
+    # An unknown velocity is NaN. The condition ~(NaN <= 0) is true, so that the result is NaN.
     moving = velocity[(x >= 0.0) & ~(velocity <= 0.0)]
     if moving.size < MIN_BLOCKS_WITH_WAVES:
         return np.nan
@@ -187,52 +196,64 @@ def sliding_at_once(run: AnyRun) -> float:
     if limit_time(run) <= run.attrs["end_time"]:
         return np.nan
     start = 0.5 * run.attrs["end_time"]
-    chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
-    release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]
+    release, stick = np.asarray(run["release_time"]), np.asarray(run["stick_time"])
+    has_slipped = (np.asarray(run["x"]) > 0.0) & np.isfinite(release)
+    release, stick = release[has_slipped], stick[has_slipped]
     # The number is largest right after a release, or at the start of the second half.
     times = np.append(start, release[release > start])
     # The times are nearly in order, for which a stable sort is fast. NaN is sorted last.
-    released = np.searchsorted(np.sort(release, kind="stable"), times, side="right")
-    stuck = np.searchsorted(np.sort(stick, kind="stable"), times, side="right")
-    return float(np.max(released - stuck))
+    released_count = np.searchsorted(np.sort(release, kind="stable"), times, side="right")
+    stuck_count = np.searchsorted(np.sort(stick, kind="stable"), times, side="right")
+    return float(np.max(released_count - stuck_count))
+
+
+def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
+    """Return where the far field on the right begins, and a position one Gaussian width beyond.
+
+    The far field begins beyond the Gaussian, and beyond all steps and points of the pre-stress.
+    """
+    width = profile.width or 1.0
+    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
+    start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
+    return start, start + width
 
 
 def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes over the last third of a run with samples.
 
-    Only the far field is used, where the pre-stress is constant. ``profile_change`` compares slip
-    velocity at the end with the earlier one, moved by the elapsed time at the wave speed, and is
-    relative to the earlier peak. ``energy_change`` is the relative change of kinetic and strain
-    energy. ``strain_left`` is the strain that remains where the pulse entered the far field,
-    divided by the largest strain. All are NaN if nothing slid in the far field at two thirds of the
-    duration.
+    Only the far field is used, where the pre-stress is constant.
+
+    profile_change : largest change of slip velocity in the frame that moves at the wave speed,
+        divided by the peak velocity at the start of this third
+    energy_change : relative change of the sum of kinetic and strain energy
+    strain_left : largest strain at the end where the pulse entered the far field, divided by the
+        largest strain anywhere
+
+    All are NaN if nothing slid in the far field at two thirds of the duration.
     """
-    profile = prestress_from(run.attrs)
-    width = profile.width or 1.0
-    part_distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
-    start = max([GAUSSIAN_END_IN_WIDTHS * width, *part_distances])
+    start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
     times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     elapsed = float(times[-1] - times[early])
     velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
     is_far = x >= start
-    if np.count_nonzero(is_far) < 8 or not np.max(velocity[early][is_far], initial=0.0) > 0.0:
+    early_peak = np.max(velocity[early][is_far], initial=0.0)
+    if np.count_nonzero(is_far) < MIN_FAR_SAMPLES or not early_peak > 0.0:
         return {"profile_change": np.nan, "energy_change": np.nan, "strain_left": np.nan}
-    early_peak = np.max(velocity[early][is_far])
     strain = np.gradient(slip[:, is_far], x[is_far], axis=1)
     final_strain = np.abs(strain[-1])
 
     def energy(sample: int) -> float:
-        """Return the kinetic and strain energy in the far field at a sample."""
+        """Return the kinetic and strain energy in the far field at a sampled time, by its index."""
         density = 0.5 * (velocity[sample][is_far] ** 2 + strain[sample] ** 2)
         return np.trapezoid(density, x[is_far])
 
     early_energy, final_energy = energy(early), energy(-1)
-    # In units of the wave speed, the elapsed time is also the distance that a wave travels.
-    stays_inside = is_far & (x + elapsed <= x[-1])
-    final_velocity = np.interp(x[stays_inside] + elapsed, x, velocity[-1])
-    largest_change = np.max(np.abs(final_velocity - velocity[early][stays_inside]))
-    at_entry = x[is_far] <= start + width
+    # The wave speed is 1, so the elapsed time is also the distance that a wave has travelled.
+    stays_in_view = is_far & (x + elapsed <= x[-1])
+    final_velocity = np.interp(x[stays_in_view] + elapsed, x, velocity[-1])
+    largest_change = np.max(np.abs(final_velocity - velocity[early][stays_in_view]))
+    at_entry = x[is_far] <= entry_end
     return {
         "profile_change": float(largest_change / early_peak),
         "energy_change": float(final_energy / early_energy - 1.0),

@@ -1,9 +1,9 @@
 """Time and length of the transition from a crack to a pulse.
 
 Under a displacement boundary the transition is the first stick. Under a stress boundary it is the
-moment at which the left front has covered a given fraction of its way to the balance position. Both
-definitions converge as the spacing falls. The numbers by the paper's own definitions are measured
-as well.
+moment at which the left front has covered a given fraction of its way to the balance position. By
+both definitions, time and length converge as the block spacing falls. The numbers by the paper's
+own definitions are measured as well.
 """
 
 import numpy as np
@@ -14,20 +14,20 @@ from ..model.prestress import prestress_from
 from ..model.scene import gamma_without_extra_terms
 from .front_paths import arrival, front_path, front_position, known_until
 
-# A left front is held up by the lattice if it waits longer between two blocks than this fraction of
-# T_trans. The relative error of T_trans is up to 1.5 times the fraction (tested with five levels
-# and three damping ratios).
+# The lattice holds up the left front if the front waits between two blocks for more than this
+# fraction of T_trans. The relative error of T_trans is up to 1.5 times the fraction that the front
+# waits (tested with five levels and three damping ratios).
 STALLED_WAIT_FRACTION = 0.03
 
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
     """Return time and length of the transition under a displacement boundary, by two definitions.
 
-    The first definition is the first stick. The second one is printed in the paper: the slip at
-    x = 0 reaches 2 tau/gamma. Its numbers are returned for two values of tau. Names that end in
-    "background" use the pre-stress far from the nucleation, and are NaN if this differs between
-    left and right. Names that end in "nucleation" use the pre-stress at x = 0. All numbers of the
-    second definition are NaN if the equation of motion has an extra term.
+    The first definition is the first stick. The second definition is printed in the paper: the slip
+    at x = 0 reaches 2 tau/gamma. The paper leaves open which pre-stress tau this is. Names that end
+    in "background" use the level far from the nucleation, and are NaN if the levels on the left and
+    on the right differ. Names that end in "nucleation" use the pre-stress at x = 0. All numbers of
+    the second definition are NaN if the equation of motion has an extra term.
     """
     transition = first_stick(run)
     has_one_level = run.attrs["left"] == run.attrs["right"]
@@ -54,7 +54,7 @@ def between_fronts(run: AnyRun, time: float) -> float:
 
 
 def slip_time(run: AnyRun, slip: float) -> float:
-    """Return the time at which the sample nearest to x = 0 reaches a slip.
+    """Return the time at which the sampled position nearest to x = 0 reaches a slip.
 
     NaN if it never does, or if the run has no samples.
     """
@@ -63,22 +63,25 @@ def slip_time(run: AnyRun, slip: float) -> float:
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     slips, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
     after = int(np.argmax(slips >= slip))
-    # The slip of the first sample is 0, so that 0 means that the slip is never reached.
+    # The slip of the first sample is 0. If the first sample is found, the slip is never reached.
     if after == 0:
         return np.nan
+    # The slip is interpolated between the samples before and after.
     before = after - 1
     fraction = (slip - slips[before]) / (slips[after] - slips[before])
     return float(times[before] + fraction * (times[after] - times[before]))
 
 
 def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
-    """Return the transition under a stress boundary.
+    """Return the numbers of the transition under a stress boundary.
 
-    It occurs when the left front has covered a fraction of its way |x_minus| to the balance
-    position. The time and the length converge with dx. The arrest that the paper draws is the last
-    release on the left; it does not converge, because the front of the continuum never stops.
-    The state is "resolved", "stalled" (the lattice held up the front), or "not reached" (the time
-    and the length are NaN).
+    Names that begin with "transition" belong to the moment at which the left front has covered a
+    fraction of the balance distance |x_minus|. These numbers converge as dx falls. Names that begin
+    with "last_release" belong to the last release on the left, which the paper draws as the arrest.
+    They do not converge, because in the continuum the front never stops.
+
+    The transition state is "resolved", "stalled" (the lattice held up the front), or "not reached"
+    (time and length are NaN).
     """
     balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * balance_distance, "left")
@@ -87,15 +90,15 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     if release_times.size and np.isinf(known_until(run, "left")):
         arrest_time, arrest_distance = float(np.max(release_times)), float(distances[-1])
     wait_fraction = longest_wait / time
-    state, right = "not reached", np.nan
+    state, right_distance = "not reached", np.nan
     if not np.isnan(time):
         state = "stalled" if wait_fraction > STALLED_WAIT_FRACTION else "resolved"
-        right = float(front_position(run, time, "right"))
+        right_distance = float(front_position(run, time, "right"))
     return {
         "transition_time": time,
         "transition_longest_wait": wait_fraction,
         "transition_state": state,
-        "transition_length": fraction * balance_distance + right,
+        "transition_length": fraction * balance_distance + right_distance,
         "balance_distance": balance_distance,
         "last_release_time": arrest_time,
         "last_release_distance": arrest_distance,

@@ -2,7 +2,7 @@
 
 If the error falls with a power of the spacing, three values determine that power (the observed
 order) and the value at spacing 0 (Richardson extrapolation). The uncertainty is the difference
-between this value and the one at the finest spacing.
+between the values at spacing 0 and at the finest spacing.
 """
 
 import math
@@ -14,8 +14,8 @@ import pandas as pd
 
 from ..model.roots import root_between
 
-# If the observed order is outside this range, the three values do not follow a power of the
-# spacing.
+# If the observed order is outside this range, it is not trusted: the three values count as not
+# following a power of the spacing.
 ORDER_RANGE = (0.5, 6.0)
 # Three values are equal if their relative spread is at most this.
 EQUALITY_TOLERANCE = 1e-14
@@ -36,8 +36,9 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     values : the number at the spacings dx, c_1 dx and c_2 dx, where 1 < c_1 < c_2
     factors : c_1 and c_2
 
-    If no order p within ORDER_RANGE fits, the uncertainty is computed from the spread of the values
-    with the lowest order of this range. It is NaN if a value is missing.
+    If no order p within ORDER_RANGE fits, the value is not extrapolated. The uncertainty is then
+    that of a quantity with the lowest order of this range whose values have the same spread. It is
+    NaN if a value is missing.
     """
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
@@ -61,10 +62,12 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
 
 
 def studied_columns(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
-    """Return the columns of a measured table that a grid study has.
+    """Return the names of the columns of a measured table that a grid study examines.
 
     These are the columns of floats, except the ``keys`` and the predictions of the paper. The table
-    must have been read from its file.
+    must have been read from its file, because this decides the types of its columns.
+
+    keys : columns that identify a run or describe its computation
     """
     numbers = table.drop(columns=[*keys], errors="ignore").select_dtypes("float").columns
     return [name for name in numbers if not name.startswith("paper_")]
@@ -76,6 +79,8 @@ def grid_tables(
     """Return a grid study of each measured number of each run.
 
     tables : measured tables at three spacings, the finest first
+    factors : the second and third spacing divided by the finest
+    keys : columns that identify a run or describe its computation
 
     The result has one row for each run ("point") and quantity.
     """
@@ -84,6 +89,6 @@ def grid_tables(
     # This array has one row for each run and quantity, and one column for each spacing.
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
     studies = pd.DataFrame([grid_study(three_values, factors) for three_values in values])
-    points = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
-    points = points.loc[points.index.repeat(len(names))].reset_index(drop=True)
-    return points.assign(quantity=names * len(finest)).join(studies)
+    runs = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
+    rows = runs.loc[runs.index.repeat(len(names))].reset_index(drop=True)
+    return rows.assign(quantity=names * len(finest)).join(studies)

@@ -56,7 +56,9 @@ def check_number(key: str, value: Any, integer: bool = False, **limits: float) -
         valid = is_number and math.isfinite(value)
     except OverflowError:
         valid = False
-    if valid and all(LIMIT_KINDS[name][1](value, limit) for name, limit in limits.items()):
+    # A limit may be too large for single precision.
+    number = float(value) if valid and not integer else value
+    if valid and all(LIMIT_KINDS[name][1](number, limit) for name, limit in limits.items()):
         return
     text = "".join(f" and {LIMIT_KINDS[name][0]} {limit:.10g}" for name, limit in limits.items())
     raise ValueError(f"{key}: {short_repr(value)}; allowed: a {word} number{text}")

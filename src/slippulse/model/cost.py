@@ -48,11 +48,21 @@ START_MINUTES, START_MEGABYTES = 10, 1000
 
 
 class Bound(NamedTuple):
-    """Upper bound on the cost of one or more runs."""
+    """Upper bound on the cost of one or more runs.
+
+    ``data_bytes`` is the memory of their results. ``solver_bytes`` is that of the solver, which
+    only runs need that are not finished.
+    """
 
     runs: float
     block_updates: float
-    bytes: float
+    data_bytes: float
+    solver_bytes: float
+
+    @property
+    def bytes(self) -> float:
+        """Memory for the results of all runs, and for the solver in each thread."""
+        return self.data_bytes + self.solver_bytes * min(self.runs, self.threads)
 
     def exceeded(
         self, chunks: int = 1, remedy: str = f"use more chunks or {OPTION_TO_ALLOW}"
@@ -161,6 +171,9 @@ def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
     if samples is not None:
         sample_bytes = 16.0 * samples.times.size * samples.positions.size
     table_bytes = BYTES_PER_TABLE_POINT * len(scene.prestress.points)
-    block_bytes = RECORDED_BYTES_PER_BLOCK + SOLVER_BYTES_PER_BLOCK * (scene.order + 16)
-    total_bytes = block_bytes * blocks + (sample_bytes + table_bytes)
-    return Bound(runs=1, block_updates=UPDATES_PER_START + updates, bytes=total_bytes)
+    return Bound(
+        runs=1,
+        block_updates=UPDATES_PER_START + updates,
+        data_bytes=RECORDED_BYTES_PER_BLOCK * blocks + (sample_bytes + table_bytes),
+        solver_bytes=SOLVER_BYTES_PER_BLOCK * (scene.order + 16) * blocks,
+    )

@@ -14,6 +14,7 @@ from . import space_time
 from .si_tables import table_in_si, with_unit
 from .style import BLUE, PAGE_WIDTH, by_role, house_style
 
+# A run must have these variables to be drawn.
 DRAWN_VARIABLES = ("prestress", "release_time", "stick_time", "slip")
 
 
@@ -31,8 +32,8 @@ def plot(run: xr.Dataset) -> Picture:
     """Draw pre-stress, slip velocity as a function of time and position, and final slip of a run.
 
     The map of slip velocity also shows the front (time of first release) and the trailing edge
-    (time of stick). The panels follow the space-time figure of the paper (figure 4). Quantities are
-    dimensionless. If the run is in SI units, the axes have units.
+    (time of stick). The panels are arranged as in the space-time figure of the paper (figure 4).
+    Quantities are dimensionless, unless the run is in SI units.
 
     Parameters
     ----------
@@ -72,59 +73,75 @@ def plot(run: xr.Dataset) -> Picture:
 
 
 def _check_drawable(run: object) -> None:
-    """Raise TypeError, with what to do, unless the argument is one run with all drawn variables."""
-    name, allowed = type(run).__name__, "a Dataset that simulate returned"
+    """Raise TypeError if the argument is not one run that has all drawn variables."""
     if isinstance(run, xr.Dataset) and {"point", "block"} & {*run.dims}:
-        name, allowed = "a sweep", "one run of it, such as point(sweep, 0)"
-    elif isinstance(run, xr.Dataset) and "end_time" in run.attrs:
+        problem, allowed = "a sweep", "one run of it, such as point(sweep, 0)"
+    elif not isinstance(run, xr.Dataset) or "end_time" not in run.attrs:
+        problem, allowed = type(run).__name__, "a Dataset that simulate returned"
+    else:
         missing = [name for name in DRAWN_VARIABLES if name not in run or run[name].dims != ("x",)]
         if not missing:
             return
-        name = f"without {', '.join(missing)}"
+        problem = f"without {', '.join(missing)}"
         allowed = "a run with these, which a sweep has if record is ('fronts', 'fields')"
-    raise TypeError(f"run: {name}; allowed: {allowed}")
+    raise TypeError(f"run: {problem}; allowed: {allowed}")
 
 
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     """Draw the panels, in SI units if a layer is given."""
-    slipped = {"series": "slip", "position": run["x"].values, "value": run["slip"].values}
-    rows = [space_time.prestress_rows(run), *space_time.edge_rows(run)]
-    rows.append(pd.DataFrame({"role": "profile", **slipped}))
-    has_samples = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-    has_map = has_samples and bool((run["sample_velocity"] > 0.0).any())
+    table = _drawn_table(run)
+    roles = by_role(table if layer is None else table_in_si(table, layer))
+    has_map = "map" in roles
+    # A run in which no block was released has no front and no trailing edge.
+    no_rows = table.iloc[:0]
+    roles = {"front": no_rows, "trailing": no_rows} | roles
+    figure = Picture(figsize=(PAGE_WIDTH, 2.8), layout="constrained")
+    panels = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
+    prestress_axes, map_axes, slip_axes = panels
+    space_time.draw_profile(prestress_axes, roles)
     if has_map:
+        space_time.draw_map(map_axes, roles)
+        if run.attrs.get("limit_reason"):
+            _hatch_unknown(map_axes, run, roles)
+            figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")
+    else:
+        space_time.draw_edges(map_axes, roles, roles["end"]["time"].iloc[0])
+    if np.isfinite(run["release_time"]).any():
+        map_axes.legend(loc="upper left")
+    slip_axes.plot(roles["profile"]["value"], roles["profile"]["position"], color=BLUE)
+    slip_axes.set_xlabel(with_unit(r"slip $u$", roles, "slip"))
+    return figure
+
+
+def _drawn_table(run: xr.Dataset) -> pd.DataFrame:
+    """Return everything that the panels show, with a role in each row.
+
+    These are the roles of `prestress_rows` and `edge_rows`, those of `velocity_rows` if anything
+    slides in the samples, and:
+
+    profile : final slip as a function of position
+    end : the time at which the run ends
+    """
+    slip = {"series": "slip", "position": run["x"].values, "value": run["slip"].values}
+    rows = [space_time.prestress_rows(run), *space_time.edge_rows(run)]
+    rows.append(pd.DataFrame({"role": "profile", **slip}))
+    has_samples = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    if has_samples and bool((run["sample_velocity"] > 0.0).any()):
         rows.append(space_time.velocity_rows(run))
     # The end time of a run in which nothing moves is 0.
     end = run.attrs["end_time"] or run.attrs["duration"]
     rows.append(pd.DataFrame({"role": ["end"], "time": [end]}))
-    table = pd.concat(rows, ignore_index=True)
-    roles = {"front": table.iloc[:0], "trailing": table.iloc[:0]}
-    roles |= by_role(table if layer is None else table_in_si(table, layer))
-    figure = Picture(figsize=(PAGE_WIDTH, 2.8), layout="constrained")
-    profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
-    space_time.draw_profile(profile, roles)
-    if has_map:
-        space_time.draw_map(times, roles)
-        if run.attrs.get("limit_reason"):
-            _hatch_unknown(times, run, roles)
-            figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")
-    else:
-        space_time.draw_edges(times, roles, roles["end"]["time"].iloc[0])
-    if np.isfinite(run["release_time"]).any():
-        times.legend(loc="upper left")
-    slip.plot(roles["profile"]["value"], roles["profile"]["position"], color=BLUE)
-    slip.set_xlabel(with_unit(r"slip $u$", roles, "slip"))
-    return figure
+    return pd.concat(rows, ignore_index=True)
 
 
 def _hatch_unknown(axes: Axes, run: xr.Dataset, roles: dict[str, pd.DataFrame]) -> None:
     """Hatch the part of the map in which the exact solution is not known."""
-    unknown = run["sample_velocity"].isnull().T
-    # Factors from dimensionless time and position to the coordinates of the axes.
+    is_unknown = run["sample_velocity"].isnull().T
+    # The axes may be in SI units. These factors convert dimensionless numbers to their units.
     time_scale = roles["end"]["time"].iloc[0] / run.attrs["end_time"]
     drawn_positions = roles["profile"]["position"]
     position_scale = np.ptp(drawn_positions) / np.ptp(run["x"].values)
     hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
     times = run["sample_time"] * time_scale
     positions = run["sample_position"] * position_scale
-    axes.contourf(times, positions, unknown, **hatched)
+    axes.contourf(times, positions, is_unknown, **hatched)

@@ -9,8 +9,8 @@ from ..data.readable_units import readable_unit
 from ..model.layer_units import Layer
 from ..model.si_quantities import QUANTITIES
 
-# Quantity in the column `value` for some roles. In rows with another role, the column `series`
-# names the quantity.
+# The quantity in the column `value` of rows with these roles. In rows with another role, the column
+# `series` names the quantity.
 ROLE_QUANTITIES = {
     "prestress": "stress",
     "strength": "stress",
@@ -19,8 +19,10 @@ ROLE_QUANTITIES = {
 }
 # Dimensionless stresses that are marked on the axis of stresses (role strength).
 STRENGTHS = {"kinetic friction": 0.0, "static friction": 1.0}
-# Roles whose values have the same unit for each quantity, so that they can share an axis.
+# Rows with these roles are drawn on axes. All values of one quantity get the same unit, so that
+# they can share an axis.
 AXIS_ROLES = ("prestress", "strength", "map", "largest", "profile", "steady")
+# Quantities in the columns with coordinates.
 COLUMN_QUANTITIES = {"position": "length", "time": "time"}
 
 
@@ -28,38 +30,47 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     """Convert the table of a run to SI units.
 
     The new column `unit` holds the unit of the column `value`, and is empty for dimensionless
-    numbers. Rows with the units of the axes (role unit), with static and kinetic friction (role
-    strength) and with the thickness of the layer are added.
+    numbers. These rows are added:
+
+    strength : static and kinetic friction, as stresses
+    unit : the unit of each axis
+    parameter : the thickness of the layer
     """
     strengths = [
         {"role": "strength", "series": name, "value": value} for name, value in STRENGTHS.items()
     ]
     table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
     table = table if "unit" in table else table.assign(unit="")
-    # Units of the axes, by column or quantity.
-    units = {}
-    for column, quantity in COLUMN_QUANTITIES.items():
-        numbers = layer.convert_to_si(table[column], quantity)
-        unit = readable_unit(quantity, numbers)
-        table[column], units[column] = numbers / unit.value, unit.text
+    axis_units = _convert_coordinates(table, layer)
     # The quantity in the column `value` of each row, NaN for a dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
     is_on_axis = table["role"].isin(AXIS_ROLES)
     for quantity, rows in table[is_on_axis].groupby(quantities[is_on_axis]):
-        units[str(quantity)] = _convert_values(table, rows.index, str(quantity), layer)
+        axis_units[str(quantity)] = _convert_values(table, rows.index, str(quantity), layer)
     is_parameter = (table["role"] == "parameter") & quantities.notna()
     for index in table.index[is_parameter]:
         # Each parameter has its own prefix.
         _convert_values(table, pd.Index([index]), quantities[index], layer)
     unit = readable_unit("length", layer.thickness)
-    height = {"series": "thickness", "value": layer.thickness / unit.value, "unit": unit.text}
-    added = [{"role": "parameter", **height}]
-    added += [{"role": "unit", "series": name, "unit": text} for name, text in units.items()]
+    thickness = {"series": "thickness", "value": layer.thickness / unit.value, "unit": unit.text}
+    added = [{"role": "parameter", **thickness}]
+    added += [{"role": "unit", "series": name, "unit": text} for name, text in axis_units.items()]
     return pd.concat([table, pd.DataFrame(added)], ignore_index=True)
 
 
+def _convert_coordinates(table: pd.DataFrame, layer: Layer) -> dict[str, str]:
+    """Convert the positions and times of a table to SI units in place, and return their units."""
+    units = {}
+    for column, quantity in COLUMN_QUANTITIES.items():
+        numbers = layer.convert_to_si(table[column], quantity)
+        unit = readable_unit(quantity, numbers)
+        table[column] = numbers / unit.value
+        units[column] = unit.text
+    return units
+
+
 def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: Layer) -> str:
-    """Convert the values of some rows of a table in place, and return their unit."""
+    """Convert the values of some rows of a table to SI units in place, and return their unit."""
     numbers = layer.convert_to_si(table.loc[rows, "value"], quantity)
     unit = readable_unit(quantity, numbers)
     table.loc[rows, "value"] = numbers / unit.value
@@ -68,7 +79,10 @@ def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: L
 
 
 def with_unit(label: str, roles: dict[str, pd.DataFrame], name: str) -> str:
-    """Append the unit of a column or quantity to the label of an axis, if there are SI units."""
+    """Append the unit of an axis to its label, if the table is in SI units.
+
+    name : the column or quantity on the axis
+    """
     if "unit" not in roles:
         return label
     units = roles["unit"].set_index("series")["unit"]

@@ -1,7 +1,9 @@
 """The space-time map of a run: slip velocity, front, trailing edge and pre-stress.
 
-The first half of the module collects what is drawn in a table with the columns role, series,
-position, time and value. The second half draws such a table, split by `style.by_role`.
+The first half of the module makes a table of everything that is drawn. Its column role decides what
+is drawn from a row, for example a map or a front; its other columns are series, position, time and
+value. The second half draws such a table after `style.by_role` has split it into one table for each
+role.
 """
 
 import numpy as np
@@ -16,12 +18,14 @@ from .selection import spaced_indices
 from .si_tables import with_unit
 from .style import BLACK, GREY, SMALL_TEXT, TEXT_OUTLINE, Look, conditions
 
-# Largest numbers of samples along each axis of a map, of blocks along each front, and of points of
-# a table of pre-stress.
+# Largest number of samples along each axis of a map.
 MAP_SAMPLES = 121
+# Largest number of blocks along each front.
 FRONT_POINTS = 400
+# Largest number of points of a table of pre-stress.
 TABLE_POINTS = 1000
-# A jump of the pre-stress is drawn within this fraction of the height of the panel.
+# A jump of the pre-stress is drawn as a line from closely before it to closely beyond it. Both
+# distances are this fraction of the drawn range of positions.
 JUMP_WIDTH = 1e-6
 # The panel extends beyond the slipped part by this fraction of it on each side, which leaves room
 # for an arrow.
@@ -55,33 +59,34 @@ def run_title(roles: dict[str, pd.DataFrame]) -> str:
     """
     if "unit" in roles:
         return _append_remarks(_title_in_si(roles["parameter"]), roles)
-    value = roles["parameter"].set_index("series")["value"]
-    value["tau_0"], held = value["left"], value["gamma"] > 0.0
-    levels = ["tau_0"] if value["left"] == value["right"] else ["left", "right"]
-    if "table" in roles:
-        # The levels far away do not describe a table of pre-stress.
-        levels = []
-    names = [*(["gamma"] if held else []), *levels, "width", "damping_ratio", "dx"]
-    title = conditions(held, **value[[name for name in names if np.isfinite(value[name])]])
-    return _append_remarks(title, roles)
+    parameters = roles["parameter"].set_index("series")["value"]
+    parameters["tau_0"] = parameters["left"]
+    held = parameters["gamma"] > 0.0
+    names = ["gamma"] if held else []
+    # The levels far away do not describe a table of pre-stress.
+    if "table" not in roles:
+        has_equal_levels = parameters["left"] == parameters["right"]
+        names += ["tau_0"] if has_equal_levels else ["left", "right"]
+    names += ["width", "damping_ratio", "dx"]
+    named = [name for name in names if np.isfinite(parameters[name])]
+    return _append_remarks(conditions(held, **parameters[named]), roles)
 
 
 def _title_in_si(parameters: pd.DataFrame) -> str:
     """Return a title with the condition on top, thickness, elasticity, damping and spacing."""
     rows = parameters.fillna({"unit": ""}).set_index("series")
-    height, gamma, ratio, dx = (
-        f"{rows['value'][name]:.4g} {rows['unit'][name]}".strip()
-        for name in ("thickness", "gamma", "damping_ratio", "dx")
-    )
-    held = rows["value"]["gamma"] > 0.0
-    top = rf"displacement held on top, $\gamma = {gamma}$" if held else "stress held on top"
-    return rf"$H =$ {height}, {top}, $b = {ratio}$, $\Delta x =$ {dx}"
+    text = {name: f"{row['value']:.4g} {row['unit']}".strip() for name, row in rows.iterrows()}
+    condition_on_top = "stress held on top"
+    if rows["value"]["gamma"] > 0.0:
+        condition_on_top = rf"displacement held on top, $\gamma = {text['gamma']}$"
+    ratio, dx = text["damping_ratio"], text["dx"]
+    return rf"$H =$ {text['thickness']}, {condition_on_top}, $b = {ratio}$, $\Delta x =$ {dx}"
 
 
 def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
-    """Append remarks on a table of pre-stress, the law of friction and flags to a title, if any.
+    """Append the remarks of a run to a title: its table of pre-stress, friction law and flags.
 
-    Each remark is a text in the column series.
+    Each remark is the text in the column series of its role. Most runs have none.
     """
     if "table" in roles:
         title += f", {roles['table']['series'].iloc[0]}"
@@ -95,8 +100,8 @@ def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the released blocks (all blocks if none was released) with a margin. If released
-    blocks reach beyond the sampled positions, the range ends there at the last sample.
+    They enclose the released blocks (all blocks if none was released) with a margin. On a side on
+    which released blocks lie beyond the sampled positions, the range ends at the outermost sample.
     """
     released = run["x"].values[np.isfinite(run["release_time"].values)]
     drawn = released if released.size else run["x"].values
@@ -115,60 +120,64 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
 def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     """Return the sampled slip velocity (role map), and its largest value (role largest).
 
-    Samples that are 0 are left out.
+    Most samples that are 0 are left out.
     """
     lower, upper = drawn_range(run)
     x, times = run["sample_position"].values, run["sample_time"].values
     velocity = run["sample_velocity"].values
-    inside = np.flatnonzero((x >= lower) & (x <= upper))
-    columns = inside[spaced_indices(inside.size, MAP_SAMPLES)]
-    rows = spaced_indices(times.size, MAP_SAMPLES)
-    time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
+    in_range = np.flatnonzero((x >= lower) & (x <= upper))
+    kept_positions = in_range[spaced_indices(in_range.size, MAP_SAMPLES)]
+    kept_times = spaced_indices(times.size, MAP_SAMPLES)
+    # These three arrays have one row for each time and one column for each position.
+    time, position = np.meshgrid(times[kept_times], x[kept_positions], indexing="ij")
     # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
     largest_velocity = np.nanmax(velocity)
     decimals = 4 - int(np.floor(np.log10(largest_velocity)))
-    kept = velocity[np.ix_(rows, columns)].round(decimals)
-    # Samples that are 0 are left out, except in the first row and column, which define the grid.
-    is_written = kept != 0.0
-    is_written[0], is_written[:, 0] = True, True
-    grid = pd.DataFrame(
+    rounded_velocity = velocity[np.ix_(kept_times, kept_positions)].round(decimals)
+    # The first row and the first column are written in full, because they define the grid.
+    is_written = rounded_velocity != 0.0
+    is_written[0, :] = True
+    is_written[:, 0] = True
+    samples = pd.DataFrame(
         {
             "role": "map",
             "time": time[is_written],
             "position": position[is_written],
-            "value": kept[is_written],
+            "value": rounded_velocity[is_written],
         }
     )
     largest = pd.DataFrame([{"role": "largest", "value": largest_velocity}])
-    return pd.concat([grid, largest])
+    return pd.concat([samples, largest])
 
 
 def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
     """Return the pre-stress at the positions that are drawn (role prestress)."""
-    # The run ends near the fronts, but its pre-stress is known everywhere.
+    # The blocks of a run end near its fronts. The pre-stress is computed from its profile, which is
+    # known everywhere.
     lower, upper = drawn_range(run)
     x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
     profile = prestress_from(run.attrs)
     if profile.points:
-        # The pre-stress is piecewise linear between the points. At a jump both values are drawn.
+        # The pre-stress is piecewise linear, so its corners are drawn. It may jump at a point, so
+        # the values closely before and after each point are drawn, too.
         positions = np.unique([position for position, _ in profile.points])
         positions = positions[(positions > lower) & (positions < upper)]
         positions = positions[spaced_indices(positions.size, TABLE_POINTS)]
-        nearby = JUMP_WIDTH * (upper - lower)
-        x = np.unique(np.concatenate([x, positions - nearby, positions, positions + nearby]))
+        offset = JUMP_WIDTH * (upper - lower)
+        x = np.unique(np.concatenate([x, positions - offset, positions, positions + offset]))
     tau = profile(x)
     return pd.DataFrame({"role": "prestress", "position": x, "value": tau})
 
 
 def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
-    """Return the times of first release (role front) and of last stick (role trailing).
+    """Return when blocks were first released (role front) and when they last stuck (role trailing).
 
     The stick time is NaN for blocks that did not stick.
     """
-    slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
-    spaced = slipped[spaced_indices(slipped.size, FRONT_POINTS)]
+    released = np.flatnonzero(np.isfinite(run["release_time"].values))
+    spaced = released[spaced_indices(released.size, FRONT_POINTS)]
     # The last block is kept as well, so that the front is drawn to its end.
-    kept = np.union1d(spaced, slipped[-1:])
+    kept = np.union1d(spaced, released[-1:])
     x = run["x"].values[kept]
     release, stick = run["release_time"].values[kept], run["stick_time"].values[kept]
     return [
@@ -193,7 +202,10 @@ def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
 
 
 def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
-    """Mark static and kinetic friction on the axis of stresses."""
+    """Mark static and kinetic friction by vertical lines on the axis of stresses.
+
+    rows : the two rows with the role strength
+    """
     look: Look = {
         "rotation": 90,
         "color": GREY,
@@ -201,7 +213,8 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
         "path_effects": TEXT_OUTLINE,
         "transform": axes.get_xaxis_transform(),
     }
-    # Both names are written between the two lines, at different heights.
+    # Both names are written between the two lines: kinetic friction at the top of its line, and
+    # static friction at the bottom.
     kinetic_look = look | {"y": 0.98, "ha": "left", "va": "top"}
     static_look = look | {"y": 0.02, "ha": "right", "va": "bottom"}
     kinetic, static = rows.sort_values("value").itertuples()
@@ -212,25 +225,28 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     """Draw the slip velocity in colour between the front and the trailing edge."""
+    # Samples that are 0 are not in the table.
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
-    look = MAP_STYLE | {"shading": "gouraud", "vmax": roles["largest"]["value"].iloc[0]}
+    largest = roles["largest"]["value"].iloc[0]
+    look = MAP_STYLE | {"shading": "gouraud", "vmax": largest}
     image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
     draw_edges(axes, roles, grid.columns[-1])
     label = with_unit(r"slip velocity $\dot u$", roles, "slip_velocity")
-    largest = f"{look['vmax']:#.3g}".rstrip(".")
-    label = f"{label} (largest {largest})"
+    largest_text = f"{largest:#.3g}".rstrip(".")
+    label = f"{label} (largest {largest_text})"
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
 def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw one map of slip velocity above x = 0 and another one below.
 
-    The column ``half`` separates the rows of the two maps.
+    rows : position, time and slip_velocity of the samples of both maps
+    half : the column of rows that distinguishes the two maps
     """
     look = MAP_STYLE | {"shading": "nearest", "vmax": rows["slip_velocity"].max()}
-    for _, part in rows.groupby(half):
+    for _, samples in rows.groupby(half):
         # Positions at rest stay white.
-        grid = part.pivot(index="position", columns="time", values="slip_velocity")
+        grid = samples.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     axes.figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
@@ -240,7 +256,9 @@ def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """Draw the front and the trailing edge.
 
-    The map is hidden before the release and after the stick.
+    They cover the map before the release (in white) and after the stick (in grey).
+
+    end : the time at the right end of the axis
     """
     front = roles["front"].sort_values("position")
     trailing = roles["trailing"].sort_values("position")
@@ -248,12 +266,14 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     axes.tick_params(labelleft=False)
     if front.empty:
         return
-    drawn = roles["prestress"]["position"]
-    release = np.interp(drawn, front["position"], front["time"], left=end, right=end)
-    axes.fill_betweenx(drawn, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
+    positions = roles["prestress"]["position"]
+    # Beyond the front, blocks are at rest until the end.
+    release = np.interp(positions, front["position"], front["time"], left=end, right=end)
+    axes.fill_betweenx(positions, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()
-    # Near an arresting front, single blocks stick between two releases. They are not an edge.
+    # Near an arresting front, single blocks stick between two releases. A trailing edge has two or
+    # more neighbouring blocks that have stuck.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(x, stick, end, color=STUCK_COLOUR, linewidth=0.0, label="stuck again")
         axes.plot(stick, x, "--", color=BLACK, linewidth=0.8, label="trailing edge")

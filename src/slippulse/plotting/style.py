@@ -53,7 +53,7 @@ SYMBOLS |= {
     "damping_ratio": "b",
     "time": "t",
 }
-# Markers that are not filled, and the font size of the smallest text.
+# Markers that are not filled, and the font size of the smallest text (in points).
 OPEN_MARKER: Look = {"markerfacecolor": "white"}
 SMALL_TEXT = 7.0
 # Colour and marker of each regime of a rupture under another law of friction.
@@ -88,7 +88,8 @@ SCALES = {
 }
 # Column of the level that decides the colour of a run, by boundary condition.
 LEVEL_COLUMNS = {"displacement": "tau_0", "stress": "left"}
-# A note below a figure: height of a line and of the gap above it (inches), and characters per inch.
+# A note below a figure: height of one line, height of the gap above the note (both in inches), and
+# number of characters in one inch of a line.
 NOTE_LINE_HEIGHT, NOTE_GAP = 0.13, 0.08
 NOTE_CHARACTERS_PER_INCH = 22
 # A font like the Times of the journal, which is part of Matplotlib. The report uses it, too.
@@ -135,10 +136,10 @@ ENVIRONMENT = {"MPL_IGNORE_SYSTEM_FONTS": "1", "SOURCE_DATE_EPOCH": "0"}
 def house_style() -> Iterator[None]:
     """Make and save figures in the house style, whatever the settings of the user.
 
-    The style starts from Matplotlib's own defaults. The settings of the caller are restored at the
-    end.
+    Inside this context, Matplotlib has its own defaults with the changes in RC_SETTINGS. At the
+    end, the settings and the environment of the caller are restored.
     """
-    before = {name: os.environ.get(name) for name in ENVIRONMENT}
+    caller_environment = {name: os.environ.get(name) for name in ENVIRONMENT}
     with matplotlib.rc_context():
         os.environ.update(ENVIRONMENT)
         try:
@@ -146,25 +147,30 @@ def house_style() -> Iterator[None]:
             matplotlib.rcParams.update(RC_SETTINGS)
             yield
         finally:
-            for name, value in before.items():
+            for name, value in caller_environment.items():
                 os.environ.pop(name)
                 if value is not None:
                     os.environ[name] = value
 
 
 def as_given(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Return the only table. Figures that draw a study without changes use it as `table`."""
-    (table,) = tables.values()
-    return table
+    """Return the only one of the tables.
+
+    A figure that draws the table of one study as it is uses this function as its `table`.
+    """
+    (only_table,) = tables.values()
+    return only_table
 
 
 def new_panels(
     width: float, height: float, letters: str, **options: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure with lettered panels.
+    """Return a figure and its panels, which are marked (a), (b), ...
 
-    ``letters`` arranges them in rows, such as "aab;ccc" for a wide and a narrow panel above one
-    that is as wide as both.
+    width, height : size of the figure in inches
+    letters : arrangement of the panels in rows; "aab;ccc" puts a wide panel a and a narrow panel b
+        above a panel c that is as wide as both
+    options : arguments of `Figure.subplot_mosaic`
     """
     figure = Figure(figsize=(width, height), layout="constrained")
     panels = figure.subplot_mosaic(letters, **options)
@@ -174,7 +180,7 @@ def new_panels(
 
 
 def small_inset(axes: Axes, box: Box, title: str) -> Axes:
-    """Add an inset with small text to a panel."""
+    """Add an inset with small text to a panel, and return its axes."""
     inset = axes.inset_axes(box)
     inset.tick_params(labelsize=SMALL_TEXT, length=1.5, pad=1.5)
     inset.set_title(title, loc="center", fontsize=SMALL_TEXT, pad=2.5)
@@ -182,13 +188,16 @@ def small_inset(axes: Axes, box: Box, title: str) -> Axes:
 
 
 def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
-    """Set the ticks that have numbers. On a logarithmic axis, no other tick has a number."""
+    """Set the ticks that have numbers. The minor ticks of a logarithmic axis have none."""
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
     axis.set_minor_formatter(NullFormatter())
 
 
 def colour_scale(quantity: str) -> ScalarMappable:
-    """Return the colours of a quantity of SCALES, for a colour bar or for ``to_rgba``."""
+    """Return the colour scale of a quantity of SCALES.
+
+    It can be drawn as a colour bar, and its method ``to_rgba`` converts values to colours.
+    """
     scale = SCALES[quantity]
     colours = matplotlib.colormaps[scale.colour_map](np.linspace(scale.first, scale.last, 256))
     return ScalarMappable(scale.norm, ListedColormap(colours))
@@ -200,19 +209,26 @@ def colour(quantity: str, value: float | np.ndarray | pd.Series) -> np.ndarray:
 
 
 def panel_letter(axes: Axes, letter: str) -> None:
-    """Mark a panel by (a), (b), ... above its upper left corner."""
+    """Write the letter of a panel in brackets, such as (a), above its upper left corner."""
     axes.set_title(f"({letter})", loc="left", fontweight="bold")
 
 
 def entry(label: str, **look: Any) -> Line2D:
-    """Return an entry of a legend: a line, or a marker without a line."""
+    """Return an entry of a legend: a line, or, if the look has a marker, a marker without a line.
+
+    look : keyword arguments of `Line2D`
+    """
     if "marker" in look:
         look = {"linestyle": "none"} | look
     return Line2D([], [], label=label, **look)
 
 
 def conditions(held: bool, **numbers: float) -> str:
-    """Return a title with the boundary condition and parameters, which are named as in SYMBOLS."""
+    """Return a title with the boundary condition and parameters, such as "Gamma = 1, W = 2".
+
+    held : True if the displacement is held on top
+    numbers : parameters by their names in SYMBOLS
+    """
     parts = [rf"$\Gamma = {int(held)}$"]
     parts += [f"${SYMBOLS[name]} = {value:g}$" for name, value in numbers.items()]
     return ", ".join(parts)
@@ -224,21 +240,24 @@ def by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
 
 
 def draw_first_order(axes: Axes, spacings: pd.Series, slope: float, colour: str) -> None:
-    """Draw a line for errors in proportion to the spacing, on logarithmic axes."""
+    """Draw the line error = slope * spacing on logarithmic axes, over the range of the spacings."""
     ends = spacings.agg(["min", "max"]).to_numpy()
     axes.plot(ends, slope * ends, ":", color=colour, linewidth=0.8, label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
 
 
 def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
-    """Mark the regime of each run, as a function of a column (horizontal) and of the level."""
+    """Mark the regime of each run by colour and marker, with its level on the vertical axis.
+
+    x : the column on the horizontal axis
+    """
     for regime, rows in runs.groupby("regime"):
         colour, marker = REGIMES[str(regime)]
         axes.plot(rows[x], rows["level"], marker, **{"color": colour, "label": regime} | look)
 
 
 def labelled(panels: Sequence[Axes]) -> list[Artist]:
-    """Return one artist for each label in the panels."""
+    """Return one artist for each label in the panels, for a legend that all panels share."""
     handles: dict[object, Artist] = {}
     for axes in panels:
         handles |= {artist.get_label(): artist for artist in axes.get_legend_handles_labels()[0]}
@@ -246,53 +265,62 @@ def labelled(panels: Sequence[Axes]) -> list[Artist]:
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
-    """Place one legend above all panels, with the labels of one panel."""
+    """Place a legend in one line above all panels of a figure, with the labels of one panel."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), **look)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
-    """Place one legend below all panels."""
+    """Place a legend below all panels of a figure."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = "") -> None:
     """Write a figure as PNG and PDF, without dates, and with an optional note below it."""
     if note:
-        width, height = figure.get_size_inches()
-        text = fill(note, int(width * NOTE_CHARACTERS_PER_INCH))
-        added = NOTE_GAP + NOTE_LINE_HEIGHT * (1 + text.count("\n"))
-        figure.set_size_inches(width, height + added)
-        bottom = added / (height + added)
-        figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
-        look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL_TEXT, "color": ORANGE}
-        # A note may quote values of the user, in which a dollar sign does not begin a formula.
-        figure.text(0.995, 0.005, text, parse_math=False, **look).set_in_layout(False)
+        _add_note(figure, note)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     # The PDF has the layout of the PNG. With a layout engine it would be drawn twice.
     figure.set_layout_engine(None)
     source = f"configuration {configuration()}" if configuration() else None
-    vectors = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": source}
-    write_whole(png, lambda part: _save_png(canvas, part, source))
-    write_whole(pdf, lambda part: figure.savefig(part, format="pdf", metadata=vectors))
+    metadata = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": source}
+    write_whole(png, lambda path: _save_png(canvas, path, source))
+    write_whole(pdf, lambda path: figure.savefig(path, format="pdf", metadata=metadata))
+
+
+def _add_note(figure: Figure, note: str) -> None:
+    """Write a note below a figure, and make the figure higher by as much as the note needs."""
+    width, height = figure.get_size_inches()
+    text = fill(note, int(width * NOTE_CHARACTERS_PER_INCH))
+    note_height = NOTE_GAP + NOTE_LINE_HEIGHT * (1 + text.count("\n"))
+    figure.set_size_inches(width, height + note_height)
+    bottom = note_height / (height + note_height)
+    figure.set_layout_engine("constrained", rect=(0.0, bottom, 1.0, 1.0 - bottom))
+    look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL_TEXT, "color": ORANGE}
+    # A note may quote values of the user, in which a dollar sign does not begin a formula.
+    figure.text(0.995, 0.005, text, parse_math=False, **look).set_in_layout(False)
 
 
 def _save_png(canvas: FigureCanvasAgg, path: Path, source: str | None) -> None:
-    """Write a PNG of 256 colours.
+    """Write a PNG with a palette of 256 colours, the last of which is white.
 
     It has a third of the bytes of a PNG with all colours, and a mean error below half a level.
+
+    source : text that is written into the file as a comment
     """
-    text, dpi = PngInfo(), canvas.figure.dpi
+    comments, dpi = PngInfo(), canvas.figure.dpi
     if source:
-        text.add_text("Comment", source)
+        comments.add_text("Comment", source)
     pixels = np.asarray(canvas.buffer_rgba())
     # Most pixels are white. Without them, the 255 other colours are found in half of the time.
-    is_ink = pixels.view(np.uint32)[..., 0] != WHITE_PIXEL
-    ink = Image.fromarray(pixels[np.newaxis, is_ink]).convert("RGB")
-    reduced = ink.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    colour_numbers = np.full(is_ink.shape, 255, dtype=np.uint8)
-    colour_numbers[is_ink] = np.asarray(reduced)[0]
-    picture, palette = Image.fromarray(colour_numbers).convert("P"), reduced.getpalette() or []
+    is_coloured = pixels.view(np.uint32)[..., 0] != WHITE_PIXEL
+    coloured = Image.fromarray(pixels[np.newaxis, is_coloured]).convert("RGB")
+    reduced = coloured.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    colour_numbers = np.full(is_coloured.shape, 255, dtype=np.uint8)
+    colour_numbers[is_coloured] = np.asarray(reduced)[0]
+    picture = Image.fromarray(colour_numbers).convert("P")
+    # The palette has red, green and blue of each colour. Unused entries become white.
+    palette = reduced.getpalette() or []
     picture.putpalette(palette + [255] * (3 * 256 - len(palette)))
-    picture.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
+    picture.save(path, format="png", dpi=(dpi, dpi), pnginfo=comments)

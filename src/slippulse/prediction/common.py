@@ -7,7 +7,7 @@ from typing import TypeVar
 from ..model.run import Run
 
 Result = TypeVar("Result")
-# A position far from the nucleation point on each side.
+# Positions far from the nucleation point, one on each side.
 FAR_POSITIONS = {"left": -1e300, "right": 1e300}
 
 
@@ -17,16 +17,15 @@ def far_level(run: Run, side: str) -> float:
 
 
 def rounded_damping_ratio(run: Run) -> float:
-    """Return beta/dx with 12 digits.
+    """Return the damping ratio beta/dx of a run, rounded to 12 digits.
 
-    Without rounding, runs with the same ratio but different dx would have slightly different
-    numbers, and cached results would not be found.
+    Runs with the same ratio but different dx then have equal numbers, and share cached results.
     """
     return float(f"{run.damping_ratio:.12g}")
 
 
 def value_or(compute: Callable[[], Result], missing: Result) -> Result:
-    """Return a result of the theory, or ``missing`` if it cannot be computed.
+    """Return the result of a function of the theory, or ``missing`` if it cannot be computed.
 
     The theory raises ValueError outside its domain, and ArithmeticError if numbers overflow.
     """
@@ -37,5 +36,5 @@ def value_or(compute: Callable[[], Result], missing: Result) -> Result:
 
 
 def value_or_nan(compute: Callable[[], float]) -> float:
-    """Return a number of the theory, or NaN if it cannot be computed."""
+    """Return the result of a function of the theory as a number, or NaN if there is none."""
     return float(value_or(compute, math.nan))

@@ -1,8 +1,8 @@
 """The measured table of a sweep, which has one row for each run.
 
-A row has the numbers that `measure_run` measures, and numbers that compare the run with theory: the
-state of the leading pulse, its deviation from the paper's shape, and the paper's T_trans and
-L_trans.
+A row has the numbers that `measure_run` measures, and numbers that compare the run with theory. The
+latter are the state of the leading pulse (steady, unsteady, ...) and its deviation from the paper's
+pulse. The time and the length of the transition by the paper's formulas are added to them.
 """
 
 import math
@@ -27,15 +27,15 @@ from ..theory.closed_pulse import (
     pulse_at_speed,
 )
 
-# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed, or
-# if the slip behind it varies. The allowed relative change is the same for both. The width may
-# differ by the thickness of the damped layer and by this number of blocks in addition, because the
-# front has this width.
+# A pulse is unsteady if its width differs by more than this fraction from that of the steady pulse
+# at the measured speed, or if the slip behind it varies by more.
 MAX_RELATIVE_CHANGE = 0.05
+# The measured width may differ further by the width of the front: the thickness of the damped layer
+# and this number of blocks.
 FRONT_WIDTH_IN_BLOCKS = 3.0
-# Largest thickness of the damped layer at the front, divided by the pulse width. The front speed is
-# computed without leaf springs. The error of this approximation grows with the square of the ratio,
-# and is one per cent at this value.
+# Largest thickness of the damped layer at the front, divided by the pulse width. The theory of the
+# front speed neglects leaf springs. Its error grows with the square of this ratio, and is one per
+# cent at this value.
 MAX_LAYER_TO_PULSE_WIDTH = 0.125
 
 
@@ -45,9 +45,9 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
 
 
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
-    """Return the measured numbers of a run by name, and those that compare it with theory.
+    """Return the measured numbers of a run by name, and numbers that compare the run with theory.
 
-    settings : see `measure_run`
+    settings : the section ``measure`` of the configuration, see `measure_run`
     """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
@@ -60,7 +60,11 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 
 
 def _paper_transition(run: AnyRun) -> tuple[float, float]:
-    """Return T_trans and L_trans by the paper's formulas; NaN where these do not hold."""
+    """Return the time and the length of the transition by the paper's formulas.
+
+    They are NaN with an extra term of the equation, where the formulas are not valid. If the
+    pre-stress levels on the two sides differ, only the length is NaN.
+    """
     if used_extra_terms(run.attrs):
         return math.nan, math.nan
     if run.attrs["boundary"] == "stress":
@@ -74,18 +78,19 @@ def _paper_transition(run: AnyRun) -> tuple[float, float]:
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """Return the state of the leading pulse, by the names that config/README.md explains.
 
-    A steady pulse has uniform slip, and the width of the exact pulse, which solves
-    beta v U''' + (v^2 - 1) U'' + gamma U = tau_0. The state is "none" if there is no pulse to
-    judge, or if no exact pulse is known: under a stress boundary, with another friction law than
-    "coulomb", or with an extra term of the equation.
+    A steady pulse leaves uniform slip behind, and has the width of the exact steady pulse
+    (`theory.steady_pulse`). The state is "none" if there is no pulse to compare. It is also "none"
+    if no exact pulse is known: under a stress boundary, with another friction law than "coulomb",
+    or with an extra term of the equation.
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
     if np.isfinite(pulse.front) and pulse.pulses != 1:
         return "several" if pulse.pulses else "stopped"
+    is_measured = np.isfinite([pulse.width, pulse.speed]).all()
     is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
     has_exact_pulse = is_coulomb and not used_extra_terms(run.attrs)
-    if not np.isfinite([pulse.width, pulse.speed]).all() or not has_exact_pulse:
+    if not is_measured or not has_exact_pulse:
         return "none"
     tau = _prestress_at_front(run)
     if not 0.0 < tau < 1.0:
@@ -96,7 +101,7 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
 
 
 def _prestress_at_front(run: AnyRun) -> float:
-    """Return the pre-stress of the last block that was released on the right."""
+    """Return the pre-stress of the block that was released last on the right."""
     _, distances = front_path(run)
     block_at_front = np.argmin(np.abs(np.asarray(run["x"]) - distances[-1]))
     return float(np.asarray(run["prestress"])[block_at_front])
@@ -109,35 +114,38 @@ def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> 
     """
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
-    layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
-    if layer > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
+    layer_thickness = beta * pulse.speed / (pulse.speed**2 - 1.0)
+    if layer_thickness > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"
-    allowed = MAX_RELATIVE_CHANGE * steady.width + layer + FRONT_WIDTH_IN_BLOCKS * dx
-    has_other_width = abs(pulse.width - steady.width) > allowed
-    # The variation is NaN for a young pulse, which has left no slip behind yet. It is then not
-    # larger than the limit, and the width alone decides.
-    has_other_slip = slip_variation(run, pulse) > MAX_RELATIVE_CHANGE
-    return "unsteady" if has_other_width or has_other_slip else "steady"
+    front_width = layer_thickness + FRONT_WIDTH_IN_BLOCKS * dx
+    largest_difference = MAX_RELATIVE_CHANGE * steady.width + front_width
+    has_other_width = abs(pulse.width - steady.width) > largest_difference
+    # A young pulse has left no slip behind yet. The variation is then NaN, which is not larger than
+    # any number, so that the width alone decides.
+    slip_varies = slip_variation(run, pulse) > MAX_RELATIVE_CHANGE
+    return "unsteady" if has_other_width or slip_varies else "steady"
 
 
 def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None = None) -> float:
-    """Return the largest deviation of slip velocity from the paper's pulse, relative to its peak.
+    """Return the largest deviation of slip velocity from the paper's pulse, divided by its peak.
 
-    The paper's pulse is a cosine, equations (9) and (C10). NaN under a stress boundary, with an
-    extra term of the equation, if there is no pulse, or if the pulse has too few blocks.
+    The velocity of the paper's pulse is a half wave of a cosine, equations (9) and (C10). Its peak
+    is put at the measured peak. NaN under a stress boundary, with an extra term of the equation, if
+    there is no pulse, or if the pulse has too few blocks.
 
     level_ahead : pre-stress in front of the pulse; by default the level on the right of the profile
     """
     tau = level_ahead if level_ahead is not None else run.attrs["right"]
-    has_cosine = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
-    if not has_cosine or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
+    has_paper_pulse = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
+    if not has_paper_pulse or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
-    from_peak = fields["xi"] - (pulse.peak_distance - pulse.front)
+    distance_to_peak = fields["xi"] - (pulse.peak_distance - pulse.front)
     # The two outermost blocks are left out, because the lattice rounds the corners of the cosine.
-    inside = np.abs(from_peak) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
-    if np.count_nonzero(inside) < 4:
+    is_compared = np.abs(distance_to_peak) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
+    if np.count_nonzero(is_compared) < 4:
         return np.nan
-    _, cosine, _ = paper.profile(from_peak[inside] + paper.peak_position)
-    return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)
+    paper_fields = paper.profile(distance_to_peak[is_compared] + paper.peak_position)
+    deviation = fields["slip_velocity"][is_compared] - paper_fields.velocity
+    return float(np.max(np.abs(deviation)) / paper.peak_velocity)

@@ -18,8 +18,8 @@ from ..model.scene import check_run_attributes
 from ..theory.prestress_pieces import nucleation_intervals
 from .comparison import measured_row
 
-# The settings under ``measure`` in the shipped configuration. They are repeated here, because that
-# file is not part of the library.
+# The settings under ``measure`` in config/config.yaml. They are repeated here, because this file is
+# not part of the library.
 MEASURE_SETTINGS: dict[str, Any] = {
     "fraction": 0.95,
     "front_window": 0.3,
@@ -29,7 +29,7 @@ MEASURE_SETTINGS: dict[str, Any] = {
 }
 
 
-# Numbers that are distances between the two fronts of one rupture.
+# Measured numbers that are distances between the two fronts of a rupture.
 RUPTURE_LENGTHS = ("transition_length", "slip_length_background", "slip_length_nucleation")
 
 
@@ -37,15 +37,15 @@ def measure(run: xr.Dataset) -> Any:
     """Measure a run, or every run of a sweep: T_trans, L_trans, front speeds, pulse and flags.
 
     The numbers are the same as in `results/measurements`, with the settings of the shipped
-    configuration. In addition, T_trans and L_trans are measured under a displacement boundary with
-    different levels.
+    configuration. In addition, under a displacement boundary T_trans and L_trans are also measured
+    if the pre-stress levels on the two sides differ.
 
     Parameters
     ----------
     run : xarray.Dataset
         A run from `simulate` (of a lattice or of the exact solution), `point` or `Layer.to_si`. Or
-        a sweep that has "fronts" recorded, a selection of its runs, or a grid from `as_grid`. The
-        regime is classified if the run has `Samples` at two or more positions.
+        a sweep that was recorded with "fronts", a selection of its runs, or a grid from `as_grid`.
+        The regime is classified if the run has `Samples` at two or more positions.
 
     Returns
     -------
@@ -71,8 +71,8 @@ def measure(run: xr.Dataset) -> Any:
     Notes
     -----
     Source: sections III B and III C of the paper for the transition. Under a displacement boundary
-    T_trans is the first stick, and L_trans the distance between both fronts then; under a stress
-    boundary the left front has then covered 95 % of ``|x_minus|``.
+    T_trans is the time of the first stick. Under a stress boundary it is the time at which the left
+    front has covered 95 % of ``|x_minus|``. L_trans is the distance between both fronts at T_trans.
 
     Examples
     --------
@@ -102,43 +102,49 @@ def _measure_run(run: xr.Dataset) -> dict[str, Any]:
     is_run = {"release_time", "stick_time"} <= set(run) and "point" not in run.dims
     check_that(is_run, "run", run, "a Dataset that simulate returned")
     layer = layer_of(run.attrs)
-    if layer is not None:
-        return layer.numbers_to_si(_numbers(layer.from_si(run), {"trailing_times": []}))
-    return _numbers(run, {})
+    if layer is None:
+        return _numbers(run, {})
+    # The names of the numbers ``trailing_edge_*`` contain times, which would be those of the model.
+    numbers = _numbers(layer.from_si(run), {"trailing_times": []})
+    return layer.numbers_to_si(numbers)
 
 
 def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     """Return the measured numbers of a run that is in the units of the model.
 
-    settings : settings that replace MEASURE_SETTINGS
+    settings : settings that differ from MEASURE_SETTINGS
     """
     check_run_attributes(run.attrs)
     allowed = "a whole run, without blocks cut off or left out along x"
     check_that(_has_all_blocks(run), "run", run, allowed)
     no_transition = dict.fromkeys(("transition_time", "transition_length"), math.nan)
-    row = no_transition | measured_row(run, MEASURE_SETTINGS | settings)
+    numbers = no_transition | measured_row(run, MEASURE_SETTINGS | settings)
     profile = prestress_from(run.attrs)
     is_held = run.attrs["boundary"] == "displacement"
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
-        row |= first_stick(run)
+        numbers |= first_stick(run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
-        row |= {name: math.nan for name in RUPTURE_LENGTHS if name in row}
-    reason = _explain_missing_transition(row, has_several_nucleations)
-    return row | {"transition_reason": reason}
+        # The two outermost fronts then belong to different ruptures.
+        numbers |= {name: math.nan for name in RUPTURE_LENGTHS if name in numbers}
+    reason = _explain_missing_transition(numbers, has_several_nucleations)
+    return numbers | {"transition_reason": reason}
 
 
-def _explain_missing_transition(row: Mapping[str, Any], has_several_nucleations: bool) -> str:
-    """Return the reason why T_trans or L_trans is NaN; empty text if both are numbers."""
-    time, length = row["transition_time"], row["transition_length"]
+def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleations: bool) -> str:
+    """Return the reason why T_trans or L_trans is NaN; empty text if neither is.
+
+    numbers are the measured numbers of a run.
+    """
+    time, length = numbers["transition_time"], numbers["transition_length"]
     if math.isfinite(time) and math.isfinite(length):
         return ""
-    if row["boundary"] == "stress":
-        if "transition_state" not in row:
+    if numbers["boundary"] == "stress":
+        if "transition_state" not in numbers:
             return "under a stress boundary the paper defines it only for left < 0 and right = 0"
         if math.isnan(time):
             return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
-    elif max(row["left"], row["right"]) <= 0.0:
+    elif max(numbers["left"], numbers["right"]) <= 0.0:
         return "both levels are 0 or negative, and no pulse continues to run there"
     elif math.isnan(time):
         return "no block stuck before the end"
@@ -150,14 +156,15 @@ def _explain_missing_transition(row: Mapping[str, Any], has_several_nucleations:
 def _has_all_blocks(run: xr.Dataset) -> bool:
     """Return True if no block of a run is missing.
 
-    The blocks must have equal distances, the first and the last must never have been released, and
-    the number of released blocks must be that of the simulation.
+    The blocks must have equal distances. The first and the last one must never have been released.
+    The number of released blocks must be the number that the simulation has recorded.
     """
-    x, released = run["x"].values, np.isfinite(run["release_time"].values)
-    if x.size < 2 or released[0] or released[-1]:
+    x, is_released = run["x"].values, np.isfinite(run["release_time"].values)
+    if x.size < 2 or is_released[0] or is_released[-1]:
         return False
-    # If half of the lattice was simulated, the numbers of releases are those of that half.
-    counted_side = x >= 0.0 if run.attrs["half_lattice_used"] else True
+    # If half of the lattice was simulated, the recorded numbers of releases are those of that half.
+    is_counted = x >= 0.0 if run.attrs["half_lattice_used"] else True
+    # A block may be released again. Here only its first release counts.
     first_releases = run.attrs["releases"] - run.attrs["re_releases"]
     has_equal_spacing = np.allclose(np.diff(x), run.attrs["dx"], rtol=1e-6, atol=0.0)
-    return has_equal_spacing and np.count_nonzero(released & counted_side) == first_releases
+    return has_equal_spacing and np.count_nonzero(is_released & is_counted) == first_releases

@@ -1,4 +1,4 @@
-"""Predicted speeds of the two fronts of each run: by the paper, exact, and on a coarse lattice."""
+"""Predicted speeds of both fronts of each run: by the paper, exact, and with leaf springs."""
 
 from functools import cache
 
@@ -11,21 +11,22 @@ from ..theory.front_speeds import front_speed
 from ..theory.front_speeds_with_springs import lattice_front_speed
 from .common import FAR_POSITIONS, far_level, rounded_damping_ratio, value_or_nan
 
-# Friction laws for which these numbers hold. Friction that is linear in slip rate does not change
-# the front speed.
+# Friction laws for which these numbers are valid. Friction that is linear in slip rate does not
+# change the front speed.
 LAWS = ("coulomb", "linear_rate")
-# If gamma dx^2 is smaller, leaf springs hardly change the speed of a damped front. It is then not
-# computed, since that takes 14 ms for each run.
+# If gamma dx^2 is smaller than this, leaf springs hardly change the speed of a damped front. The
+# speed with leaf springs is then not computed, since that takes 14 ms for each run.
 MIN_GAMMA_DX2 = 1e-3
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
-    """Return front speeds on both sides, one row for each run.
+    """Return the front speeds of each run on both sides, one row for each run.
 
     The columns are paper_front_speed_SIDE, exact_front_speed_SIDE (without leaf springs) and
     lattice_front_speed_SIDE (with the leaf springs of a lattice of spacing dx), where SIDE is left
     or right.
     """
+    # Without damping the exact speed is that of the paper's formula.
     undamped = [run._replace(beta=0.0) for run in runs]
     table: dict[str, np.ndarray | list[float]] = {}
     for side in FAR_POSITIONS:
@@ -45,7 +46,10 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 
 def exact_front_speeds(runs: list[Run], side: str) -> np.ndarray:
-    """Return the front speed of each run without leaf springs; NaN if the level is not > 0."""
+    """Return the front speed of each run on a side, "left" or "right", without leaf springs.
+
+    It is the speed into the pre-stress far from the nucleation point; NaN if this is not positive.
+    """
     levels = np.array([far_level(run, side) for run in runs])
     ratios = np.array([rounded_damping_ratio(run) for run in runs])
     releases = np.array([run.release for run in runs])
@@ -54,17 +58,18 @@ def exact_front_speeds(runs: list[Run], side: str) -> np.ndarray:
         chosen = (levels > 0.0) & (releases == release)
         # Each different pair of level and damping ratio is computed once.
         all_pairs = [levels[chosen], ratios[chosen]]
-        pairs, indices = np.unique(all_pairs, axis=1, return_inverse=True)
-        speeds[chosen] = front_speed(pairs[0], pairs[1], release)[indices.ravel()]
+        (levels_once, ratios_once), indices = np.unique(all_pairs, axis=1, return_inverse=True)
+        speeds_once = front_speed(levels_once, ratios_once, release)
+        speeds[chosen] = speeds_once[indices.ravel()]
     return speeds
 
 
 @cache
 def _lattice_speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
-    """Return the front speed on a lattice with leaf springs.
+    """Return the front speed on a lattice with leaf springs, into pre-stress of a level.
 
     NaN without leaf springs, if they hardly change the speed, or if they are so strong that no
-    front is supersonic.
+    front outruns the waves. ratio is the damping ratio beta/dx.
     """
     if gamma == 0.0 or (ratio > 0.0 and gamma * dx**2 < MIN_GAMMA_DX2):
         return np.nan

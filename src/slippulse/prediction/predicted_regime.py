@@ -1,4 +1,4 @@
-"""Predicted regime: the one in which a rupture ends after a long time, by the exact solution."""
+"""Predicted regime of each run: crack or pulse, after a long time, by the exact solution."""
 
 import numpy as np
 import pandas as pd
@@ -8,29 +8,29 @@ from ..model.run import Run
 from ..theory.front_speeds import front_speed
 from .common import far_level, rounded_damping_ratio
 
-# Friction laws for which these numbers hold.
+# Friction laws for which the regime is valid.
 LAWS = ("coulomb",)
 
 
 def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
-    """Return the final regime of each run, in the column exact_regime."""
+    """Return the final regime of each run, in the column exact_regime.
+
+    The setting ``still`` is the fraction of the largest slip velocity below which a point counts as
+    at rest.
+    """
     return pd.DataFrame({"exact_regime": [_regime(run, settings["still"]) for run in runs]})
 
 
 def _regime(run: Run, still_fraction: float) -> str:
-    """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table."""
+    """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
+
+    still_fraction is explained in `final_regime`.
+    """
     profile = run.prestress
     if profile.bumps or profile.points:
         return UNDECIDED
     if profile.steps:
-        # A pulse that has formed in pre-stress 0 reaches the steps, which lie ahead of it. Its
-        # velocity then grows by half the integral of the pre-stress that it crosses.
-        has_pulse_levels = profile.left < 0.0 and profile.right == 0.0
-        pulse_forms = run.boundary == "stress" and has_pulse_levels
-        steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
-        if not (pulse_forms and steps_are_ahead):
-            return UNDECIDED
-        return pulse_regime("one-way", change=far_level(run, "right"), tolerance=0.0)
+        return _regime_with_steps(run)
     return final_regime(
         profile.left,
         profile.right,
@@ -39,6 +39,22 @@ def _regime(run: Run, still_fraction: float) -> str:
         release=run.release,
         still_fraction=still_fraction,
     )
+
+
+def _regime_with_steps(run: Run) -> str:
+    """Return the final regime of a run whose pre-stress has steps; UNDECIDED in most cases.
+
+    It is decided if a pulse to the right forms before it reaches the first step.
+    """
+    profile = run.prestress
+    has_pulse_levels = profile.left < 0.0 and profile.right == 0.0
+    pulse_forms = run.boundary == "stress" and has_pulse_levels
+    steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
+    if not (pulse_forms and steps_are_ahead):
+        return UNDECIDED
+    # The velocity of the pulse grows by half the integral of the pre-stress that it crosses. So the
+    # sign of the pre-stress beyond the last step decides whether it grows or decays.
+    return pulse_regime("one-way", change=far_level(run, "right"), tolerance=0.0)
 
 
 def final_regime(
@@ -51,23 +67,28 @@ def final_regime(
 ) -> str:
     """Return the final regime in the continuum limit, for one pre-stress level on each side.
 
-    With leaf springs, a front into a negative level stops. A front into a positive level stays
-    supersonic; the nucleation point sticks (`theory.trailing_edge`), and the pulse becomes steady
-    within a finite distance. A pulse into a level 0 narrows like 1/t and decays. If one level is 0
-    and the other is not negative, the regime is UNDECIDED.
+    left and right are the levels. A rupture is a pulse if the slip velocity at the nucleation point
+    is less than ``still_fraction`` times the largest slip velocity.
 
-    Without leaf springs, du/dt at a point is half the integral of tau between the two positions at
-    which the characteristics through this point enter the rupture. If both levels are >= 0, du/dt
-    never falls, and the rupture is a crack. If both are < 0, the rupture is arrested when the
-    integral of tau over it vanishes, which happens at a finite size.
+    With leaf springs (gamma > 0), a front into a negative level stops. A front into a positive
+    level remains faster than the waves. Behind it the nucleation point sticks
+    (`theory.trailing_edge`), and the pulse becomes steady within a finite distance. A pulse into
+    the level 0 becomes narrower in proportion to 1/t, and decays. If one level is 0 and the other
+    one is not negative, the regime is UNDECIDED.
 
-    There remains a level -n < 0 on one side and p >= 0 on the other. The front into -n moves such
-    that the integral of tau over the rupture vanishes (`theory.arrest`): when the front into p is
-    at a distance e, it is at the distance (p/n) e. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where
-    v is the front speed into p: it never stops, but is slower than the waves. After a long time,
-    du/dt at the nucleation point divided by its largest value in the rupture tends to
-    r/(1 + 1/v + 2 r), where r = p/n. The rupture is a pulse if this is less than
-    ``still_fraction``.
+    Without leaf springs, du/dt at a point is half the integral of the pre-stress tau between the
+    two positions where the characteristics through this point enter the rupture. If neither level
+    is negative, du/dt never falls, and the rupture is a crack. If both levels are negative, the
+    rupture is arrested when the integral of tau over it is 0, which happens at a finite size.
+
+    There remains a level -n < 0 on one side and a level p >= 0 on the other. If p is 0, a pulse
+    runs there that keeps its shape. If p > 0, the front into -n is moved by waves that started on
+    the front into p (`theory.arrest`). A wave that started at a distance e from the nucleation
+    point moves it to the distance (p/n) e, so that the integral of tau between the two positions is
+    0. So the front into -n never stops. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where v is the
+    speed of the front into p, and is below 1. The slip velocity at the nucleation point, divided by
+    the largest one in the rupture, tends to r/(1 + 1/v + 2 r), where r = p/n. The rupture is a
+    pulse if this is less than ``still_fraction``, that is, if r is below `largest_pulse_ratio`.
     """
     low, high = sorted((left, right))
     if high < 0.0:
@@ -87,8 +108,8 @@ def final_regime(
             level=high, damping_ratio=damping_ratio, release=release, still_fraction=still_fraction
         )
     )
-    becomes_pulse = high / -low < largest_ratio
-    return "pulse, one-way, growing" if becomes_pulse else "crack-like, one front slow"
+    is_pulse = high / -low < largest_ratio
+    return "pulse, one-way, growing" if is_pulse else "crack-like, one front slow"
 
 
 def largest_pulse_ratio(
@@ -96,7 +117,10 @@ def largest_pulse_ratio(
 ) -> np.ndarray:
     """Return the ratio p/n of levels below which a rupture without leaf springs becomes a pulse.
 
-    level : the positive level p; the ratio and the other arguments are those of `final_regime`
+    The pre-stress level is p > 0 on one side, and -n < 0 on the other. The ratio follows from the
+    condition in the last paragraph of `final_regime`.
+
+    level : the positive level p, a number or an array
     """
     speed = front_speed(level, damping_ratio, release)
     return still_fraction * (1.0 + 1.0 / speed) / (1.0 - 2.0 * still_fraction)

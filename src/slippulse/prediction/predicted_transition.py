@@ -1,7 +1,7 @@
-"""Predicted T_trans and L_trans of each run, by the exact theory.
+"""Predicted transition of each run, its time T_trans and its length L_trans, by the exact theory.
 
-Under a displacement boundary the transition is the first stick. Under a stress boundary the left
-front has then covered a given fraction of its way to the balance position.
+Under a displacement boundary the transition is the first stick. Under a stress boundary it takes
+place when the left front has covered a given fraction of its way to the balance position.
 """
 
 import math
@@ -17,7 +17,7 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from .common import far_level, rounded_damping_ratio, value_or, value_or_nan
 
-# Friction laws for which these numbers hold.
+# Friction laws for which these numbers are valid.
 LAWS = ("coulomb",)
 NO_TRANSITION = dict.fromkeys(("exact_transition_time", "exact_transition_length"), math.nan)
 
@@ -28,43 +28,51 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     The columns are exact_transition_time and exact_transition_length. Under a displacement boundary
     there is also exact_first_stick_time. Under a stress boundary there are also
     exact_balance_distance and, for the pulse far from the nucleation, exact_largest_velocity and
-    exact_half_width.
+    exact_half_width. The setting ``fraction`` is that of the module docstring.
     """
     return pd.DataFrame([_row(run, settings["fraction"]) for run in runs])
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    """Return one row of `predictions`."""
+    """Return the row of `predictions` for one run."""
     if run.boundary == "displacement":
         return _row_under_displacement(run)
     return _row_under_stress(run, fraction)
 
 
 def _gaussian_width(profile: Prestress) -> float | None:
-    """Return the width of a profile that is a single Gaussian; None for any other profile."""
-    has_parts = profile.steps or profile.bumps or profile.points
-    return profile.width if profile.peak == 1.0 and not has_parts else None
+    """Return the width of a profile that is one Gaussian with the peak 1; None for any other."""
+    has_other_parts = profile.steps or profile.bumps or profile.points
+    return profile.width if profile.peak == 1.0 and not has_other_parts else None
 
 
 def _row_under_displacement(run: Run) -> dict[str, float]:
-    """Return the numbers of the first stick of a single Gaussian between equal levels."""
+    """Return the numbers of the first stick, which theory has for equal levels on both sides.
+
+    The pre-stress must be a single Gaussian between these levels. Otherwise the numbers are NaN.
+    """
     profile = run.prestress
-    if not (_gaussian_width(profile) and profile.left == profile.right > 0.0):
+    has_equal_levels = profile.left == profile.right and profile.left > 0.0
+    if not (_gaussian_width(profile) and has_equal_levels):
         return {**NO_TRANSITION}
     find_stick = partial(_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release)
     return NO_TRANSITION | value_or(find_stick, NO_TRANSITION)
 
 
 def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
-    """Return the balance distance and, for a single Gaussian, the numbers of the arrest."""
+    """Return the balance distance, the numbers of the transition, and those of the far pulse.
+
+    They exist if the pre-stress far away is negative on the left and 0 on the right. Except for the
+    balance distance, it must also be a single Gaussian between these levels.
+    """
     row = {**NO_TRANSITION}
-    profile, ratio = run.prestress, rounded_damping_ratio(run)
+    profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
     if far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0:
         balance_position = value_or_nan(partial(prestress_balance_position, profile))
         row["exact_balance_distance"] = -balance_position
     width = _gaussian_width(profile)
     if width and profile.left < 0.0 and profile.right == 0.0:
-        find_arrest = partial(_arrest, profile.left, ratio, run.release, fraction)
+        find_arrest = partial(_arrest, profile.left, damping_ratio, run.release, fraction)
         for_unit_width = value_or(find_arrest, NO_TRANSITION)
         # All lengths and times, and the velocity, are proportional to the width.
         row |= {name: value * width for name, value in for_unit_width.items()}
@@ -72,19 +80,31 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
 
 
 @cache
-def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -> dict[str, float]:
-    """Return the transition under a displacement boundary, which is the first stick."""
-    exact = exact_transition_displacement(profile, gamma, ratio, release)
-    times = dict.fromkeys(("exact_transition_time", "exact_first_stick_time"), exact.time)
-    return times | {"exact_transition_length": exact.length}
+def _first_stick(
+    profile: Prestress, gamma: float, damping_ratio: float, release: str
+) -> dict[str, float]:
+    """Return the numbers of the transition under a displacement boundary, which is the first stick.
+
+    They are named as the columns of `predictions`.
+    """
+    exact = exact_transition_displacement(profile, gamma, damping_ratio, release)
+    return {
+        "exact_transition_time": exact.time,
+        "exact_first_stick_time": exact.time,
+        "exact_transition_length": exact.length,
+    }
 
 
 @cache
-def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[str, float]:
-    """Return the transition under a stress boundary, and numbers of the pulse, for width 1."""
-    crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
-    # Very close to the balance position, forces that the theory neglects hold the front, and the
-    # theory refuses to give a time.
+def _arrest(left: float, damping_ratio: float, release: str, fraction: float) -> dict[str, float]:
+    """Return the numbers of the transition under a stress boundary, and of the far pulse.
+
+    The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
+    the columns of `predictions`.
+    """
+    crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
+    # Very close to the balance position the left front is held by forces that the theory neglects.
+    # The theory then raises an error instead of returning a time.
     time, length = value_or(lambda: crack.transition(fraction), (math.nan, math.nan))
     return {
         "exact_largest_velocity": crack.peak_velocity,
@@ -95,17 +115,20 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
 
 
 def _half_width(crack: ArrestingCrack) -> float:
-    """Return the full width, at half of its peak velocity, of the pulse far from the nucleation.
+    """Return the width of the pulse far from the nucleation, at half of its peak velocity.
 
-    In the pulse, slip velocity at the characteristic from x is half the integral of tau from x to
-    the end. It is half of its peak once on each side of the zero of tau.
+    The pulse consists of waves that run to the right, and started on a front. The slip velocity of
+    the wave that started at x is half the integral of the pre-stress to the right of x. It is
+    largest where the pre-stress is 0, and half as large once on each side.
     """
 
-    def above_half(x: float) -> float:
-        """Return twice the slip velocity at the characteristic from x, less the peak velocity."""
+    def excess_over_half(x: float) -> float:
+        """Return twice the slip velocity of the wave that started at x, minus the peak velocity."""
         return integral(crack.prestress, x, crack.end) - crack.peak_velocity
 
-    ahead = root_between(above_half, crack.zero, crack.end, xtol=1e-12)
-    rear = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)
-    # The width is the distance of the two characteristics x - t = const.
-    return float((ahead - float(crack.fronts.arrival(ahead))) - (rear - crack.time_at(rear)))
+    ahead = root_between(excess_over_half, crack.slow_start, crack.end, xtol=1e-12)
+    rear = root_between(excess_over_half, crack.balance_position, crack.slow_start, xtol=1e-12)
+    # x - t does not change along a wave. The width is the difference of these values.
+    ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
+    rear_minus_time = rear - crack.time_at(rear)
+    return float(ahead_minus_time - rear_minus_time)

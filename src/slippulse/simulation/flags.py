@@ -29,6 +29,11 @@ MAX_STEP_ERROR = 2e-2
 # few blocks of the front.
 MIN_DAMPING_RATIO_OF_FRONTS = 0.1
 MAX_BLOCKS_BEHIND_FRONT = 5
+# A front that stood still for longer than this time, in units of H/c, was set in motion again by
+# such waves, and small errors decide where it stops. In 885 scenes with rough tables an independent
+# solver stopped 6 of 1770 fronts more than two blocks away or with another fate. These fronts had
+# stood still for 12 or more, at damping ratios up to 0.02.
+MAX_STANDSTILL = 5.0
 
 # Number of positions within the reach of the waves at which the lowest pre-stress is searched for.
 PRESTRESS_POSITIONS = 10_001
@@ -54,6 +59,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
             "first_stick_at_front": first_stick_at_front(scene, solution),
+            "front_restarted": front_restarted(scene, solution),
             "negative_velocity": numbers["min_velocity"] < lowest_velocity,
             # This form of the condition also flags a residual that is NaN.
             "energy": not numbers["energy_residual"] <= MAX_ENERGY_RESIDUAL,
@@ -101,6 +107,24 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
     is_held_back = bool(profile(side * front) < 0.0)
     distance_to_front = front - abs(position)
     return is_held_back and distance_to_front <= MAX_BLOCKS_BEHIND_FRONT * scene.dx
+
+
+def front_restarted(scene: Scene, solution: Solution) -> bool:
+    """Return True if waves of a few blocks may have set a front in motion again.
+
+    The damping must be weak. Only tables of pre-stress are examined: between constant levels, the
+    state of the transition shows that a front was delayed.
+    """
+    if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
+        return False
+    for side in (1, -1):
+        # The release times of one side, in order from x = 0 outwards.
+        start = np.searchsorted(side * solution.x[::side], 0.0)
+        times = solution.release_time[::side][start:]
+        waits = np.diff(np.maximum.accumulate(times[np.isfinite(times)]))
+        if np.max(waits, initial=0.0) > MAX_STANDSTILL:
+            return True
+    return False
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:

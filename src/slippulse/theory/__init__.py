@@ -12,7 +12,10 @@ _load, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
-    """Load a public name when it is first used; a removed one answers with the new way."""
-    if answer := describe_removal("theory", name):
-        raise AttributeError(answer)
+    """Load a public name when it is first used.
+
+    For a name of an older version, the error says what to use instead.
+    """
+    if what_to_use_instead := describe_removal("theory", name):
+        raise AttributeError(what_to_use_instead)
     return _load(name)

@@ -15,24 +15,26 @@ from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
 from .two_fronts import ExactTransition, fast_fronts
 
-# Beyond this number of widths from its centre, a Gaussian is 0 to rounding.
+# At this number of widths from its centre, a Gaussian is smaller than any positive number.
 GAUSSIAN_END_IN_WIDTHS = 48.0
-# Number of characteristics in each of the three sections of the far pulse.
+# The fronts have three sections: the right front, and the fast and the slow part of the left front.
+# The far pulse is computed on this number of characteristics from each section.
 SAMPLES_PER_SECTION = 400
 
 
 class ArrestingCrack(ExplainsRemovedNames):
     """A crack without leaf springs, whose left front slows down for ever.
 
-    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,
-    both from 0 on a front that outruns the waves. Where tau < 0, the left front is slower than the
-    waves, and slip, slip velocity and strain vanish on it, because there is no fracture energy. So
-    a characteristic that entered the rupture at e ends on the left front at X with
+    The front arrives at x at the time T(x), and du/dt = du/dx = 0 on it. Behind it, the sum
+    du/dt + du/dx changes by the integral of tau along each characteristic x + t = const, which runs
+    to the left. Where tau < 0, the left front is slower than the waves, and such characteristics
+    arrive at it. So one that enters the rupture at x = e ends on the left front, at x = X, with
 
-        Int_X^e tau dx = 0,   t = e + T(e) - X,
+        Int_X^e tau dx = 0,   t = e + T(e) - X.
 
-    and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is
-    infinite. Source: equation (11) and section III C of the paper for x_minus; the rest follows.
+    X tends to x_minus only as e -> infinity: the left front never arrives there, and the arrest
+    time is infinite. Source: equation (11) and section III C of the paper for x_minus; the rest
+    follows from it.
     Raises ValueError: if an argument, here or of a method, is outside of its range.
 
     Parameters
@@ -52,28 +54,29 @@ class ArrestingCrack(ExplainsRemovedNames):
     ) -> None:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
-        # Beyond this position the profile is 0 to rounding, and the right front runs at the wave
-        # speed.
+        # Beyond this position the pre-stress is 0, and the right front runs at the wave speed.
         width = prestress.width or 0.0
         self.end = max([GAUSSIAN_END_IN_WIDTHS * width, *(x for x, _ in prestress.points)])
+        # The right front, and the left front as far as it is faster than the waves.
         self.fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=self.end
         )
-        # The left end of the two fast fronts, where tau falls to 0.
-        self.zero = float(self.fronts.edges[0])
+        # The position where the left front becomes slow, because tau falls to 0 there.
+        self.slow_start = float(self.fronts.edges[0])
 
     def _entry_of(self, position: float) -> float:
-        """Return the entry of the characteristic that ends on the left front at a position.
+        """Return where the wave entered the rupture that arrives at the left front at a position.
 
-        The integral of tau from the position to the entry is 0.
+        The wave runs to the left. So it entered on the right of the position, through a fast front.
+        The integral of tau between the two positions is 0.
         """
-        integral_to = partial(integral, self.prestress, position)
-        # The entry lies on the two fast fronts, whose curve ends at self.end.
-        last = self.end - 1e-9
-        if integral_to(last) <= 0.0:
+        integral_from_position_to = partial(integral, self.prestress, position)
+        # The curve of the fast fronts ends at self.end.
+        last_entry = self.end - 1e-9
+        if integral_from_position_to(last_entry) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, the limit of the left front"
             raise ValueError(f"position: {position!r}; allowed: a position farther from {limit}")
-        return root_between(integral_to, self.zero, last, xtol=1e-13)
+        return root_between(integral_from_position_to, self.slow_start, last_entry, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
         """Return the time at which the left front reaches a position.
@@ -87,10 +90,11 @@ class ArrestingCrack(ExplainsRemovedNames):
         float
         """
         check_number("position", position, above=self.balance_position, at_most=0.0)
-        if position >= self.zero:
+        if position >= self.slow_start:
             return float(self.fronts.arrival(position))
+        # A wave enters the rupture when the fast front arrives at the entry. From there it runs
+        # left to the position, at the wave speed 1.
         entry = self._entry_of(position)
-        # The formula for t in the docstring of the class.
         return entry + float(self.fronts.arrival(entry)) - position
 
     def transition(self, fraction: float) -> ExactTransition:
@@ -105,42 +109,49 @@ class ArrestingCrack(ExplainsRemovedNames):
         ExactTransition
         """
         check_number("fraction", fraction, above=0.0, below=1.0)
-        left = fraction * self.balance_position
-        time = self.time_at(left)
-        # The front to the right of x = 0 at this time, or the end of its curve if that is passed.
-        right = self.fronts.front_at(time, x=0.0, side=1.0)
-        # From the end of its curve on, the right front runs at the wave speed, 1.
-        end_time = float(self.fronts.edge_times[-1])
-        if time > end_time:
-            right = right + time - end_time
-        return ExactTransition(time, right - left)
+        left_front = fraction * self.balance_position
+        time = self.time_at(left_front)
+        # The curve of the right front ends where the pre-stress ends. `front_at` returns this end
+        # for any later time.
+        right_front = self.fronts.front_at(time, x=0.0, side=1.0)
+        time_at_end = float(self.fronts.edge_times[-1])
+        if time > time_at_end:
+            # From there on the right front runs at the wave speed 1.
+            right_front = right_front + time - time_at_end
+        return ExactTransition(time, right_front - left_front)
 
     @property
     def peak_velocity(self) -> float:
-        """Largest slip velocity far away: half the integral of tau right of its zero."""
-        return 0.5 * integral(self.prestress, self.zero, self.end)
+        """Largest slip velocity of the pulse that runs to the right, far from the nucleation.
+
+        It is half the integral of the positive pre-stress.
+        """
+        return 0.5 * integral(self.prestress, self.slow_start, self.end)
 
     def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return x - t and du/dt on characteristics of the pulse that runs far to the right.
+        """Return the pulse that runs to the right, far from the nucleation.
+
+        There it is a wave that keeps its shape: du/dt depends on x - t alone.
 
         Returns
         -------
-        tuple of arrays : x - t of the characteristics, and du/dt on them
+        tuple of arrays : values of x - t, from the front to the rear, and du/dt there
         """
-        # Characteristics that enter on the right front, and on the fast part of the left front. On
-        # them x - t is the value at the entry, e - T(e).
-        on_right = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
-        on_left = np.linspace(0.0, self.zero, SAMPLES_PER_SECTION)
-        on_fast = np.concatenate([on_right, on_left[1:]])
-        fast_phase = on_fast - self.fronts.arrival(on_fast)
-        # Those that start on the slow part of the left front, at (X, t) with t = e + T(e) - X. The
-        # samples are denser towards x_minus, which is never reached.
+        # The pulse consists of waves that run to the right. Each of them starts on a front when the
+        # front arrives, and x - t does not change on it.
+        on_right_front = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
+        on_fast_left_front = np.linspace(0.0, self.slow_start, SAMPLES_PER_SECTION)
+        on_fast_fronts = np.concatenate([on_right_front, on_fast_left_front[1:]])
+        x_minus_t_of_fast = on_fast_fronts - self.fronts.arrival(on_fast_fronts)
+        # On the slow section of the left front the samples are denser towards x_minus, which the
+        # front never reaches.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES_PER_SECTION)[1:]
-        on_slow = self.zero + (self.balance_position - self.zero) * fraction
-        entries = np.array([self._entry_of(x) for x in on_slow])
-        slow_phase = 2.0 * on_slow - entries - self.fronts.arrival(entries)
-        # Beyond the end of the profile du/dt + du/dx is 0, and du/dt - du/dx is the integral of tau
-        # from the position where its characteristic began.
-        positions = np.concatenate([on_fast, on_slow])
-        velocity = [0.5 * integral(self.prestress, x, self.end) for x in positions]
-        return np.concatenate([fast_phase, slow_phase]), np.array(velocity)
+        on_slow_front = self.slow_start + (self.balance_position - self.slow_start) * fraction
+        # The arrival time t = e + T(e) - x of the slow front is that of `time_at`, for all samples.
+        entries = np.array([self._entry_of(x) for x in on_slow_front])
+        x_minus_t_of_slow = 2.0 * on_slow_front - entries - self.fronts.arrival(entries)
+        # Along a wave, du/dt - du/dx grows by the integral of the pre-stress that it crosses. Far
+        # away du/dt + du/dx is 0, so that du/dt is half of this integral.
+        starts = np.concatenate([on_fast_fronts, on_slow_front])
+        velocity = [0.5 * integral(self.prestress, x, self.end) for x in starts]
+        return np.concatenate([x_minus_t_of_fast, x_minus_t_of_slow]), np.array(velocity)

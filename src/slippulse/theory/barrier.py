@@ -1,7 +1,7 @@
-"""The distance that a steady pulse enters into a barrier of negative pre-stress.
+"""The depth to which a steady pulse enters a barrier, a region of negative pre-stress.
 
-A front at constant speed, as long as the pulse behind it, is continued into the barrier as a slow
-front (`slow_front`) until it stops.
+The front runs up to the barrier at constant speed. In the barrier it is slower than the waves, and
+is followed (`slow_front`) until it stops.
 """
 
 import math
@@ -11,7 +11,7 @@ import numpy as np
 from ..model.checks import check_number
 from ..model.prestress import Prestress
 from .closed_pulse import pulse_at_speed
-from .curve import Curve
+from .curve import Curve, Panel
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
@@ -20,16 +20,16 @@ from .slow_front import Progress, SlowFront
 
 # Largest length of a panel before the barrier, in units of 1/sqrt(gamma).
 MAX_PANEL_LENGTH = 2.0
-# Length that the panels before the barrier cover, in units of the memory of the pulse.
+# Length that the panels before the barrier cover, in units of the memory length of the pulse.
 MEMORY_FACTOR = 1.5
 # The smallest pre-stress before a barrier.
 MIN_PRESTRESS = 1e-4
 # The largest front speed, for which the pulse needs 12000 panels.
 MAX_SPEED = 5e3
-# The weakest barrier in which slow fronts are known to be resolved, in units of the pre-stress
-# before it.
+# Slow fronts are known to be resolved if the size of the negative pre-stress of a barrier is at
+# least this fraction of the pre-stress before it ...
 MIN_BARRIER_RATIO = 0.005
-# The strongest such barrier.
+# ... and at most this.
 MAX_BARRIER = 1e6
 
 
@@ -42,14 +42,16 @@ def barrier_depth(
 ) -> float:
     """Return the depth (units of H) at which a steady pulse dies in a barrier.
 
-    A pulse passes through a barrier that is shorter than this.
+    A barrier is a region of negative pre-stress. A pulse passes through a barrier that is shorter
+    than this depth.
 
     Raises ValueError: outside the domain.
-    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
+    Source: the path of a front that is slower than the waves (`slow_front`), as dx -> 0.
 
     Parameters
     ----------
-    tau0 : float, pre-stress before the barrier, from 1e-4 to 1, whose front is no faster than 5000
+    tau0 : float, pre-stress before the barrier, from 1e-4 to 1; its front runs at most at 5000
+        wave speeds
     tau_barrier : float, pre-stress of the barrier, from -1e6 to -tau0/200
     gamma : float, elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
@@ -69,35 +71,53 @@ def barrier_depth(
     )
     check_domains(gamma=gamma, damping_ratio=damping_ratio)
     speed = float(front_speed(tau0, damping_ratio, release))
-    place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
-    check_number(f"front speed {place}", speed, at_most=MAX_SPEED)
-    # The depth is computed at gamma = 1, behind a front that is as long as the memory of its pulse:
-    # a wave from the trailing edge, which follows at the pulse width, catches up over this length.
-    width = pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
-    memory = MEMORY_FACTOR * width / (speed - 1.0) * speed
-    # sqrt(dx^2 - dt^2) per unit of length along the front.
-    proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
-    panel_count = max(4, math.ceil(memory * proper_length / MAX_PANEL_LENGTH))
-    edges = np.linspace(-memory, 0.0, panel_count + 1)
-    # The front runs right and reaches the barrier, at x = 0, at t = 0. At x <= 0 its arrival time
-    # x/v is that of `straight_panels` with the slowness -1/v.
-    panels = straight_panels(edges, -1.0 / speed, tau0)
-    background = uniform_background(tau_barrier)
-    level = Prestress(left=tau_barrier, right=tau_barrier, width=None)
-    # The slow front is continued by one panel at a time until it ends. The barrier is infinitely
-    # long, so that there is no mark at which its negative pre-stress ends.
-    stop, progress = None, Progress()
-    while stop is None:
-        front = SlowFront(Curve(panels), level, background, gamma=1.0)
-        panel, stop, progress = front.next_panel(mark=math.inf, progress=progress)
-        if panel is not None:
-            panels.append(panel)
-    if stop != "stops":
+    arguments = f"tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
+    check_number(f"front speed at {arguments}", speed, at_most=MAX_SPEED)
+    # The depth is computed at gamma = 1, for a barrier that begins at x = 0.
+    panels, reason = _continue_into_barrier(_panels_before_barrier(tau0, speed), tau_barrier)
+    if reason != "stops":
         raise ValueError(
-            f"tau_barrier: {tau_barrier!r}, where the front is {stop} {place};"
+            f"tau_barrier: {tau_barrier!r}, where the front is {reason} at {arguments};"
             " allowed: levels on which it is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
+
+
+def _panels_before_barrier(tau0: float, speed: float) -> list[Panel]:
+    """Return the panels of a front that runs right and reaches the barrier, at x = 0, at t = 0.
+
+    The elasticity ratio is 1. The panels cover a little more than the memory length of the pulse,
+    because what happened on the front before has no influence on the pulse.
+    """
+    # A wave that starts on the front follows it at the speed 1. It remains in the pulse until the
+    # trailing edge overtakes it, after the time width/(v - 1). In this time the front runs over the
+    # memory length.
+    width = pulse_at_speed(tau0, gamma=1.0, beta=0.0, speed=speed).width
+    length = MEMORY_FACTOR * width / (speed - 1.0) * speed
+    # sqrt(dx^2 - dt^2) per unit of length along the front.
+    proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+    panel_count = max(4, math.ceil(length * proper_length / MAX_PANEL_LENGTH))
+    edges = np.linspace(-length, 0.0, panel_count + 1)
+    # In `straight_panels` T = slowness |x|, so that T = x/v at x <= 0 has the slowness -1/v.
+    return straight_panels(edges, -1.0 / speed, tau0)
+
+
+def _continue_into_barrier(panels: list[Panel], tau_barrier: float) -> tuple[list[Panel], str]:
+    """Return panels of a front that is continued until it ends, and the reason of its end.
+
+    The barrier has the pre-stress tau_barrier and is infinitely long. The elasticity ratio is 1.
+    """
+    panels = list(panels)
+    background = uniform_background(tau_barrier)
+    prestress = Prestress(left=tau_barrier, right=tau_barrier, width=None)
+    reason, progress = None, Progress()
+    while reason is None:
+        front = SlowFront(Curve(panels), prestress, background, gamma=1.0)
+        # The mark, where the negative pre-stress ends, is infinitely far away.
+        panel, reason, progress = front.next_panel(mark=math.inf, progress=progress)
+        if panel is not None:
+            panels.append(panel)
+    return panels, reason
 
 
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:

@@ -22,9 +22,10 @@ class PulseProfile(NamedTuple):
 
 @dataclass(frozen=True)
 class SteadyPulse:
-    """A steady pulse in units of H, with xi = x - v t <= 0 behind the front at xi = 0.
+    """A steady pulse, in units of H and of the wave speed.
 
-    `steady_pulse` and `paper_pulse` compute one.
+    In the frame of the front, a position is xi = x - v t: 0 at the front and negative behind it.
+    The functions `steady_pulse` and `paper_pulse` return such a pulse.
 
     Parameters
     ----------
@@ -32,7 +33,8 @@ class SteadyPulse:
     width : float, distance from the front to where the slip velocity returns to 0
     slip, stress_drop : floats, slip that remains behind the pulse, and gamma times this slip
     peak_velocity : float, largest slip velocity
-    growth, wavenumber : floats, p and q of the complex pair of roots p +- i q
+    growth, wavenumber : floats, p and q, where slip velocity is proportional to
+        exp(p xi) sin(q xi)
     """
 
     tau0: float
@@ -49,11 +51,15 @@ class SteadyPulse:
 
     @property
     def peak_position(self) -> float:
-        """Position xi of the largest slip velocity."""
+        """Position xi of the largest slip velocity, which is negative: it is behind the front."""
+        # The derivative of exp(p xi) sin(q xi) is 0 where tan(q xi) = -q/p.
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> PulseProfile:
-        """Return slip, slip velocity and slip acceleration; at rest outside of the pulse.
+        """Return slip, slip velocity and slip acceleration at positions.
+
+        Ahead of the pulse the slip is 0, and behind the pulse it is the final slip. In both regions
+        velocity and acceleration are 0.
 
         Parameters
         ----------
@@ -65,18 +71,19 @@ class SteadyPulse:
         """
         xi = as_numbers("xi", xi)
         p, q = self.growth, self.wavenumber
-        inside = (xi <= 0.0) & (xi >= -self.width)
-        inner_xi = np.where(inside, xi, 0.0)
-        sine, cosine = np.sin(q * inner_xi), np.cos(q * inner_xi)
-        decay = np.exp(p * inner_xi)
-        # The solution around u = tau_0/gamma with u = u' = 0 at the front.
-        inner_slip = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
-        slip = np.select([inside, xi < -self.width], [inner_slip, self.slip])
-        # Derivatives by time: d/dt = -v d/dxi.
+        is_behind = xi < -self.width
+        is_in_pulse = (xi <= 0.0) & ~is_behind
+        xi_in_pulse = np.where(is_in_pulse, xi, 0.0)
+        sine, cosine = np.sin(q * xi_in_pulse), np.cos(q * xi_in_pulse)
+        decay = np.exp(p * xi_in_pulse)
+        # The slip oscillates around tau_0/gamma. At the front slip and strain are 0.
+        slip_in_pulse = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
+        slip = np.select([is_in_pulse, is_behind], [slip_in_pulse, self.slip])
+        # The derivative by time is -v times the derivative by xi.
         amplitude = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
-        velocity = np.where(inside, -amplitude * decay * sine, 0.0)
-        inner_acceleration = self.speed * amplitude * decay * (p * sine + q * cosine)
-        acceleration = np.where(inside, inner_acceleration, 0.0)
+        velocity = np.where(is_in_pulse, -amplitude * decay * sine, 0.0)
+        acceleration_in_pulse = self.speed * amplitude * decay * (p * sine + q * cosine)
+        acceleration = np.where(is_in_pulse, acceleration_in_pulse, 0.0)
         return PulseProfile(slip, velocity, acceleration)
 
 
@@ -84,37 +91,26 @@ class SteadyPulse:
 def pulse_at_speed(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
-    """Return the steady pulse (`theory.steady_pulse`) behind a front of a given speed.
+    """Return the steady pulse (`theory.steady_pulse`) behind a front of speed v.
 
-    With xi = x - v t, the equation of motion inside the pulse is
-
-        beta v u''' + (v^2 - 1) u'' - alpha v u' + gamma u = tau_0.
-
-    Its solution oscillates as exp(p xi) cos(q xi) around u = tau_0/gamma, where p +- i q is the
-    complex pair of roots of the characteristic polynomial. The pulse ends after half a wavelength,
-    pi/q. Raises ValueError if the roots are not complex, or if a number overflows.
+    A position in the pulse is xi = x - v t. The slip u(xi) oscillates as exp(p xi) cos(q xi) around
+    tau_0/gamma. The pulse ends after half a wavelength, at xi = -pi/q. Raises ValueError if slip
+    does not oscillate, or if a number overflows.
     """
     check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)
     tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
     v, alpha = float(speed), float(rate_strengthening)
-    inertia = (v - 1.0) * (v + 1.0)
     try:
-        if beta == 0.0:
-            p = 0.5 * alpha * v / inertia
-            q = float(np.sqrt(gamma / inertia - p**2))
-        else:
-            roots = np.roots([beta * v, inertia, -alpha * v, gamma])
-            complex_root = roots[np.argmax(roots.imag)]
-            p, q = float(complex_root.real), float(complex_root.imag)
-        # With u = u' = 0 at the front, the slip at the end xi = -pi/q follows.
+        p, q = _growth_and_wavenumber(v, gamma=gamma, beta=beta, alpha=alpha)
         width = float(np.pi / q)
+        # At the front slip and strain are 0. From this the slip at the end of the pulse follows.
         slip = float(tau0 / gamma * (1.0 + np.exp(-p * width)))
-        # The peak is where the acceleration is 0, at xi = -arctan2(q, p)/q.
+        # The largest slip velocity is at xi = -arctan2(q, p)/q.
         amplitude = v * tau0 * np.hypot(p, q) / gamma
         peak = float(amplitude * np.exp(-p / q * np.arctan2(q, p)))
         # Python's floats can overflow without an error.
-        if not all(0.0 < size < math.inf for size in (width, slip, peak)):
+        if not all(0.0 < number < math.inf for number in (width, slip, peak)):
             raise OverflowError
     except (ArithmeticError, ValueError):
         raise ValueError(_reason_for_no_pulse(gamma, v, alpha)) from None
@@ -133,27 +129,50 @@ def pulse_at_speed(
     )
 
 
+def _growth_and_wavenumber(
+    v: float, gamma: float, beta: float, alpha: float
+) -> tuple[float, float]:
+    """Return p and q of the slip in a pulse, which oscillates as exp(p xi) cos(q xi).
+
+    The equation of motion at the front speed v is
+
+        beta v u''' + (v^2 - 1) u'' - alpha v u' + gamma u = tau_0.
+
+    Its characteristic polynomial has the roots p +- i q, and a real one if beta > 0.
+    """
+    inertia = (v - 1.0) * (v + 1.0)
+    if beta == 0.0:
+        p = 0.5 * alpha * v / inertia
+        return p, float(np.sqrt(gamma / inertia - p**2))
+    roots = np.roots([beta * v, inertia, -alpha * v, gamma])
+    root_above_axis = roots[np.argmax(roots.imag)]
+    return float(root_above_axis.real), float(root_above_axis.imag)
+
+
 def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) -> str:
     """Return the error message for a pulse that cannot be computed.
 
     It names the rate strengthening if this may be too large, and the speed otherwise.
     """
     critical = critical_rate_strengthening(gamma, speed)
-    place = f"at gamma = {gamma:.6g}"
-    # The critical value is that without damping. With damping, pulses end at another value.
+    # The critical value is exact without damping. Since damping changes it, rate strengthening is
+    # named from half of this value on.
     if abs(rate_strengthening) > 0.5 * critical:
-        allowed = f"less than {critical:.6g} in size {place}, speed = {speed:.6g} without beta"
+        arguments = f"gamma = {gamma:.6g}, speed = {speed:.6g}"
+        allowed = f"less than {critical:.6g} in size at {arguments} without beta"
         refused = f"rate_strengthening: {rate_strengthening!r}"
         return f"{refused}; allowed: {allowed}, or no pulse is steady"
-    return f"speed: {speed:.6g} {place}; allowed: values whose pulse can be computed"
+    return f"speed: {speed:.6g} at gamma = {gamma:.6g}; allowed: values whose pulse can be computed"
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """Return alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2), beyond which no pulse is steady.
+    """Return the rate strengthening alpha_c beyond which no pulse is steady.
 
-    It limits rate strengthening of either sign.
-    Source: the wavenumber q of the steady pulse is 0 at alpha_c (beta -> 0). Without damping of the
-    front alpha_c is 2 tau_0 sqrt(gamma). Raises ValueError: outside the domain.
+    Friction that is linear in slip rate adds a term -alpha du/dt to the equation of motion. A
+    steady pulse needs abs(alpha) < alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2).
+    Source: at alpha_c the pulse is infinitely wide (as beta -> 0). Behind an undamped front, of
+    speed v = 1/sqrt(1 - tau_0^2), alpha_c is 2 tau_0 sqrt(gamma). Raises ValueError: outside the
+    domain.
 
     Parameters
     ----------
@@ -173,7 +192,7 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """Return the paper's undamped pulse (section III A and appendix C).
+    """Return the paper's steady pulse without damping (section III A and appendix C).
 
     Raises ValueError: outside the domain.
 
@@ -197,8 +216,8 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
     """Return the paper's estimate of the transition under a displacement boundary.
 
-    It neglects the elastic coupling and the Gaussian at nucleation. Source: section III B.
-    Raises ValueError: outside the domain.
+    It neglects the elastic coupling of neighbouring points, and the higher pre-stress at the
+    nucleation. Source: section III B. Raises ValueError: outside the domain.
 
     Parameters
     ----------
@@ -221,8 +240,8 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
     """Return the paper's estimate of the transition under a stress boundary.
 
-    It takes both front speeds as 1. Source: section III C. It raises the same errors as
-    `prestress_balance_position`.
+    It assumes that both fronts run at the wave speed, until the left one arrives at the balance
+    position x_minus. Source: section III C. Raises the same errors as `prestress_balance_position`.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
 """The rupture front as a curve t = T(x), divided into panels.
 
-A panel is an interval of x with a parameter s from -1 to 1. On it x, T and tau dx/ds are stored at
-the NODE_COUNT nodes of Gauss and Legendre, as in a spectral element method, so that integrals and
-derivatives along the front are products with the constant matrices of this module.
+T(x) is the time at which the front arrives at x. A panel is an interval of x with a parameter s
+from -1 to 1. On it x, T and tau dx/ds are stored at NODE_COUNT Gauss-Legendre nodes, as in a
+spectral element method. Integrals and derivatives along the front are then products with the
+constant matrices of this module.
 
-Every field behind the front at a point (y, t) is an integral along the part of the curve in the
-past of the point. That part lies between the two points where the characteristics through (y, t)
-meet the curve (`Curve.crossings`):
+Slip velocity, slip and strain at a point (y, t) behind the front are integrals along the part of
+the curve in the past of the point. That part lies between the two points where the characteristics
+through (y, t) meet the curve (`Curve.crossings`):
 
               (y, t)
                 /\
@@ -31,19 +32,21 @@ from numpy.polynomial import legendre
 # Times and positions are equal if their relative difference is below this, which is a hundred times
 # the error of a stick time.
 EQUALITY_TOLERANCE = 1e-9
+# Nodes and weights of each panel, in its parameter s.
 NODE_COUNT = 12
 NODES, WEIGHTS = legendre.leggauss(NODE_COUNT)
+# The following matrices are multiplied by the values of a function at the nodes of a panel.
+# They give its Legendre series, and the series of its integral from the left end.
 NODES_TO_SERIES = np.linalg.inv(legendre.legvander(NODES, NODE_COUNT - 1))
-# Matrices that map values at the nodes of a panel: to the Legendre series of the function; to the
-# series of its integral from the left end; to the values at the nodes of that integral and of the
-# derivative with respect to s; and to the values at both ends.
 NODES_TO_INTEGRAL_SERIES = legendre.legint(NODES_TO_SERIES, lbnd=-1.0)
+# They give this integral, and the derivative by s, at the nodes.
 NODES_TO_INTEGRALS = legendre.legvander(NODES, NODE_COUNT) @ NODES_TO_INTEGRAL_SERIES
 NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legder(NODES_TO_SERIES)
+# They give the values at both ends of the panel.
 NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
-# longer curve computes only the requested ones, unless more than MAX_SEPARATE_COLUMNS are requested
-# at a time: a slow front needs a few of them at each of its steps.
+# longer curve computes only the requested polynomials, because a slow front needs only a few at
+# each of its steps. If more than MAX_SEPARATE_COLUMNS are requested at a time, it computes all.
 MAX_EAGER_PANELS, MAX_SEPARATE_COLUMNS = 500, 32
 # The most steps of Newton's method for a parameter on a panel.
 MAX_NEWTON_STEPS = 40
@@ -60,28 +63,30 @@ def power_basis(count: int) -> np.ndarray:
     columns = []
     for degree, unit in enumerate(np.eye(count)):
         powers = legendre.leg2poly(unit)
+        # The coefficients of the powers above the degree are 0.
         columns.append(np.pad(powers, (0, count - 1 - degree)))
     return np.array(columns).T
 
 
 def with_slopes(powers: np.ndarray) -> np.ndarray:
-    """Return coefficients of polynomials and of their derivatives, in groups of four powers.
+    """Return coefficients of polynomials and of their derivatives, as `value_and_slope` needs them.
 
-    powers has the shape [power, polynomial], and its number of powers is a multiple of 4. The
-    result has the shape [group, row, polynomial], as `value_and_slope` takes it. The 8 rows of a
-    group are the coefficients of the polynomial and of its derivative for the lowest power, then
-    both for the next power, and so on.
+    powers has one row for each power and one column for each polynomial. The number of rows is a
+    multiple of 4. The result has the shape [group, row, polynomial], where a group has four powers.
+    A power has two rows in it: the coefficient of the polynomial, and that of the derivative.
     """
     exponents = np.arange(1.0, len(powers))
     slopes = powers[1:] * exponents[:, None]
-    # The highest power of the derivatives is added with the coefficient 0.
+    # The derivatives have one power less. A row of zeros makes both arrays equally long.
     slopes = np.append(slopes, np.zeros_like(powers[:1]), axis=0)
-    return np.stack([powers, slopes], axis=1).reshape(-1, 8, powers.shape[1])
+    group_count, polynomial_count = len(powers) // 4, powers.shape[1]
+    in_pairs = np.stack([powers, slopes], axis=1)
+    return in_pairs.reshape(group_count, 8, polynomial_count)
 
 
 NODES_TO_POWERS = with_slopes(power_basis(NODE_COUNT) @ NODES_TO_SERIES)
-# Matrix that maps powers of a parameter to the weights at the nodes that integrate from the left
-# end of the panel to that parameter.
+# Matrix that gives weights of the nodes from the powers of a parameter. With these weights a
+# function is integrated from the left end of its panel to that parameter.
 POWERS_TO_WEIGHTS = power_basis(NODE_COUNT + 1) @ NODES_TO_INTEGRAL_SERIES
 
 
@@ -117,10 +122,13 @@ class Panel(NamedTuple):
             time_ends=self.time_ends[::-1],
         )
 
-    def until(self, s: float, x_end: float) -> "Panel":
+    def left_part(self, s: float, x_end: float) -> "Panel":
         """Return the part of the panel from its left end to the parameter s, where x is x_end."""
+        # The nodes of the new panel, in the parameter of this one.
         fraction = 0.5 * (s + 1.0)
-        nodes_and_end = np.append(fraction * (1.0 + NODES) - 1.0, s)
+        new_nodes = fraction * (1.0 + NODES) - 1.0
+        nodes_and_end = np.append(new_nodes, s)
+        # The matrix that interpolates from the old nodes to the new nodes and the new end.
         resample = legendre.legvander(nodes_and_end, NODE_COUNT - 1) @ NODES_TO_SERIES
         x = resample @ self.x
         time = resample @ self.time
@@ -136,18 +144,18 @@ class Panel(NamedTuple):
 
 
 def turned_to_right(side: float, panels: list[Panel]) -> list[Panel]:
-    """Return panels with a side, -1 (left) or +1 (right), turned to the right.
+    """Return panels such that one of their sides, -1 (left) or +1 (right), points to the right.
 
-    For the left side they are mirrored; a second call gives the original panels.
+    For the left side the panels are mirrored at x = 0 and reversed. A second call undoes this.
     """
     return panels if side > 0.0 else [panel.mirrored() for panel in panels[::-1]]
 
 
 class Crossing(NamedTuple):
-    """Panels, and parameters on them, where characteristics meet the curve.
+    """Panels, and parameters s on them, where characteristics meet the curve.
 
-    meets_curve is False for a characteristic that passes the curve by; its parameter is then that
-    of the nearest end.
+    meets_curve is False for a characteristic that does not meet it. The parameter is then that of
+    the nearest end of the curve.
     """
 
     panel: np.ndarray
@@ -156,20 +164,21 @@ class Crossing(NamedTuple):
 
 
 class Curve:
-    """Panels from left to right without gaps.
+    """The fronts of a connected part of a rupture: panels from left to right without gaps.
 
-    restarts are the positions, on the left and on the right side, where a slow front became faster
-    than the waves again. They divide the curve into regions for `crossings`. edges and edge_times
-    are the positions and times of the ends of the panels, where neighbouring panels share one.
+    restarts are the positions where a slow front became faster than the waves again: those of left
+    fronts, and those of right fronts. They divide the curve into regions for `crossings`. edges and
+    edge_times are the positions and times of the ends of the panels. Neighbouring panels share one.
     """
 
     def __init__(
         self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
         self.panels, self.restarts = panels, restarts
-        # The fields of all panels as arrays, [panel, node] and [panel, left or right end].
-        columns = map(np.array, zip(*panels, strict=True))
-        self.x, self.time, self.source, self.x_ends, self.time_ends = columns
+        # The fields of `Panel` for all panels, with shapes [panel, node] and [panel, left or right
+        # end].
+        fields = map(np.array, zip(*panels, strict=True))
+        self.x, self.time, self.source, self.x_ends, self.time_ends = fields
         self.edges = np.append(self.x_ends[:, 0], self.x_ends[-1, 1])
         self.edge_times = np.append(self.time_ends[:, 0], self.time_ends[-1, 1])
         self.t_plus_x, self.t_minus_x = self.time + self.x, self.time - self.x
@@ -177,55 +186,71 @@ class Curve:
     def joined(self, other: "Curve") -> "Curve":
         """Return this curve followed by another that begins at its right end, without restarts."""
         # The arrays of both curves are joined, which is faster than building them from the panels.
-        whole = Curve.__new__(Curve)
-        whole.panels, whole.restarts = self.panels + other.panels, ((), ())
+        joined = Curve.__new__(Curve)
+        joined.panels, joined.restarts = self.panels + other.panels, ((), ())
         for name in ("x", "time", "source", "t_plus_x", "t_minus_x", "x_ends", "time_ends"):
-            setattr(whole, name, np.concatenate([getattr(self, name), getattr(other, name)]))
-        whole.edges = np.append(self.edges[:-1], other.edges)
-        whole.edge_times = np.append(self.edge_times[:-1], other.edge_times)
-        return whole
+            setattr(joined, name, np.concatenate([getattr(self, name), getattr(other, name)]))
+        # Both curves have the edge where they meet. It is taken from the other one.
+        joined.edges = np.append(self.edges[:-1], other.edges)
+        joined.edge_times = np.append(self.edge_times[:-1], other.edge_times)
+        return joined
 
-    def restarted(self, restarts: tuple[Sequence[float], Sequence[float]]) -> "Curve":
-        """Return this curve with the given restarts."""
-        changed = copy(self)
+    def with_restarts(self, restarts: tuple[Sequence[float], Sequence[float]]) -> "Curve":
+        """Return this curve with the given restarts, of left fronts and of right fronts."""
+        curve = copy(self)
         # This cached property depends on the restarts. The other ones remain valid.
-        changed.__dict__.pop("_lowest_exits", None)
-        changed.restarts = restarts
-        return changed
+        curve.__dict__.pop("_lowest_exits", None)
+        curve.restarts = restarts
+        return curve
 
     @cached_property
     def end_values(self) -> np.ndarray:
-        """Values of x, T, T + x and T - x at both ends of the panels, [end, column]."""
+        """Values of x, T, T + x and T - x at the ends of the panels.
+
+        The two rows belong to the left and the right ends. Each of the four fields has one column
+        for each panel (see `columns`).
+        """
         x, time = self.x_ends, self.time_ends
         return np.concatenate([x, time, time + x, time - x]).T
 
     def coefficients(self, columns: np.ndarray) -> np.ndarray:
-        """Return the given columns of `powers`, the coefficients of one polynomial each.
+        """Return the coefficients of the polynomials with the given columns of `powers`.
 
-        On a long curve only the polynomials of these columns are computed (see MAX_EAGER_PANELS).
+        On a long curve only these polynomials are computed (see MAX_EAGER_PANELS).
         """
-        count = len(self.panels)
+        panel_count = len(self.panels)
         are_all_computed = "powers" in self.__dict__
-        is_short = count <= MAX_EAGER_PANELS
+        is_short = panel_count <= MAX_EAGER_PANELS
         if is_short or are_all_computed or columns.size > MAX_SEPARATE_COLUMNS:
             return self.powers.take(columns, axis=-1)
         fields = [getattr(self, name) for name in PANEL_FIELDS]
-        # A column is the number of the panel, plus `count` for each field before (see `columns`).
-        values = [fields[k // count][k % count] for k in columns]
+        # The inverse of `columns`.
+        fields_and_panels = [divmod(column, panel_count) for column in columns.tolist()]
+        values = [fields[field][panel] for field, panel in fields_and_panels]
         return NODES_TO_POWERS @ np.reshape(values, (-1, NODE_COUNT)).T
 
     @cached_property
     def powers(self) -> np.ndarray:
-        """Coefficients of the polynomials of PANEL_FIELDS, one field after another."""
+        """Coefficients of the polynomials of PANEL_FIELDS on all panels, as in `with_slopes`.
+
+        The last axis has one column for each panel and field (see `columns`).
+        """
         values = np.concatenate([getattr(self, name) for name in PANEL_FIELDS])
         return NODES_TO_POWERS @ values.T
 
     def columns(self, name: str, panel: np.ndarray) -> np.ndarray:
-        """Return the columns of a field on some panels, in `end_values` and `powers`."""
+        """Return the columns of a field on some panels, in `end_values` and `powers`.
+
+        The columns of all panels for the first field come first, then those for the second field,
+        and so on.
+        """
         return panel + len(self.panels) * PANEL_FIELDS.index(name)
 
     def evaluate(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
-        """Return one of PANEL_FIELDS, or its derivative (order 1), at a parameter on each panel."""
+        """Return a field (one of PANEL_FIELDS) at a parameter s on each of the panels.
+
+        With order 1 it is the derivative of the field by s.
+        """
         return value_and_slope(self.coefficients(self.columns(name, panel)), s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
@@ -249,18 +274,20 @@ class Curve:
     ) -> tuple[Crossing, Crossing]:
         """Return where the characteristics through points (y, t) meet the curve: left and right.
 
-        On the left T - x rises to xi = t - y, going left from y; on the right T + x rises to eta =
-        t + y, going right.
+        The left one is traced back in time from the point to the left, to where T - x = xi = t - y.
+        The right one is traced back to the right, to where T + x = eta = t + y.
         """
         exits_to_right, exits_to_left = self._lowest_exits
         right, meets_right = _panels_of_crossings(
             self.edges, regions=exits_to_right, y=y, level=eta
         )
-        # The left side is searched as the right side of the mirrored curve.
-        mirrored, meets_left = _panels_of_crossings(
+        # The left side is searched as the right side of the mirrored curve, in which the order of
+        # the panels is reversed.
+        left_of_mirrored, meets_left = _panels_of_crossings(
             -self.edges[::-1], regions=exits_to_left, y=-y, level=xi
         )
-        left = len(self.panels) - 1 - mirrored
+        left = len(self.panels) - 1 - left_of_mirrored
+        # Both sides are solved together. The first half of the results belongs to the left.
         columns = np.concatenate([self.columns("t_minus_x", left), self.columns("t_plus_x", right)])
         s = self._solve(columns, np.concatenate([xi, eta]))
         s_left = np.where(meets_left, s[: y.size], -1.0)
@@ -269,14 +296,16 @@ class Curve:
 
     @cached_property
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Lowest exit values (`_lowest_exit_beyond`) for characteristics to the right and the left.
+        """For each panel, the lowest exit value of this panel and of those beyond it.
 
-        A characteristic to the right leaves a panel at its right end, and the exit value is T + x
-        there. To the left it is T - x at the left end. Regions end only at the restarts that a
-        characteristic can reach from outside: those of the left side if it goes to the right.
+        These values show on which panel a characteristic leaves the rupture. The first list is for
+        characteristics that are traced to the right. They leave a panel at its right end, and the
+        exit value is T + x there. The second list is for those traced to the left, whose exit value
+        is T - x at the left end. A list has one array for each region (`_lowest_exit_beyond`).
         """
         _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
         exits_at_right_ends, exits_at_left_ends = t_plus_x[1], t_minus_x[0]
+        # T + x has a maximum at the restarts of left fronts, and T - x at those of right fronts.
         left_restarts, right_restarts = self.restarts
         to_right = _lowest_exit_beyond(exits_at_right_ends, self.edges, left_restarts)
         # To the left the order of panels and edges is reversed.
@@ -284,53 +313,72 @@ class Curve:
         return to_right, to_left
 
     def front_at(self, time: float, x: float, side: float) -> float:
-        """Return the position at a time of the front that runs to one side from x.
+        """Return where the front that runs from x to one side is at a time.
 
-        It is the end of the released interval around x; the end of the curve if the front has left
-        it.
+        side is -1 (left) or +1 (right). Everything between x and the front has been released. If
+        the front has run beyond the end of the curve, this end is returned.
         """
-        later = np.flatnonzero((side * self.edges > side * x) & (self.edge_times > time))
-        if not later.size:
+        is_on_side = side * self.edges > side * x
+        released_later = np.flatnonzero(is_on_side & (self.edge_times > time))
+        if not released_later.size:
             return float(self.edges[-1] if side > 0.0 else self.edges[0])
-        # The panel between the nearest edge that is reached later and the edge before it.
-        panel = np.array([later[0] - 1 if side > 0.0 else later[-1]])
+        # The front is on the panel that leads to the nearest of these edges. Panel k lies between
+        # the edges k and k + 1.
+        panel = np.array([released_later[0] - 1 if side > 0.0 else released_later[-1]])
         s = self._solve(self.columns("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
+        # If x itself is on this panel, the result is not behind it.
         return side * max(side * front, side * x)
 
     def _solve(self, columns: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """Return the parameters at which fields have given levels, one for each column.
+        """Return the parameters s at which fields have given levels, one for each column.
 
-        A column stands for one monotonic field on one panel (see `columns`).
-
-        Newton's method starts from linear interpolation between the ends of the panel. Its steps do
-        not leave the panel.
+        A column stands for one monotonic field on one panel (see `columns`). Newton's method starts
+        from linear interpolation between the ends of the panel. Its steps do not leave the panel.
         """
         at_left, at_right = self.end_values[:, columns]
-        span = at_right - at_left
-        is_flat = np.abs(span) < 1e-13
-        fraction = (level - at_left) / np.where(is_flat, 1.0, span)
+        rise = at_right - at_left
+        is_flat = np.abs(rise) < 1e-13
+        fraction = (level - at_left) / np.where(is_flat, 1.0, rise)
         parameters = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
-        # Where a slow front has stopped, the end of the panel is a double root. Newton's steps only
-        # halve the distance to it, or leave the panel, so a level at an end is not iterated.
-        distance = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
-        todo = np.flatnonzero(distance > 1e-15 * np.abs(level))
-        # The sign of the slope is known, since the field is monotonic, and a lower bound of its
-        # size limits the step.
-        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
-        s, level, sign, min_slope = np.array([parameters, level, np.sign(span), min_slope])[:, todo]
-        coefficients = self.coefficients(columns[todo])
-        for _ in range(MAX_NEWTON_STEPS):
-            if not todo.size:
-                break
-            value, slope = value_and_slope(coefficients, s)
-            step = sign * (level - value) / np.maximum(sign * slope, min_slope)
-            next_s = (s + step).clip(-1.0, 1.0)
-            parameters[todo] = next_s
-            going = np.abs(next_s - s) >= 1e-9
-            todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
-            s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, going]
+        # A level at an end of the panel needs no step. It is left out because this end is a double
+        # root where a slow front has stopped, so that Newton's steps would only halve the distance.
+        distance_to_end = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
+        unsolved = np.flatnonzero(distance_to_end > 1e-15 * np.abs(level))
+        # The sign of the slope is that of the rise, since the field is monotonic. A smallest slope
+        # limits the steps.
+        sign, min_slope = np.sign(rise), np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
+        newton_arguments = np.array([parameters, level, sign, min_slope])[:, unsolved]
+        coefficients = self.coefficients(columns[unsolved])
+        parameters[unsolved] = _solve_by_newton(coefficients, *newton_arguments)
         return parameters
+
+
+def _solve_by_newton(
+    coefficients: np.ndarray,
+    s: np.ndarray,
+    level: np.ndarray,
+    sign: np.ndarray,
+    min_slope: np.ndarray,
+) -> np.ndarray:
+    """Return the parameters at which monotonic polynomials have given levels, by Newton's method.
+
+    s is where the search starts. sign is the sign of the slope of each polynomial, and min_slope
+    the smallest size of the slope that is used. coefficients are those of `value_and_slope`.
+    """
+    parameters, unsolved = s.copy(), np.arange(s.size)
+    for _ in range(MAX_NEWTON_STEPS):
+        if not unsolved.size:
+            break
+        value, slope = value_and_slope(coefficients, s)
+        step = sign * (level - value) / np.maximum(sign * slope, min_slope)
+        next_s = (s + step).clip(-1.0, 1.0)
+        parameters[unsolved] = next_s
+        # Only parameters that still change are kept.
+        changes = np.abs(next_s - s) >= 1e-9
+        unsolved, coefficients = unsolved[changes], coefficients.compress(changes, axis=-1)
+        s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, changes]
+    return parameters
 
 
 def _lowest_exit_beyond(
@@ -338,14 +386,15 @@ def _lowest_exit_beyond(
 ) -> list[np.ndarray]:
     """Return, for each panel, the lowest exit value of this panel and of those beyond it.
 
-    Only panels of the same region count, and the result has one array for each region. A region
-    ends at a restart, because a characteristic that leaves its region across a slow front meets no
-    source farther on.
+    exits are the exit values of the panels, see `Curve._lowest_exits`. Only panels of the same
+    region count, and the result has one array for each region. A region ends at a restart, where
+    exit values have a maximum: a characteristic that leaves the rupture before this maximum is not
+    followed beyond it.
     """
-    cuts = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
+    region_ends = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
     lowest = []
-    for region in np.split(exits, cuts):
-        from_far_end = np.minimum.accumulate(region[::-1])
+    for exits_of_region in np.split(exits, region_ends):
+        from_far_end = np.minimum.accumulate(exits_of_region[::-1])
         lowest.append(from_far_end[::-1])
     return lowest
 
@@ -353,44 +402,47 @@ def _lowest_exit_beyond(
 def _panels_of_crossings(
     edges: np.ndarray, regions: list[np.ndarray], y: np.ndarray, level: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return, for each point, the panel on which a field rises to a level for the last time.
+    """Return, for each point, the panel where its characteristic to the right leaves the rupture.
 
-    Also return a mask that is False for points without such a panel. The field is T + x, and the
-    search goes to the right, through the region of the point and those beyond it.
+    On this panel T + x rises to its value at the point (level), for the last time in its region.
+    The regions are searched from that of the point to the right. Also return a mask that is False
+    for points without such a panel; for these the last panel is returned.
 
     edges : ends of the panels
     regions : lowest exit values of the panels in each region (`_lowest_exit_beyond`)
-    y, level : position of each point, and its value of the field
+    y, level : position of each point, and t + y there
     """
-    count = edges.size - 1
-    start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
-    panel, first_of_region = np.full(y.shape, count), 0
+    panel_count = edges.size - 1
+    panel_of_point = np.minimum(np.searchsorted(edges, y, side="right") - 1, panel_count - 1)
+    panel, first_of_region = np.full(y.shape, panel_count), 0
     for lowest_exits in regions:
         end_of_region = first_of_region + lowest_exits.size
-        # The field reaches the level on this panel, and beyond it stays above the level up to the
-        # end of the region. The lowest exit values are in ascending order.
+        # T + x reaches the level on this panel, and beyond it stays above the level up to the end
+        # of the region. The lowest exit values are in ascending order.
         candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
-        is_in_region = (start < end_of_region) & (candidate < end_of_region)
-        is_missing = panel == count
-        panel = np.where(is_in_region & is_missing, candidate, panel)
+        has_crossing = (panel_of_point < end_of_region) & (candidate < end_of_region)
+        is_not_found = panel == panel_count
+        panel = np.where(has_crossing & is_not_found, candidate, panel)
         first_of_region = end_of_region
-    return np.minimum(panel, count - 1), panel < count
+    return np.minimum(panel, panel_count - 1), panel < panel_count
 
 
 def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Return polynomials p and their derivatives at one parameter each, [p or p', point].
+    """Return the values of polynomials (row 0) and their derivatives (row 1) at parameters s.
 
-    By Estrin's scheme p(s) is the sum of s^m q_m(s^4) over m < 4. The coefficients are indexed [n,
-    2 m + derivative, point] for the power 4 n + m, and the number of powers is a multiple of 4.
+    There is one parameter for each polynomial. coefficients come from `with_slopes`. For speed,
+    each polynomial is split into four polynomials q of the fourth power of s (Estrin's scheme):
+
+        p(s) = q_0(s^4) + s q_1(s^4) + s^2 q_2(s^4) + s^3 q_3(s^4).
     """
     square = s * s
     fourth = square * square
-    # Horner's rule in s^4 for the four polynomials q_m and for those of the derivative.
-    sums = coefficients[-1] * fourth
-    for row in coefficients[-2:0:-1]:
-        sums += row
-        sums *= fourth
-    sums += coefficients[0]
-    # q_0 + s^2 q_2 and q_1 + s^2 q_3, and then the sum of the first and s times the second.
-    sums = sums[:4] + square * sums[4:]
-    return sums[:2] + s * sums[2:]
+    # Horner's rule for q_0 to q_3. Each has two rows: for the value, and for the derivative.
+    q = coefficients[-1] * fourth
+    for group in coefficients[-2:0:-1]:
+        q += group
+        q *= fourth
+    q += coefficients[0]
+    # q_0 + s^2 q_2 in the first two rows, and q_1 + s^2 q_3 in the last two.
+    halves = q[:4] + square * q[4:]
+    return halves[:2] + s * halves[2:]

@@ -13,16 +13,18 @@ from .front_speeds import front_speed, front_speed_undamped
 from .pulse import steady_pulse
 
 PEAK_VELOCITY_NOTE = (
-    "The paper prints the strength drop divided by sqrt(2 G rho), half of what follows from its own"
-    " unit of slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G); the printed"
-    " value has the unit of slip under held stress, and is the peak of the mean over the height."
+    "The paper prints the strength drop divided by sqrt(2 G rho). This is half of the value that"
+    " follows with its own unit of slip under held displacement,"
+    " 2 H (mu_s - mu_k) sigma_n/(lambda + 2G). The printed value follows with the unit of slip"
+    " under held stress: it is the peak velocity of the mean slip over the height."
 )
 STRESS_DROP_NOTE = (
-    "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop; stress falls by twice"
-    " the initial stress above kinetic friction, by its equation (C13)."
+    "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By its equation"
+    " (C13), stress falls by twice the initial stress above kinetic friction."
 )
 TRANSITION_NOTE = (
-    "The paper neglects the elastic coupling; exact for a rupture that starts at a point."
+    "The paper neglects the elastic coupling. The exact value is that of a rupture that starts at a"
+    " point."
 )
 
 
@@ -31,8 +33,8 @@ def layer_results(
 ) -> pd.DataFrame:
     """Return transition and steady pulse of a layer with held top, by the paper and exactly.
 
-    The initial stress is uniform. Source: section IV A of the paper for transition length, pulse
-    width and peak slip velocity, as printed; section III for the others.
+    The initial stress is uniform. Source of the paper's values: section IV A, as printed, for
+    transition length, pulse width and peak slip velocity; section III for the others.
 
     Parameters
     ----------
@@ -72,9 +74,9 @@ def layer_results(
     time = uniform_transition_time(tau0, gamma=gamma, damping_ratio=damping_ratio, release=release)
     paper, exact = paper_pulse(tau0, gamma), steady_pulse(tau0, gamma, speed=speed)
     paper_time, paper_length = paper_transition_displacement(tau0, gamma)
-    # The peak velocity is twice this, since the peak of the paper's pulse is 1/sqrt(gamma).
-    printed = layer.strength_drop / math.sqrt(2.0 * layer.shear_modulus * layer.density)
-    paper_peak = layer.convert_from_si(printed, "slip_velocity")
+    # The value that section IV A prints, which is half of `paper.peak_velocity` in SI units.
+    printed_peak = layer.strength_drop / math.sqrt(2.0 * layer.shear_modulus * layer.density)
+    paper_peak = layer.convert_from_si(printed_peak, "slip_velocity")
     rows = {
         "front_speed_right": (front_speed_undamped(tau0), speed, ""),
         "transition_time": (paper_time, time, TRANSITION_NOTE),
@@ -87,10 +89,9 @@ def layer_results(
     table = []
     for name, (paper_value, exact_value, note) in rows.items():
         quantity = QUANTITIES[name]
-        values = [
-            layer.convert_to_si(float(value), quantity) for value in (paper_value, exact_value)
-        ]
-        table.append((name, UNITS[quantity], *values, note))
+        paper_in_si = layer.convert_to_si(float(paper_value), quantity)
+        exact_in_si = layer.convert_to_si(float(exact_value), quantity)
+        table.append((name, UNITS[quantity], paper_in_si, exact_in_si, note))
     columns = ["quantity", "unit", "paper", "exact", "note"]
     return pd.DataFrame(table, columns=columns).set_index("quantity")
 
@@ -98,8 +99,8 @@ def layer_results(
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
     """Return the static stress drop of a fault with a compliant damage zone.
 
-    It is G delta/(H + (G/G_r) H_r), in Pa, if a displacement is imposed far away on the rock.
-    Source: section IV C 2 of the paper.
+    The zone lies between the fault and stiffer rock. A displacement is imposed on the rock, far
+    away from the fault. Source: section IV C 2 of the paper.
     Raises ValueError: outside these ranges.
 
     Parameters
@@ -119,8 +120,10 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> float(damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0)) / 1e6
     5.0
     """
-    zone = as_numbers("shear_modulus", shear_modulus, above=0.0)
-    rock = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
-    height = as_numbers("thickness", thickness, above=0.0)
+    zone_modulus = as_numbers("shear_modulus", shear_modulus, above=0.0)
+    rock_modulus = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
+    zone_height = as_numbers("thickness", thickness, above=0.0)
     rock_height = as_numbers("rock_thickness", rock_thickness, at_least=0.0)
-    return zone * as_numbers("slip", slip) / (height + zone / rock * rock_height)
+    # The height of an equally stiff zone without rock.
+    total_height = zone_height + zone_modulus / rock_modulus * rock_height
+    return zone_modulus * as_numbers("slip", slip) / total_height

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_number
 
-# The largest damping ratio: with tau_0 as near to 1 as floating point allows, products of speed and
-# damping ratio would overflow beyond it.
+# Allowed range of each argument, as keywords of `check_number`. Beyond the largest damping ratio,
+# products of speed and damping ratio would overflow if tau_0 is as near to 1 as a float can be.
 DOMAINS: dict[str, dict[str, Any]] = {
     "tau0": {"above": 0.0, "below": 1.0},
     "gamma": {"above": 0.0},
@@ -36,5 +36,5 @@ def broadcast_numbers(**values: Any) -> tuple[np.ndarray, ...]:
         return np.broadcast_arrays(*arrays.values())
     except ValueError:
         shapes = " and ".join(str(array.shape) for array in arrays.values())
-        text = f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast"
-        raise ValueError(text) from None
+        names = ", ".join(arrays)
+        raise ValueError(f"{names}: shapes {shapes}; allowed: shapes that broadcast") from None

@@ -1,5 +1,7 @@
 """The crack-pulse transition under leaf springs, in scenes that stick first at x = 0."""
 
+from functools import partial
+
 import numpy as np
 
 from ..model.checks import check_kind
@@ -11,8 +13,7 @@ from .front_speeds import front_speed
 from .part import Part
 from .two_fronts import ExactTransition, fast_fronts
 
-# Largest distance, in wave lengths, up to which a uniform front is computed that is hardly faster
-# than the waves.
+# Largest length of a front in uniform pre-stress, in units of 1/sqrt(gamma).
 MAX_REACH = 10_000
 
 
@@ -21,8 +22,9 @@ def exact_transition_displacement(
 ) -> ExactTransition:
     """Return T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
 
-    Raises ValueError: outside these ranges; if the profile also nucleates elsewhere; or if a front
-    needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
+    Raises ValueError: outside these ranges; if the rupture also nucleates away from x = 0; or if a
+    front needs more than 20000 panels. This does not happen if gamma times the square of the
+    Gaussian width is between 1e-17 and 1e6.
     Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
     `Rupture.transition` examines all positions.
 
@@ -48,28 +50,21 @@ def exact_transition_displacement(
         allowed = "equal levels > 0 on both sides"
         raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
+    fronts_up_to = partial(
+        fast_fronts, prestress, damping_ratio=damping_ratio, release=release, gamma=gamma
+    )
     # Half of the period of the leaf springs, after which uniform slip would stick.
     half_period = float(np.pi / np.sqrt(gamma))
-    # Only points of the fronts with |x| + T(x) <= t influence the motion at x = 0 up to the time t.
-    # They have |x| < t. The stick is searched for up to t = 2 half-periods, so that this reach is
-    # long enough.
-    fronts = fast_fronts(
-        prestress,
-        damping_ratio=damping_ratio,
-        release=release,
-        reach=2.5 * half_period,
-        gamma=gamma,
-    )
+    # The stick is searched for until the time 2 half_period. Until then only fronts at a distance
+    # below 2 half_period influence x = 0, because waves have the speed 1.
+    fronts = fronts_up_to(reach=2.5 * half_period)
     part = Part(fronts, gamma, until=2.0 * half_period)
     stick = float(part.find_stick_times(np.zeros(1))[0])
     if not stick < fronts.edge_times[-1]:
-        # The fronts are faster than the waves. At the time of the stick they may be farther away
-        # than was needed to find it, so they are computed again over a longer distance.
+        # Since fronts are faster than the waves, they may have run beyond this distance when x = 0
+        # sticks. For the length of the rupture they are computed again, farther.
         speed = float(front_speed(level, damping_ratio, release))
-        reach = speed * stick + _distance_to_uniform(prestress)
-        fronts = fast_fronts(
-            prestress, damping_ratio=damping_ratio, release=release, reach=reach, gamma=gamma
-        )
+        fronts = fronts_up_to(reach=speed * stick + _distance_to_uniform(prestress))
     return ExactTransition(stick, 2.0 * fronts.front_at(stick, x=0.0, side=1.0))
 
 
@@ -82,16 +77,15 @@ def _distance_to_uniform(prestress: Prestress) -> float:
 def uniform_transition_time(
     tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> float:
-    """Return T_trans in uniform pre-stress with a point-like nucleation.
+    """Return T_trans in uniform pre-stress, if the rupture starts at a single point.
 
     Raises ValueError: outside the domain.
-    Source: the first zero of du/dt at x = 0 behind the fronts ``T(x) = |x|/v``. With w = 1/v and
-    q = sqrt(gamma) t/(1 + w), du/dt is proportional to Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) )
-    ds, whose zero depends on v alone.
+    Source: the first zero of du/dt at x = 0, behind two fronts of constant speed v that start there
+    at t = 0. This time is proportional to 1/sqrt(gamma), with a factor that depends on v alone.
 
     Parameters
     ----------
-    tau0, gamma : float, pre-stress, in (0, 1), and elasticity ratio, > 0
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
 
     Returns
@@ -105,12 +99,13 @@ def uniform_transition_time(
     """
     check_domains(tau0=tau0, gamma=gamma, damping_ratio=damping_ratio)
     slowness = 1.0 / float(front_speed(tau0, damping_ratio, release))
-    # The zero of du/dt does not depend on the size of tau, but a tiny tau would lose digits.
+    # At a given front speed, du/dt is proportional to tau, so that its zero does not depend on tau.
+    # A tiny tau would lose digits.
     tau = max(tau0, 1e-9)
-    # The front of a slow rupture is needed only as far as waves from it reach the centre in time.
+    # The time is computed at gamma = 1, where it is below 10. Until then only the fronts at a
+    # distance below 10 influence x = 0. The curve is longer than that.
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges, slowness, tau))
-    # The time is computed at gamma = 1.
     (stick,) = Part(curve, gamma=1.0, until=10.0).find_stick_times(np.zeros(1))
     return float(stick / np.sqrt(float(gamma)))

@@ -1,7 +1,8 @@
-"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)).
+"""Fronts that outrun the waves: their arrival time T(x) is the integral of 1/v(tau(x)).
 
-Such a front feels nothing from behind, so that its speed depends only on the pre-stress at its
-position (`slowness`). `FastFront` integrates 1/v in panels that are divided until they resolve it.
+No wave from behind reaches such a front, so that its speed v depends only on the pre-stress tau at
+its position (`slowness`). `FastFront` integrates 1/v in panels that are divided until they
+resolve it.
 """
 
 from bisect import bisect_right
@@ -24,12 +25,15 @@ from .slowness import LARGEST_RATIO, slowness
 SERIES_TOLERANCE = 1e-10
 # Panels shorter than this are not divided.
 MIN_PANEL_LENGTH = 1e-9
-# Largest length of a panel in units of 1/sqrt(gamma): its proper length sqrt(dx^2 - dT^2), for the
-# phase of the waves, and its length in x, for the static solution. The third number is a length in
-# x without leaf springs.
+# Largest proper length sqrt(dx^2 - dT^2) of a panel, in units of 1/sqrt(gamma). The phase of the
+# waves changes by as much along the panel.
 MAX_PHASE = 2.0
+# Largest length of a panel in x, in the same units. It resolves the static solution.
 MAX_SCALED_LENGTH = 4.0
+# Largest length of a panel in x without leaf springs.
 MAX_LENGTH_WITHOUT_SPRINGS = 8.0
+# The smallest proper length per unit of x that is taken into account.
+MIN_PROPER_LENGTH = 1e-3
 MAX_PANELS = 20_000
 # Slow fronts into pre-stress below this are not followed.
 MIN_PRESTRESS = -1e20
@@ -37,18 +41,21 @@ MIN_PRESTRESS = -1e20
 MAX_REFINEMENT = 10
 # Gaussians are narrow if their width, in units of 1/sqrt(gamma), is below this.
 NARROW_WIDTH = 0.1
-# Features are these multiples of the width of a Gaussian from its centre. Panels begin and end at
-# features.
-FEATURE_MULTIPLES = np.array([-GAUSSIAN_EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, GAUSSIAN_EXTENT])
+# Features of a Gaussian are its centre, and positions at these distances from it, in widths. They
+# divide the Gaussian into panels.
+FEATURE_DISTANCES = np.array([-GAUSSIAN_EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, GAUSSIAN_EXTENT])
 
 
 @dataclass
 class FastFront:
     """The law of motion of a front that outruns the waves, and the panels of its path.
 
-    alpha is the coefficient of the drag -alpha du/dt. pieces are the pieces of positive and of
-    negative pre-stress. features are positions at which a panel begins or ends; narrow_features are
-    those of narrow Gaussians. kernel_rate is the rate of the waves (`riemann.kernel_rate`).
+    alpha is the coefficient of the drag -alpha du/dt in the equation of motion. The integer
+    refinement divides all lengths of panels.
+
+    Attributes: pieces are intervals of smooth pre-stress of one sign, from left to right. features
+    are positions where a panel begins or ends, and narrow_features are those of narrow Gaussians.
+    kernel_rate is the rate at which waves change; it is sqrt(gamma) unless drag is strong.
     """
 
     prestress: Prestress
@@ -71,14 +78,7 @@ class FastFront:
         check_runaway(self.gamma, self.alpha)
         self.gamma, self.alpha = float(self.gamma), float(self.alpha)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
-        # A panel begins at each feature, so that no feature lies unnoticed between two nodes. They
-        # are indexed [Gaussian, feature].
-        centres, widths = np.array(prestress.gaussians).reshape(-1, 2).T
-        features = centres[:, None] + widths[:, None] * FEATURE_MULTIPLES
-        self.features = np.unique(features)
-        # Features of Gaussians that a front crosses in a small fraction of a wave period.
-        is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
-        self.narrow_features = features[is_narrow].ravel()
+        self._find_features()
         _, _, left_values, right_values = prestress.interval_table.T
         lowest_level = np.min([left_values, right_values])
         lowest = float(np.min(prestress(self.features), initial=lowest_level))
@@ -86,32 +86,45 @@ class FastFront:
         self.pieces = split_into_pieces(prestress)
         self._piece_ends = [piece.right for piece in self.pieces]
 
+    def _find_features(self) -> None:
+        """Set the features of all Gaussians, and those of narrow Gaussians.
+
+        A panel begins at each feature. Otherwise a narrow Gaussian could lie unnoticed between two
+        nodes of a panel.
+        """
+        centres, widths = np.array(self.prestress.gaussians).reshape(-1, 2).T
+        # The axes are [Gaussian, feature].
+        features = centres[:, None] + widths[:, None] * FEATURE_DISTANCES
+        self.features = np.unique(features)
+        is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
+        self.narrow_features = features[is_narrow].ravel()
+
     def mirrored(self) -> "FastFront":
         """Return the law for the pre-stress reflected at x = 0."""
         profile = self.prestress
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
         points = tuple((-position, tau) for position, tau in profile.points[::-1])
-        sides = {"left": profile.right, "right": profile.left}
-        turned = replace(profile, **sides, steps=steps, bumps=bumps, points=points)
-        return replace(self, prestress=turned)
+        levels = {"left": profile.right, "right": profile.left}
+        mirrored = replace(profile, **levels, steps=steps, bumps=bumps, points=points)
+        return replace(self, prestress=mirrored)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
-        """Return 1/v at each pre-stress."""
+        """Return 1/v, the inverse of the front speed, at each pre-stress."""
         return slowness(tau, self.damping_ratio, self.release)
 
     @property
     def marks(self) -> list[float]:
-        """Positions where pieces meet, except kinks of a table of points.
+        """Positions from which waves come, because the motion of the front changes there.
 
-        At such a kink the pre-stress is continuous, and the front is fast on both sides of it or
-        slow on both sides.
+        These are the positions where two pieces meet. Only the kinks of a table of points are left
+        out: the pre-stress is continuous there, and has the same sign on both sides.
         """
         marks = []
-        for piece, after in pairwise(self.pieces):
-            is_turn = piece.is_above != after.is_above
-            is_jump = piece.background.right_value != after.background.left_value
-            is_kink_of_table = bool(self.prestress.points) and not is_turn and not is_jump
+        for piece, next_piece in pairwise(self.pieces):
+            changes_sign = piece.is_above != next_piece.is_above
+            jumps = piece.background.right_value != next_piece.background.left_value
+            is_kink_of_table = bool(self.prestress.points) and not (changes_sign or jumps)
             if not is_kink_of_table:
                 marks.append(piece.right)
         return marks
@@ -121,24 +134,25 @@ class FastFront:
         return self.pieces[bisect_right(self._piece_ends, x)]
 
     def max_panel_length(self, background: Interval) -> float:
-        """Return the length of the longest panel.
+        """Return the largest length of a panel in an interval of linear pre-stress.
 
-        The phase of the waves changes by at most MAX_PHASE along it.
+        The phase of the waves changes by at most MAX_PHASE along such a panel.
         """
-        level = max(background.left_value, background.right_value)
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
+        # The phase changes fastest where the front is fastest, at the higher end of the interval.
+        level = max(background.left_value, background.right_value)
         slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
         # sqrt(dx^2 - dT^2) per unit of x.
         proper_length = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
-        length = min(MAX_PHASE / max(proper_length, 1e-3), MAX_SCALED_LENGTH)
+        length = min(MAX_PHASE / max(proper_length, MIN_PROPER_LENGTH), MAX_SCALED_LENGTH)
         return length / self.kernel_rate / self.refinement
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
-        """Return panels from a point to the right, and the point where they end.
+        """Return the panels of a front that runs right from a point, and the point where they end.
 
-        They end where tau turns negative, at the position stop, or at the end of the piece in which
-        the time until is reached.
+        They end where tau turns negative, or at the position ``stop``. Otherwise they end with the
+        piece in which the front reaches the time ``until``, a little later than this time.
         """
         x, time = start
         panels: list[Panel] = []
@@ -148,55 +162,65 @@ class FastFront:
             if not piece.is_above:
                 break
             end = min(stop, piece.right)
-            if np.isinf(end) and x >= last_feature:
-                # The pre-stress is uniform from here on.
+            # The last piece has no end. It is divided where its pre-stress becomes uniform.
+            if np.isinf(end) and x < last_feature:
+                end = last_feature
+            elif np.isinf(end):
+                # Slightly beyond the position at the time until.
                 slowness = float(self.slowness(np.array(piece.background.right_value)))
                 end = x + (until - time) / slowness * (1.0 + 1e-9) + 1e-9
-            elif np.isinf(end):
-                end = last_feature
             panels += self.panels_between(piece.background, Point(x, time), end)
             x, time = end, panels[-1].time_ends[1]
         return panels, Point(x, time)
 
     def panels_between(self, background: Interval, start: Point, end: float) -> list[Panel]:
-        """Return panels of a front that runs right from a point, within one piece."""
-        max_length = self.max_panel_length(background)
-        if (end - start.x) * self.refinement > MAX_PANELS * max_length:
-            raise self._too_many_panels_error(background, end - start.x)
-        # Panels that are short enough for the waves, and begin at every feature.
-        inner = self.features[(self.features > start.x) & (self.features < end)]
-        stretches = np.concatenate([[start.x], inner, [end]])
-        counts = self.refinement * np.ceil(np.diff(stretches) / max_length).astype(int)
-        parts = []
-        for (left, right), count in zip(pairwise(stretches), counts, strict=True):
-            parts.append(np.linspace(left, right, count + 1))
-        edges = np.unique(np.concatenate(parts))
-        edges[0], edges[-1] = start.x, end
-        # Panels on which 1/v or tau is not resolved are halved.
+        """Return the panels of a front that runs right from a point to an end, within one piece."""
+        edges = self._first_edges(background, start.x, end)
+        # Panels on which 1/v or tau is not resolved are halved, until all are resolved.
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
             tau = continued_prestress(self.prestress, background, x)
             slowness = self.slowness(tau)
+            # The last two Legendre coefficients of 1/v and of tau on each panel.
             last_coefficients = np.stack([slowness, tau]) @ NODES_TO_SERIES[-2:].T
-            largest_tail = np.abs(last_coefficients).max(axis=(0, 2))
+            largest_coefficient = np.abs(last_coefficients).max(axis=(0, 2))
             length = 2.0 * half[:, 0]
-            is_split = (largest_tail * length > SERIES_TOLERANCE) & (length > MIN_PANEL_LENGTH)
-            if not is_split.any():
+            is_unresolved = largest_coefficient * length > SERIES_TOLERANCE
+            is_halved = is_unresolved & (length > MIN_PANEL_LENGTH)
+            if not is_halved.any():
                 break
             if edges.size > MAX_PANELS:
                 raise self._too_many_panels_error(background, end - start.x)
             middles = 0.5 * (edges[:-1] + edges[1:])
-            edges = np.sort(np.concatenate([edges, middles[is_split]]))
-        # T is the integral of 1/v; dx/ds is half of the length of a panel.
+            edges = np.sort(np.concatenate([edges, middles[is_halved]]))
+        # T is the integral of 1/v, where dx/ds is half of the length of a panel.
         durations = half[:, 0] * (slowness @ WEIGHTS)
         times = start.time + np.concatenate([[0.0], np.cumsum(durations)])
         node_times = times[:-1, None] + (half * slowness) @ NODES_TO_INTEGRALS.T
-        columns = x, node_times, tau * half, pairwise(edges), pairwise(times)
-        return [Panel._make(row) for row in zip(*columns, strict=True)]
+        fields_of_panels = x, node_times, tau * half, pairwise(edges), pairwise(times)
+        return [Panel._make(fields) for fields in zip(*fields_of_panels, strict=True)]
+
+    def _first_edges(self, background: Interval, start: float, end: float) -> np.ndarray:
+        """Return edges of panels from a start to an end, within one piece.
+
+        The panels are short enough for the waves, and one begins at every feature.
+        """
+        max_length = self.max_panel_length(background)
+        if (end - start) * self.refinement > MAX_PANELS * max_length:
+            raise self._too_many_panels_error(background, end - start)
+        features = self.features[(self.features > start) & (self.features < end)]
+        ends = np.concatenate([[start], features, [end]])
+        panel_counts = self.refinement * np.ceil(np.diff(ends) / max_length).astype(int)
+        edges_between = []
+        for (left, right), panel_count in zip(pairwise(ends), panel_counts, strict=True):
+            edges_between.append(np.linspace(left, right, panel_count + 1))
+        edges = np.unique(np.concatenate(edges_between))
+        edges[0], edges[-1] = start, end
+        return edges
 
     def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
-        """Return the error for a front that needs too many panels."""
+        """Return the error for a front that needs too many panels over a distance."""
         level, gamma = background.right_value, self.gamma
         return ValueError(
             f"prestress: level {level!r} over a distance of {distance:g} at gamma = {gamma:g},"
@@ -206,13 +230,14 @@ class FastFront:
 
 
 def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Panel]:
-    """Return panels of T = slowness |x| in uniform pre-stress tau.
+    """Return panels with the arrival time T = slowness |x|, in uniform pre-stress tau.
 
-    x = 0 is one of the edges of the panels, or beyond them.
+    No panel contains x = 0 in its interior.
     """
     panels = []
     for left, right in pairwise(edges.tolist()):
         half = 0.5 * (right - left)
+        # dT/dx changes its sign at x = 0.
         slope = slowness if left + right > 0.0 else -slowness
         x = left + half * (1.0 + NODES)
         source = np.full(NODE_COUNT, tau * half)

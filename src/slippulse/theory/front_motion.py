@@ -1,15 +1,18 @@
 """The steady front, block by block: a check of front speeds that uses no Wiener-Hopf factor.
 
-Assume that blocks are released one after another at times 1/v apart, whatever the stress on them
-is. In the frame of the front the state after one such period (slip and velocity of the
-BLOCKS_BEHIND_FRONT last released blocks) is an affine function of the state before it:
+The front moves by one block per period, the time 1/v. Assume that blocks are released one after
+another at this interval, whatever the stress on them is. The state consists of the slips and then
+the velocities of the BLOCKS_BEHIND_FRONT blocks that were released last. Block 0 is the one
+released last, block 1 the one before it, and so on. The state after a period follows from the state
+before it by a matrix and a constant load:
 
-    state after = shift (period_matrix state before + period_load),
+    state after = shift (period_matrix state before + period_load).
 
-where the shift renumbers the blocks, because a block at rest has joined at the front. The steady
-state is the fixed point, one solution of a linear system. The stress on a block at its release, for
-unit pre-stress, is then 1/tau_0. The front is admissible if the stress ahead of it remains below 1
-until the release, and if no block behind it comes to rest before the next one is released.
+The shift renumbers the blocks: block 0 becomes block 1, and a block at rest becomes block 0. In the
+steady state both sides are equal, which is one system of linear equations. It is solved for the
+pre-stress 1. Since everything is proportional to the pre-stress tau_0, the stress on a block at its
+release is then 1/tau_0. The front is admissible if two conditions hold: the stress ahead of it
+remains below 1 until the release, and the block released last slides until the next release.
 """
 
 from typing import NamedTuple
@@ -19,15 +22,15 @@ import numpy as np
 # Number of substeps of a period at whose ends the stress is computed.
 SUBSTEPS_PER_PERIOD = 16
 # Number of blocks behind the front. It is much larger than b v/(v^2 - 1), the number of blocks in
-# the layer of damped waves at the front.
+# the layer of damped waves at the front, where b = beta/dx.
 BLOCKS_BEHIND_FRONT = 100
 
 
 class SteadyFront(NamedTuple):
     """A front at one speed: the pre-stress into which it runs, and whether it is admissible.
 
-    ahead is the stress on the first stuck block, at SUBSTEPS_PER_PERIOD + 1 times from the last
-    release to the release of this block, where the stress is 1.
+    ahead is the stress on the first stuck block, at SUBSTEPS_PER_PERIOD + 1 times. They go from the
+    last release to the release of this block, where the stress is 1.
     """
 
     prestress: float
@@ -36,40 +39,51 @@ class SteadyFront(NamedTuple):
 
 
 def steady_front(speed: float, damping_ratio: float, springs: float, release: str) -> SteadyFront:
-    """Return the steady front at a speed > 1 (wave speeds); springs are gamma dx^2."""
+    """Return the steady front at a speed v > 1 (wave speeds).
+
+    damping_ratio is beta/dx. springs is the stiffness of the leaf springs, gamma dx^2.
+    """
     # scipy.linalg is slow to import, and only needed here.
     from scipy.linalg import expm
 
     count = BLOCKS_BEHIND_FRONT
-    # Block 0 has just been released; the block ahead of it is stuck, and slip has no curvature at
-    # the last block.
-    curvature = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
-    curvature[-1, -3:] = curvature[-2, -3:]
-    # The equation of motion for the slips, the velocities and, in the last place, the constant 1,
-    # which is multiplied by the pre-stress, here 1.
-    size = 2 * count
-    slips, velocities = slice(0, count), slice(count, size)
-    system = np.zeros((size + 1, size + 1))
-    system[slips, velocities] = np.eye(count)
-    system[velocities, slips] = curvature - springs * np.eye(count)
-    system[velocities, velocities] = damping_ratio * curvature
-    system[velocities, -1] = 1.0
-    step = expm(system / (speed * SUBSTEPS_PER_PERIOD))
-    period = np.linalg.matrix_power(step, SUBSTEPS_PER_PERIOD)
-    period_matrix, period_load = period[:size, :size], period[:size, size]
-    # One period later each block is one position farther behind, and a block at rest leads.
+    equation = _equation_of_motion(count, damping_ratio, springs)
+    # A period takes the time 1/v. Its load is the column that belongs to the constant 1.
+    substep = expm(equation / (speed * SUBSTEPS_PER_PERIOD))
+    period = np.linalg.matrix_power(substep, SUBSTEPS_PER_PERIOD)
+    period_matrix, period_load = period[:-1, :-1], period[:-1, -1]
+    # The shift of slips and that of velocities: each row takes the value of the row before it.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
-    state = np.linalg.solve(np.eye(size) - shift @ period_matrix, shift @ period_load)
-    states = [np.append(state, 1.0)]
+    steady_state = np.linalg.solve(np.eye(2 * count) - shift @ period_matrix, shift @ period_load)
+    states = [np.append(steady_state, 1.0)]
     for _ in range(SUBSTEPS_PER_PERIOD):
-        states.append(step @ states[-1])
-    history = np.array(states)
-    first_slip, first_velocity = history[:, slips][:, 0], history[:, velocities][:, 0]
-    # The stress on the stuck block ahead of block 0, for unit pre-stress.
+        states.append(substep @ states[-1])
+    slip_of_block_0 = np.array([state[0] for state in states])
+    velocity_of_block_0 = np.array([state[count] for state in states])
+    # The block ahead is stuck. It is pulled by block 0 and, under rule "total", also damped by it.
     gain = damping_ratio if release == "total" else 0.0
-    ahead = 1.0 + first_slip + gain * first_velocity
+    ahead = 1.0 + slip_of_block_0 + gain * velocity_of_block_0
+    # The stress is 1 at the last time, the release. This determines the pre-stress.
     prestress = 1.0 / ahead[-1]
     stays_stuck = np.all(prestress * ahead[:-1] < 1.0)
-    # The block released last must slide until the next one is released.
-    slides = np.all(first_velocity[1:] > 0.0)
+    slides = np.all(velocity_of_block_0[1:] > 0.0)
     return SteadyFront(float(prestress), prestress * ahead, bool(stays_stuck and slides))
+
+
+def _equation_of_motion(count: int, damping_ratio: float, springs: float) -> np.ndarray:
+    """Return the matrix of d(state)/dt = matrix state, for all sliding blocks behind the front.
+
+    The rows and columns belong to the slips, the velocities, and the constant 1, in this order.
+    """
+    # The block ahead of block 0 is stuck and has no slip. At the last block, slip has the curvature
+    # of the block before.
+    curvature = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
+    curvature[-1, -3:] = curvature[-2, -3:]
+    slips, velocities = slice(0, count), slice(count, 2 * count)
+    matrix = np.zeros((2 * count + 1, 2 * count + 1))
+    matrix[slips, velocities] = np.eye(count)
+    matrix[velocities, slips] = curvature - springs * np.eye(count)
+    matrix[velocities, velocities] = damping_ratio * curvature
+    # The pre-stress 1 is the factor of the constant.
+    matrix[velocities, -1] = 1.0
+    return matrix

@@ -1,10 +1,9 @@
 """Front speeds on the damped lattice, without leaf springs.
 
-They follow from the Wiener-Hopf factor M_+ of `wiener_hopf`. With the release rule "total" (the
-stress includes the damping force) the stress at the release is 1 if M_+(0) = tau_0; with "elastic"
-(it does not) if M_+(0)/M_+(i/(b v)) = tau_0. The sliding part is taken to be infinitely long. The
-front feels that blocks stick behind it only if the pulse is hardly wider than the layer of damped
-or lattice waves at its tip, which is a few blocks unless b is large.
+They follow from a relation between front speed and pre-stress (`wiener_hopf`). It assumes that the
+sliding part behind the front is infinitely long. A pulse is finite, but this changes its front
+speed only if it is hardly wider than a layer of damped waves and lattice waves at the front. This
+layer is a few blocks wide, unless the damping ratio is large.
 """
 
 from typing import NamedTuple
@@ -18,26 +17,33 @@ from .vector_roots import increasing_roots
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
-# If 1 - tau_0 is below this, rounding affects the quadrature, and the first terms in 1/v are more
-# accurate.
+# If 1 - tau_0 is below this, rounding affects the quadrature. The first terms of an expansion in
+# 1/v are then more accurate.
 NEARLY_ONE_DISTANCE = {"total": 1e-10, "elastic": 1e-13}
-# The smallest ln(v - 1), for which v is 1 to all digits, and one beyond any speed in the domain.
+# The smallest ln(v - 1), for which v is 1 to all digits, and the largest one, which is beyond any
+# speed in the domain.
 MIN_LOG_EXCESS, MAX_LOG_EXCESS = -80.0, 280.0
-# Number of elements that are solved at once, which limits the memory.
-ELEMENTS_PER_CHUNK = 128
+# Number of fronts that are solved at once, which limits the memory.
+FRONTS_PER_CHUNK = 128
 
 
-class Lattice(NamedTuple):
-    """A lattice: its damping ratios, release rule, leaf springs gamma dx^2 and drag alpha dx."""
+class FrontLaw(NamedTuple):
+    """The relation between pre-stress and speed of fronts on a lattice.
 
-    ratio: np.ndarray
+    There is one damping ratio beta/dx for each front. gamma_dx2 is gamma dx^2 (leaf springs), and
+    alpha_dx is alpha dx (drag).
+    """
+
+    damping_ratios: np.ndarray
     release: str
-    springs: float = 0.0
-    drag: float = 0.0
+    gamma_dx2: float = 0.0
+    alpha_dx: float = 0.0
 
-    def log_prestress(self, x: np.ndarray, ratio: np.ndarray) -> np.ndarray:
-        """Return ln tau_0 of fronts at x = ln(v - 1)."""
-        return log_prestress(np.exp(x), ratio, self.springs, self.release, self.drag)
+    def log_prestress(self, log_excess: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
+        """Return ln tau_0 of fronts of speed v, given log_excess = ln(v - 1)."""
+        return log_prestress(
+            np.exp(log_excess), damping_ratio, self.gamma_dx2, self.release, self.alpha_dx
+        )
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
@@ -64,16 +70,17 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
 def front_speed(tau0, damping_ratio, release: str = "total"):
     """Return the exact speed of a steady front without leaf springs (gamma dx^2 << 1).
 
-    Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0
-    the paper's 1/sqrt(1 - tau_0^2) for any dx. Its relative error is below 1e-12 in tau_0.
+    Without damping it is the paper's 1/sqrt(1 - tau_0^2), for any dx.
+    Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`). The pre-stress that
+    belongs to the returned speed differs from tau0 by a relative error below 1e-12.
     Raises ValueError: outside the domain.
 
     Parameters
     ----------
     tau0, damping_ratio : floats or arrays, broadcast: pre-stress ahead, in (0, 1), and beta/dx,
         from 0 to 1e100
-    release : "total" or "elastic", whether the stress that is compared with the threshold includes
-        the damping force
+    release : "total" or "elastic". A block is released when the stress on it reaches 1; "total"
+        means that this stress includes the damping force
 
     Returns
     -------
@@ -85,25 +92,30 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     2.5
     """
     check_choice("release", release, RELEASES)
-    tau, ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
+    tau, damping_ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
     speeds = np.array(front_speed_undamped(tau))
-    damped = ratio > 0.0
-    # Under rule "elastic" the expansion holds only for fronts that are much faster than the ratio.
-    may_be_expanded = (release == "total") | (ratio < 1e3)
-    is_nearly_one = damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & may_be_expanded
-    speeds[is_nearly_one] = 1.0 / slowness_nearly_one(
-        tau[is_nearly_one], ratio[is_nearly_one], release
+    is_damped = damping_ratio > 0.0
+    # Next to tau_0 = 1 the speed is expanded in 1/v. Under rule "elastic" this holds only for
+    # fronts that are much faster than the damping ratio.
+    may_be_expanded = (release == "total") | (damping_ratio < 1e3)
+    is_expanded = is_damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & may_be_expanded
+    speeds[is_expanded] = 1.0 / slowness_nearly_one(
+        tau[is_expanded], damping_ratio[is_expanded], release
     )
-    is_solved = damped & ~is_nearly_one
+    is_solved = is_damped & ~is_expanded
     if np.any(is_solved):
-        tau, ratio = tau[is_solved], ratio[is_solved]
-        # Elements with similar speeds share a contour.
-        order = np.argsort(first_guess(tau, ratio, release))
-        solved_speeds = np.empty(tau.size)
-        for part in np.split(order, range(ELEMENTS_PER_CHUNK, order.size, ELEMENTS_PER_CHUNK)):
-            solved_speeds[part] = speeds_into(tau[part], Lattice(ratio[part], release))
-        speeds[is_solved] = solved_speeds
+        speeds[is_solved] = _solved_speeds(tau[is_solved], damping_ratio[is_solved], release)
     return speeds if speeds.ndim else float(speeds)
+
+
+def _solved_speeds(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
+    """Return front speeds that are computed numerically, chunk by chunk."""
+    # Fronts of similar speeds are in one chunk, because they share a contour of integration.
+    order = np.argsort(first_guess(tau, damping_ratio, release))
+    speeds = np.empty(tau.size)
+    for chunk in np.split(order, range(FRONTS_PER_CHUNK, order.size, FRONTS_PER_CHUNK)):
+        speeds[chunk] = speeds_into(tau[chunk], FrontLaw(damping_ratio[chunk], release))
+    return speeds
 
 
 def prestress_for_speed(speed, damping_ratio, release: str = "total"):
@@ -126,65 +138,83 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     0.6
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = broadcast_numbers(speed=speed, damping_ratio=damping_ratio)
-    excess = speeds - 1.0
+    speeds, damping_ratio = broadcast_numbers(speed=speed, damping_ratio=damping_ratio)
+    excess_speed = speeds - 1.0
     # Without damping the pre-stress is sqrt(v^2 - 1)/v.
-    prestress = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
-    damped = ratio > 0.0
-    if np.any(damped):
-        prestress[damped] = np.exp(log_prestress_in_chunks(excess[damped], ratio[damped], release))
+    prestress = np.array(np.sqrt(excess_speed * (1.0 + speeds)) / speeds)
+    is_damped = damping_ratio > 0.0
+    if np.any(is_damped):
+        log_tau = log_prestress_in_chunks(
+            excess_speed[is_damped], damping_ratio[is_damped], release
+        )
+        prestress[is_damped] = np.exp(log_tau)
     return prestress if prestress.ndim else float(prestress)
 
 
-def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
-    """Return 1/v of fronts that are much faster than b, up to terms in 1/v^3.
+def slowness_nearly_one(
+    tau: np.ndarray, damping_ratio: np.ndarray | float, release: str
+) -> np.ndarray:
+    """Return 1/v of fronts into pre-stress tau next to 1, which are very fast.
 
-    It solves -ln tau = b/v + 1/(2 v^2) under rule "total", and -ln tau = 1/(2 v^2) under "elastic".
+    With b = beta/dx it solves -ln tau = b/v + 1/(2 v^2) under rule "total", and
+    -ln tau = 1/(2 v^2) under rule "elastic". Terms in 1/v^3 are neglected.
     """
-    fall = -np.log(tau)
-    damping = np.asarray(ratio) if release == "total" else 0.0
-    return 2.0 * fall / np.maximum(damping + np.sqrt(damping**2 + 2.0 * fall), 1e-300)
+    minus_log_tau = -np.log(tau)
+    b = np.asarray(damping_ratio) if release == "total" else 0.0
+    # This form of the root of a quadratic equation loses no digits.
+    return 2.0 * minus_log_tau / np.maximum(b + np.sqrt(b**2 + 2.0 * minus_log_tau), 1e-300)
 
 
-def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """Return `log_prestress` without leaf springs, with limited memory."""
-    parts = (slice(i, i + ELEMENTS_PER_CHUNK) for i in range(0, excess.size, ELEMENTS_PER_CHUNK))
-    values = [log_prestress(excess[part], ratio[part], 0.0, release) for part in parts]
+def log_prestress_in_chunks(
+    excess_speed: np.ndarray, damping_ratio: np.ndarray, release: str
+) -> np.ndarray:
+    """Return `log_prestress` of many fronts without leaf springs, chunk by chunk."""
+    values = []
+    for start in range(0, excess_speed.size, FRONTS_PER_CHUNK):
+        chunk = slice(start, start + FRONTS_PER_CHUNK)
+        values.append(log_prestress(excess_speed[chunk], damping_ratio[chunk], 0.0, release))
     return np.concatenate(values)
 
 
-def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """Return an estimate of ln(v - 1), with which the search for the speed starts.
+def first_guess(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
+    """Return an estimate of ln(v - 1), with which the search for the front speed v starts.
 
-    It follows from the limits of weak and strong damping and, under rule "total", from b = 1.
+    It is interpolated between weak and strong damping, for which the speed has a simple formula.
     """
-    distance_to_1 = 1.0 - tau
+    b, distance_to_1 = damping_ratio, 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).
     one_minus_square = distance_to_1 * (1.0 + tau)
     undamped = np.log(tau) * 2.0 - np.log(one_minus_square + np.sqrt(one_minus_square))
     if release == "elastic":
-        # With strong damping v = 1/sqrt(1 - tau).
-        damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
-        return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
-    # At b = 1, v - 1 = tau/(1 - tau). It grows in proportion to b beyond.
-    weight = np.minimum(ratio, 1.0)
-    damped = np.log(tau / distance_to_1) + np.log(np.maximum(ratio, 1.0))
+        # With strong damping v = 1/sqrt(1 - tau). The terms with b are fitted.
+        strongly_damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
+        return np.where(b < 0.2, undamped + 0.5 * b, strongly_damped - 1.0 / (1.0 + 2.0 * b))
+    # Under rule "total", v - 1 = tau/(1 - tau) at b = 1. Beyond, it grows in proportion to b.
+    damped = np.log(tau / distance_to_1) + np.log(np.maximum(b, 1.0))
+    weight = np.minimum(b, 1.0)
     return (1.0 - weight) * undamped + weight * damped
 
 
-def speeds_into(tau: np.ndarray, lattice: Lattice, slowest: float = MIN_LOG_EXCESS) -> np.ndarray:
-    """Return the speeds v at which the pre-stress is tau.
+def speeds_into(
+    tau: np.ndarray, front_law: FrontLaw, min_log_excess: float = MIN_LOG_EXCESS
+) -> np.ndarray:
+    """Return the speeds v of fronts into the pre-stresses tau.
 
-    They are searched from ln(v - 1) = slowest on.
+    The unknown is ln(v - 1). Its search begins at min_log_excess, the value of the slowest front.
     """
     target = np.log(tau) - np.log1p(-tau)
 
-    def mismatch(x: np.ndarray, which: np.ndarray) -> np.ndarray:
-        """Return the error of ln(tau/(1 - tau)), which is nearly linear in ln(v - 1)."""
-        log_tau = lattice.log_prestress(x, lattice.ratio[which])
-        # If the stress is 1 to rounding, the front is faster than any target.
-        return log_tau - np.log(np.maximum(-np.expm1(log_tau), 1e-17)) - target[which]
+    def mismatch(log_excess: np.ndarray, which: np.ndarray) -> np.ndarray:
+        """Return the error of ln(tau/(1 - tau)), which is nearly linear in ln(v - 1).
 
-    low, high = np.full(tau.size, slowest), np.full(tau.size, MAX_LOG_EXCESS)
-    guess = np.clip(first_guess(tau, lattice.ratio, lattice.release), low + 0.1, high - 1.0)
+        ``which`` has the numbers of the fronts.
+        """
+        log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[which])
+        # 1 - tau may be 0 to rounding, and is then replaced by a value below that of any target.
+        log_one_minus_tau = np.log(np.maximum(-np.expm1(log_tau), 1e-17))
+        return log_tau - log_one_minus_tau - target[which]
+
+    low, high = np.full(tau.size, min_log_excess), np.full(tau.size, MAX_LOG_EXCESS)
+    guess = first_guess(tau, front_law.damping_ratios, front_law.release)
+    guess = np.clip(guess, low + 0.1, high - 1.0)
     return 1.0 + np.exp(increasing_roots(mismatch, guess=guess, lower=low, upper=high))

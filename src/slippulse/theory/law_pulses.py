@@ -1,16 +1,20 @@
-"""Steady ruptures under other laws of friction: U(xi), xi = x - v t <= 0, behind a front.
+"""Steady ruptures under other laws of friction: the slip U(xi) behind a front of speed v.
 
-Friction that weakens linearly with slip (`weakening_pulse`): in the damped continuum, at speed v,
+Positions are xi = x - v t, which is 0 at the front and negative behind it.
+
+Friction that weakens linearly with slip, down to 0 at the slip d_c (`weakening_pulse`): in the
+damped continuum
 
     beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 - max(0, 1 - U/d_c)
 
 with U = U' = U'' = 0 at the front, since damping keeps slip velocity and its slope continuous.
 Where the pulse sticks, U' = U'' = 0 too. For U below d_c, and for U above it, the equation is
-linear, and U is a sum of three exponentials. One of them grows behind the front. The speed is the
-one at which the pulse sticks, or, if it does not stick, at which the growing exponential is absent.
+linear, and U is a sum of three exponentials. One of them grows with the distance from the front.
+The front speed is the one at which the pulse sticks. If no pulse sticks, it is the speed at which
+the growing exponential is absent.
 
-Friction f(V) that depends on slip rate V = -v U' (`rate_pulse`): it is 0 at rest, so that a front
-does not feel it. In the limit dx -> 0 at fixed beta/dx
+Friction f(V) that depends on the slip velocity V = -v U' (`rate_pulse`): it is 0 at rest, so that
+it does not change the front speed. In the limit dx -> 0 at fixed beta/dx
 
     (v^2 - 1) U'' + gamma U = tau_0 - f(V),   U(0) = U'(0) = 0.
 """
@@ -18,6 +22,7 @@ does not feel it. In the limit dx -> 0 at fixed beta/dx
 import math
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +33,7 @@ from ..model.roots import root_between
 from .domains import check_domains
 from .front_speeds import front_speed
 
-# The speed of a rupture is searched between these.
+# Under slip weakening, the front speed is searched between these.
 MIN_SPEED, MAX_SPEED = 0.05, 50.0
 # Ratio of successive trial speeds from the lowest one upwards.
 SPEED_FACTOR = 1.1
@@ -40,13 +45,13 @@ MAX_SAMPLE_DISTANCE = 60.0
 SAMPLE_FACTOR = 1.01
 # The growing exponential is absent if its amplitude is below this fraction of the others.
 ABSENT_FRACTION = 1e-6
-# Under laws of slip rate, slip that has not stopped within this number of half-periods of leaf
-# springs creeps on.
+# If friction depends on slip velocity, a steady rupture that has not stuck within this number of
+# half-periods of the leaf springs creeps on for ever.
 MAX_HALF_PERIODS = 12.0
-# Number of steps in each half-period, which is large enough not to miss a stop.
+# Number of integration steps in each half-period, which is large enough not to miss a stick.
 STEPS_PER_HALF_PERIOD = 100
-# The most evaluations of the slopes, which take 5 s. A stiff law with weak leaf springs would need
-# more.
+# The most evaluations of a friction law, which take 5 s. A stiff law with weak leaf springs would
+# need more.
 MAX_EVALUATIONS = 10**6
 
 
@@ -54,8 +59,9 @@ MAX_EVALUATIONS = 10**6
 class SteadyRupture:
     """Steady rupture under a law of friction: speed (wave speeds), width (H), and slip (U).
 
-    A rupture that does not stick is a crack with a decaying tail, of infinite width and slip
-    tau_0/gamma. The largest slip velocity is NaN except for `rate_pulse`.
+    A rupture that does not stick is a crack with a decaying tail, of infinite width. Its slip tends
+    to tau_0/gamma. peak_velocity, the largest slip velocity, is known only for `rate_pulse`, and
+    otherwise NaN.
     """
 
     speed: float
@@ -70,84 +76,107 @@ class SteadyRupture:
 
 
 class _Exponentials:
-    """Solution of b U''' + inertia U'' + stiffness U = load, given U, U' and U'' at xi = 0."""
+    """Slip U(xi), xi <= 0, a sum of three exponentials and the static slip.
 
-    def __init__(self, b: float, inertia: float, stiffness: float, load: float, start: np.ndarray):
-        self.exponents = np.sort_complex(np.roots([b, inertia, 0.0, stiffness]))
+    It solves damping U''' + inertia U'' + stiffness U = load. start has U, U' and U'' at xi = 0.
+    """
+
+    def __init__(
+        self, damping: float, inertia: float, stiffness: float, load: float, start: np.ndarray
+    ) -> None:
+        # Exponents with a negative real part come first: they grow with the distance from xi = 0.
+        self.exponents = np.sort_complex(np.roots([damping, inertia, 0.0, stiffness]))
         self.static_slip = load / stiffness
+        # Row n has the n-th powers of the exponents, the factors of the n-th derivatives at xi = 0.
         powers = np.vander(self.exponents, 3, increasing=True).T
         self.amplitudes = np.linalg.solve(powers, start - np.array([self.static_slip, 0.0, 0.0]))
 
-    def at(self, xi: float | np.ndarray, derivative: int = 0) -> np.ndarray:
-        """Return U, or a derivative of it, at xi <= 0."""
+    def evaluate(self, xi: float | np.ndarray, derivative: int = 0) -> np.ndarray:
+        """Return U, or its first or second derivative by xi, at xi <= 0."""
         factors = self.amplitudes * self.exponents**derivative
         with np.errstate(over="ignore", invalid="ignore"):
             terms = factors * np.exp(np.multiply.outer(xi, self.exponents))
         return terms.sum(axis=-1).real + (self.static_slip if derivative == 0 else 0.0)
 
     def samples(self) -> np.ndarray:
-        """Return positions behind xi = 0 that resolve the first turns of each exponential."""
+        """Return positions behind xi = 0, dense enough to resolve each exponential."""
         rates = np.abs(self.exponents)
         nearest, farthest = MIN_SAMPLE_DISTANCE / rates.max(), MAX_SAMPLE_DISTANCE / rates.min()
         count = math.log(farthest / nearest) / math.log(SAMPLE_FACTOR)
         return -nearest * SAMPLE_FACTOR ** np.arange(count)
 
-    def first_turn(self) -> tuple[np.ndarray, bool]:
+    def first_velocity_minimum(self) -> tuple[np.ndarray, bool]:
         """Return the two samples around the first minimum of slip velocity behind its peak.
 
         They are empty if there is no minimum. The flag is True if the slip stops before it. Slip
-        velocity is -v U', so that it falls, going back from the front, where U'' < 0, and the slip
-        stops where U' >= 0.
+        velocity is -v U'. So it decreases with the distance from the front where U'' < 0, and is
+        not positive where U' >= 0.
         """
         xi = self.samples()
-        curvature = self.at(xi, 2)
+        curvature = self.evaluate(xi, 2)
         is_minimum = (curvature < 0.0)[:-1] & (curvature >= 0.0)[1:]
         minima = np.flatnonzero(is_minimum)
-        turn = minima[0] if minima.size else xi.size
-        has_stopped = self.at(xi, 1) >= 0.0
-        return xi[turn : turn + 2], bool(has_stopped[: turn + 1].any())
+        first = minima[0] if minima.size else xi.size
+        has_stopped = self.evaluate(xi, 1) >= 0.0
+        return xi[first : first + 2], bool(has_stopped[: first + 1].any())
 
     def creeps_forever(self) -> bool:
-        """Return True if slip goes on for ever.
+        """Return True if the slip approaches the static slip from below, without end.
 
-        This is so without a growing exponential, oscillation or overshoot. The first exponential
-        grows behind the front. The second one decays most slowly, and a negative amplitude means
-        that slip approaches its end from below.
+        This needs three conditions: no part of it grows, oscillates, or lies above the static slip.
         """
+        # The first exponential grows with the distance from the front. The second one decays most
+        # slowly, and decides from which side the static slip is approached.
         growing, *decaying = np.abs(self.amplitudes)
-        is_growing_absent = growing <= ABSENT_FRACTION * max(decaying)
+        grows = growing > ABSENT_FRACTION * max(decaying)
         oscillates = bool(self.exponents[1:].imag.any())
         overshoots = self.amplitudes[1].real >= 0.0
-        return bool(is_growing_absent and not oscillates and not overshoots)
+        return not (grows or oscillates or overshoots)
 
 
-def _zone_and_tail(
+def _zone_and_slip_beyond(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
 ) -> tuple[float, _Exponentials]:
-    """Return the end xi of the weakening zone behind a front at speed v, and the slip U beyond it.
+    """Return the end xi of the weakening zone behind a front of speed v, and the slip beyond it.
 
-    xi of the slip U is counted from the end of the zone. The end is NaN if the slip stops inside
-    the zone.
+    In the zone friction falls; it ends where the slip reaches the weakening distance d_c. Positions
+    xi of the slip beyond the zone are counted from this end. The end is NaN if the slip stops
+    inside the zone.
     """
-    b, inertia = beta * v, (v - 1.0) * (v + 1.0)
-    zone = _Exponentials(
-        b=b, inertia=inertia, stiffness=gamma - 1.0 / weakening, load=tau0 - 1.0, start=np.zeros(3)
+    damping, inertia = beta * v, (v - 1.0) * (v + 1.0)
+    # Friction 1 - U/d_c adds -1/d_c to the stiffness and -1 to the load.
+    slip_in_zone = _Exponentials(
+        damping=damping,
+        inertia=inertia,
+        stiffness=gamma - 1.0 / weakening,
+        load=tau0 - 1.0,
+        start=np.zeros(3),
     )
-    xi = zone.samples()
-    is_weak = zone.at(xi) >= weakening
-    first_weak = int(np.argmax(is_weak))
-    has_stopped = zone.at(xi, 1) >= 0.0
-    if not is_weak[first_weak] or has_stopped[:first_weak].any():
-        return math.nan, zone
+    xi = slip_in_zone.samples()
+    is_beyond_zone = slip_in_zone.evaluate(xi) >= weakening
+    first_beyond = int(np.argmax(is_beyond_zone))
+    has_stopped = slip_in_zone.evaluate(xi, 1) >= 0.0
+    if not is_beyond_zone[first_beyond] or has_stopped[:first_beyond].any():
+        return math.nan, slip_in_zone
+
+    def slip_to_go(position: float) -> float:
+        """Return the slip minus the weakening distance, which is 0 at the end of the zone."""
+        return float(slip_in_zone.evaluate(position)) - weakening
+
     # The end of the zone is between the first sample beyond it and the sample before (or xi = 0).
-    before = 0.0 if first_weak == 0 else float(xi[first_weak - 1])
-    end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first_weak]), before)
-    start = np.array([float(zone.at(end, n)) for n in range(3)])
-    return end, _Exponentials(b=b, inertia=inertia, stiffness=gamma, load=tau0, start=start)
+    before = 0.0 if first_beyond == 0 else float(xi[first_beyond - 1])
+    end = root_between(slip_to_go, float(xi[first_beyond]), before)
+    start = np.array([float(slip_in_zone.evaluate(end, order)) for order in range(3)])
+    slip_beyond_zone = _Exponentials(
+        damping=damping, inertia=inertia, stiffness=gamma, load=tau0, start=start
+    )
+    return end, slip_beyond_zone
 
 
 def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> SteadyRupture:
     """Return the slowest steady rupture in uniform pre-stress under slip weakening and damping.
+
+    Friction falls linearly with slip, from static to kinetic friction.
 
     Source: derived in the supplement, section on friction laws.
     Raises ValueError: outside the domain, or where no steady rupture has a speed of 0.05 to 50.
@@ -160,7 +189,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
 
     Returns
     -------
-    SteadyRupture : the slowest one, for roots of the conditions need not be unique
+    SteadyRupture : the slowest one, because there may be several
 
     Examples
     --------
@@ -172,39 +201,48 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
     tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
-    def too_fast(v: float) -> float:
-        """Return 1 if v is above the speed of the rupture, -1 if not.
+    def sign_of_speed_error(v: float) -> float:
+        """Return 1 if the speed v is too high for a steady rupture, and -1 if it is too low.
 
-        At a lower speed the slip stops before the first minimum of slip velocity.
+        If it is too low, the slip stops before the first minimum of slip velocity.
         """
-        end, tail = _zone_and_tail(v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
-        if math.isnan(end):
+        zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+            v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
+        )
+        if math.isnan(zone_end):
             return -1.0
-        _, stops = tail.first_turn()
+        _, stops = slip_beyond_zone.first_velocity_minimum()
         return -1.0 if stops else 1.0
 
-    # The slowest rupture is between the first trial speed that is too fast and the one before.
+    # The speed of the slowest rupture is between the first trial speed that is too high and the
+    # trial speed before.
     upper = MIN_SPEED
-    while upper < MAX_SPEED and too_fast(upper) < 0.0:
+    while upper < MAX_SPEED and sign_of_speed_error(upper) < 0.0:
         upper *= SPEED_FACTOR
     if not MIN_SPEED < upper < MAX_SPEED:
         values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
         allowed = f"values with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
-    speed = root_to_last_bit(too_fast, upper / SPEED_FACTOR, upper)
-    zone_end, tail = _zone_and_tail(speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening)
-    turn, _ = tail.first_turn()
-    if tail.creeps_forever() or not turn.size:
+    speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
+    zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+        speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
+    )
+    minimum, _ = slip_beyond_zone.first_velocity_minimum()
+    if slip_beyond_zone.creeps_forever() or not minimum.size:
         return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
-    # The pulse sticks where U' = U'' = 0. At this speed, U' is 0 where U'' is.
-    nearer, farther = turn.tolist()
-    stick = root_between(lambda xi: float(tail.at(xi, 2)), farther, nearer)
-    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=float(tail.at(stick)))
+    # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
+    # rupture, slip velocity is 0 there too.
+    nearer, farther = minimum.tolist()
+    stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
+    final_slip = float(slip_beyond_zone.evaluate(stick))
+    # Both positions are negative: the end of the zone, and the stick as seen from there.
+    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=final_slip)
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
     """Return the final slip of an undamped pulse on a lattice under slip weakening.
 
+    weakening is the slip d_c during which friction falls from 1 to 0.
     Source: the energy tau_0 u - gamma u^2/2 that the layer releases by the slip u equals the
     fracture energy d_c/2.
     """
@@ -214,7 +252,7 @@ def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> floa
 def rate_pulse(
     tau0: float, gamma: float, damping_ratio: float, friction: Friction
 ) -> SteadyRupture:
-    """Return the steady pulse in uniform pre-stress under friction that depends on slip rate.
+    """Return the steady pulse in uniform pre-stress under friction that depends on slip velocity.
 
     Source: derived in the supplement, section on friction that depends on slip rate.
     Raises ValueError: outside the domain, if slip velocity grows without bound, or if the pulse
@@ -235,15 +273,36 @@ def rate_pulse(
     >>> round(rate_pulse(0.5, 2 / 3, 0.1, law).slip, 4)
     1.1605
     """
-    # This module is slow to import.
-    from scipy.integrate import solve_ivp
-
     check_domains(tau0=tau0, gamma=gamma)
-    parameters = friction.kernel_parameters
-    if friction.friction(0.0, 0.0, *parameters) != 0.0:
+    if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
         allowed = "laws that depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
+    path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
+    _, states_at_peaks = path.y_events
+    if not len(states_at_peaks):
+        allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
+        raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
+    peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
+    # The status is 1 if the integration ended at a terminal event.
+    has_stuck = path.status == 1
+    if not has_stuck:
+        return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)
+    # The last values of the independent variable, the distance, and of the state.
+    width, (final_slip, _) = float(path.t[-1]), path.y[:, -1]
+    return SteadyRupture(speed=v, width=width, slip=float(final_slip), peak_velocity=peak)
+
+
+def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Friction) -> Any:
+    """Return slip and strain behind a front of speed v, as the result of scipy's `solve_ivp`.
+
+    The integration goes from the front backwards, and ends where the slip stops. Events of the
+    result are this stop, and the peaks of slip velocity.
+    """
+    # This module is slow to import.
+    from scipy.integrate import solve_ivp
+
+    parameters = friction.kernel_parameters
     inertia = (v - 1.0) * (v + 1.0)
     half_period = math.pi * math.sqrt(inertia / gamma)
     evaluations = count()
@@ -251,13 +310,14 @@ def rate_pulse(
     def slopes(distance: float, state: np.ndarray) -> list[float]:
         """Return the derivatives of slip and strain by the distance behind the front."""
         if next(evaluations) == MAX_EVALUATIONS:
-            place = f"{gamma!r}, where the pulse is not found in {MAX_EVALUATIONS} evaluations"
-            raise ValueError(f"gamma: {place}; allowed: larger values, or weaker friction")
+            reason = f"the pulse is not found in {MAX_EVALUATIONS} evaluations"
+            allowed = "larger values, or weaker friction"
+            raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]
 
-    def stop_event(distance: float, state: np.ndarray) -> float:
+    def stick_event(distance: float, state: np.ndarray) -> float:
         """Return the strain, which falls to 0 where the slip stops."""
         _, strain = state
         return strain
@@ -267,22 +327,9 @@ def rate_pulse(
         _, strain_slope = slopes(distance, state)
         return strain_slope
 
-    # The integration ends at a stop.
-    stop_event.terminal, stop_event.direction = True, -1.0  # type: ignore[attr-defined]
+    stick_event.terminal, stick_event.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS_PER_HALF_PERIOD}
-    span = (0.0, MAX_HALF_PERIODS * half_period)
+    distances = (0.0, MAX_HALF_PERIODS * half_period)
+    at_front = [0.0, 0.0]
     with np.errstate(over="ignore", invalid="ignore"):
-        path = solve_ivp(slopes, span, [0.0, 0.0], events=[stop_event, peak_event], **accuracy)
-    _, states_at_peaks = path.y_events
-    if not len(states_at_peaks):
-        allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
-        raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
-    peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
-    # The status is 1 if the integration ended at a terminal event.
-    has_stopped = path.status == 1
-    if not has_stopped:
-        return SteadyRupture(speed=v, width=math.inf, slip=tau0 / gamma, peak_velocity=peak)
-    final_slip, _ = path.y[:, -1]
-    return SteadyRupture(
-        speed=v, width=float(path.t[-1]), slip=float(final_slip), peak_velocity=peak
-    )
+        return solve_ivp(slopes, distances, at_front, events=[stick_event, peak_event], **accuracy)

@@ -1,13 +1,14 @@
 r"""A lower bound of du/dt between two positions that slide, to prove that nothing sticks there.
 
-Samples of du/dt alone cannot exclude a stick between them; the bound can. In the coordinates xi = t
-- y and eta = t + y, w = exp(alpha t/2) du/dt obeys w_xi_eta = -k w/4. Hence w = F - W. F is half
-the integral of tau exp(alpha T/2) along the part of the curve in the past of a point. W is k/4
-times the integral of w over the region of its past. If k > 0, W grows with xi and with eta as long
-as w > 0 in this region.
+Samples of du/dt alone cannot exclude a stick between them; the bound can. It is formulated for
+w = exp(alpha t/2) du/dt, where alpha is the rate strengthening. In the coordinates xi = t - y and
+eta = t + y, it obeys w_xi_eta = -k w/4 with k = gamma - alpha^2/4. Hence w is the difference of two
+terms, w = F - W. F is half the integral of tau exp(alpha T/2) along the front, t = T(x), as far as
+it lies in the past of a point. W is k/4 times the integral of w over xi and eta in the past of the
+point. If k > 0, W grows with xi and with eta as long as w > 0 there.
 
-Let a and b be two positions at the same time, a distance h apart, and c the point from which their
-characteristics went apart, at (a + b)/2 and h/2 earlier:
+Let a and b be two positions at the same time, and h the distance between them. c is the point from
+which their characteristics went apart, in the middle between them and h/2 earlier:
 
      a ------ b     time t
       \      /
@@ -19,16 +20,17 @@ For k > 0, w in the whole triangle is at least
 
     w(a) + w(b) - w(c) - J - k h^2/16 (w(c) + J),
 
-where J is the gain of F by positive pre-stress between c and a and between c and b. For k <= 0, w
-is at least w(c) less the loss of F by negative pre-stress. If c has not slipped, behind a front
-that outruns the waves, w > 0 as long as the pre-stress is positive and J0 is before its first zero.
+where J is the sum of the gains of F by positive pre-stress, from c to a and from c to b. For
+k <= 0, w is at least w(c) minus the loss of F by negative pre-stress. If c has not slipped, another
+condition is used. By Riemann's formula (`riemann`), w is an integral of tau and the Bessel function
+J0. So w > 0 if all pre-stress in the past is positive, and J0 does not reach its first zero.
 
 An interval is divided until the bound is positive, or until it is too short to change any result.
 """
 
 import numpy as np
 
-from .curve import WEIGHTS
+from .curve import WEIGHTS, Crossing
 from .part import Part
 from .riemann import MAX_EXPONENT, partial_weights
 
@@ -39,17 +41,17 @@ A_BEGINS, C_BEGINS, C_ENDS, B_ENDS = range(4)
 SQUARED_FIRST_ZERO = 5.783185962946784
 # An interval whose bound is not positive is cut into this number of parts.
 PARTS_PER_CUT = 4
-# Shortest interval that is cut, in units of `Part.scale`, if both ends have slip velocity.
+# Shortest interval that is cut, in units of `Part.scale`, if both ends move.
 MIN_INTERVAL = 1e-6
-# Shortest interval that is cut if one end does not move yet.
+# Shortest interval that is cut, in the same units, if one end does not move yet.
 MIN_INTERVAL_AT_REST = 1e-3
-# Within this distance of the first stick, in units of `Part.scale`, the trailing edge itself shows
-# that this one is the first.
+# Within this distance of the first stick, in units of `Part.scale`, no interval is cut. There the
+# trailing edge, which is known at knots, shows that no other position sticks before.
 FIRST_STICK_DISTANCE = 0.2
 # Slip velocities below this are 0.
 ROUNDING_ERROR = 1e-12
-# Slip velocity below which motion is faint. Strong rate strengthening leaves a creep that is much
-# slower than what pre-stress adds to it, and than the error of the bound.
+# Slip velocity below which motion is faint. Strong rate strengthening leaves such a slow creep, for
+# which the bound is not positive.
 FAINT_VELOCITY = 1e-5
 # Shortest interval that is cut if the motion was faint at both ends of the first interval.
 MIN_FAINT_INTERVAL = 1e-2
@@ -58,8 +60,9 @@ MIN_FAINT_INTERVAL = 1e-2
 def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
     """Return positions that have stuck until a time, between pairs of positions that slide then.
 
-    The result is empty if nothing has stuck. x has the pairs, [left and right, pair]. first is the
-    position that sticks at this time, if it is known.
+    Row 0 of x has the left positions of the pairs, and row 1 the right ones. first is the position
+    that sticks first, at this time, if it is known. The search ends at the first positions found.
+    The result is empty if nothing has stuck.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:
@@ -73,74 +76,81 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
         min_length = np.where(both_move, MIN_INTERVAL, MIN_INTERVAL_AT_REST)
         min_length[is_faint] = MIN_FAINT_INTERVAL
         # Only pairs between which something may still have stuck are cut into parts.
-        is_open = x[1] - x[0] > min_length * part.scale
-        is_open &= ~stays_positive(part, x=x, velocity=velocity, time=time)
-        is_open &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
-        # The ends of the parts and du/dt there, [end, pair].
-        ends = np.linspace(x[0, is_open], x[1, is_open], PARTS_PER_CUT + 1)
+        is_cut = x[1] - x[0] > min_length * part.scale
+        is_cut &= ~stays_positive(part, x=x, velocity=velocity, time=time)
+        is_cut &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
+        # The ends of the parts and du/dt there, [end, pair]. The first and the last end are the two
+        # positions of the pair.
+        ends = np.linspace(x[0, is_cut], x[1, is_cut], PARTS_PER_CUT + 1)
         inner_velocity = velocity_at(ends[1:-1])
         has_stuck = inner_velocity < -ROUNDING_ERROR
         if np.any(has_stuck):
             return ends[1:-1][has_stuck]
-        end_velocity = np.concatenate(
-            [velocity[:1, is_open], inner_velocity, velocity[1:, is_open]]
-        )
-        is_faint = np.tile(is_faint[is_open], PARTS_PER_CUT)
+        end_velocity = np.concatenate([velocity[:1, is_cut], inner_velocity, velocity[1:, is_cut]])
+        # The parts are the pairs of the next round.
+        is_faint = np.tile(is_faint[is_cut], PARTS_PER_CUT)
         x = np.array([ends[:-1], ends[1:]]).reshape(2, -1)
         velocity = np.array([end_velocity[:-1], end_velocity[1:]]).reshape(2, -1)
     return np.empty(0)
 
 
 def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float) -> np.ndarray:
-    """Return a mask of the pairs between which nothing sticks until a time.
+    """Return a mask of the pairs of positions a and b between which nothing sticks until a time.
 
-    x and velocity (du/dt) are [left and right, pair]. Both positions and everything in their past
-    must slide until the time, or a front has just arrived there.
+    x and velocity (du/dt) have the left positions a in row 0 and the right ones b in row 1. Both
+    positions and everything in their past must slide until the time, or a front has just arrived
+    there. The symbols and the two lower bounds are those of the module docstring.
     """
     left, right = x
     curve, alpha = part.curve, part.alpha
-    span, middle = right - left, 0.5 * (left + right)
-    # The point c is at the middle at this time.
-    apex_time = time - 0.5 * (right - left)
+    distance, middle = right - left, 0.5 * (left + right)
+    # The point c.
+    time_at_c = time - 0.5 * (right - left)
+    past_of_c = part.domains(middle, time_at_c)
+    c_slides = curve.arrival(middle) < time_at_c
+    k = past_of_c.stiffness
     # Where the past of a begins on the curve, and where that of b ends.
-    begin, end = curve.crossings(middle, time - left, time + right)
-    domains = part.domains(middle, apex_time)
-    k = domains.stiffness
-    apex_slides = curve.arrival(middle) < apex_time
-    # In the order of A_BEGINS, C_BEGINS, C_ENDS and B_ENDS.
-    crossings = (begin, domains.left, domains.right, end)
+    a_begins, b_ends = curve.crossings(middle, time - left, time + right)
+    crossings = (a_begins, past_of_c.left, past_of_c.right, b_ends)
+    # w and F are divided by exp(alpha t/2) at the time of a and b. At c, which is half of the
+    # distance earlier, w contains a smaller exponential.
+    exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
+    half_exponential = 0.5 * np.exp(exponent)
+    w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
+    lost, all_lost = _integrals_of_source(
+        half_exponential * np.maximum(-curve.source, 0.0), crossings
+    )
+    if k > 0.0:
+        gained, _ = _integrals_of_source(
+            half_exponential * np.maximum(curve.source, 0.0), crossings
+        )
+        by_springs = k * distance**2 / 16.0 * (w_at_c + gained)
+        lower_bound = sum(velocity) - w_at_c - gained - by_springs
+    else:
+        lower_bound = w_at_c - lost
+    # If c has not slipped, all pre-stress in the past must be positive, and the largest argument of
+    # J0 before its first zero. This condition is sufficient also if c has slipped.
+    d_xi = time - left - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
+    d_eta = time + right - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
+    is_kernel_positive = k * d_xi * d_eta < SQUARED_FIRST_ZERO
+    return (c_slides & (lower_bound > 0.0)) | ((all_lost <= 0.0) & is_kernel_positive)
+
+
+def _integrals_of_source(
+    source: np.ndarray, crossings: tuple[Crossing, Crossing, Crossing, Crossing]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return integrals of a source along the curve, for each pair: outside the past of c, and all.
+
+    The source is given at the nodes of the panels. The crossings are the points A_BEGINS, C_BEGINS,
+    C_ENDS and B_ENDS of the curve. The first integral is from A_BEGINS to C_BEGINS and from C_ENDS
+    to B_ENDS; the second one is from A_BEGINS to B_ENDS.
+    """
     panel = np.concatenate([crossing.panel for crossing in crossings])
     s = np.concatenate([crossing.s for crossing in crossings])
-    # w and F are divided by exp(alpha t/2) at the time t of the two positions.
-    exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
-
-    def gains(sign: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the size of the part of F that pre-stress of one sign contributes.
-
-        The first array has the sum of the gains from c to a and from c to b, and the second one all
-        that the past of the two positions contributes.
-        """
-        source = 0.5 * np.exp(exponent) * np.maximum(sign * curve.source, 0.0)
-        by_panel = source @ WEIGHTS
-        before_panel = np.cumsum(by_panel) - by_panel
-        in_panel = np.sum(partial_weights(s) * source[panel], axis=-1)
-        integral = (before_panel[panel] + in_panel).reshape(4, -1)
-        outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
-        return outside_c, integral[B_ENDS] - integral[A_BEGINS]
-
-    # At c, which is earlier by half of the span, w contains a smaller exponential.
-    velocity_at_apex = np.exp(-0.25 * alpha * span) * domains.slip_velocity()
-    lost, negative_part = gains(-1.0)
-    # The two lower bounds of the module docstring, for k > 0 and for k <= 0.
-    if k > 0.0:
-        gained, _ = gains(1.0)
-        by_springs = k * span**2 / 16.0 * (velocity_at_apex + gained)
-        lowest = sum(velocity) - velocity_at_apex - gained - by_springs
-    else:
-        lowest = velocity_at_apex - lost
-    # The largest argument of J0 in the triangle, squared.
-    d_xi = time - left - curve.evaluate("t_minus_x", end.panel, end.s)
-    d_eta = time + right - curve.evaluate("t_plus_x", begin.panel, begin.s)
-    is_before_first_zero = (negative_part <= 0.0) & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)
-    # The second condition is sufficient whether or not c has slipped.
-    return (apex_slides & (lowest > 0.0)) | is_before_first_zero
+    # The integrals from the left end of the curve to each crossing, [crossing, pair].
+    by_panel = source @ WEIGHTS
+    before_panel = np.cumsum(by_panel) - by_panel
+    in_panel = np.sum(partial_weights(s) * source[panel], axis=-1)
+    integral = (before_panel[panel] + in_panel).reshape(4, -1)
+    outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
+    return outside_c, integral[B_ENDS] - integral[A_BEGINS]

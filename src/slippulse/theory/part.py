@@ -17,17 +17,17 @@ from .stick_search import StickSearch
 # Time step of the search for sticks, in units of `Part.scale`.
 SEARCH_STEP = 0.2
 # `Part.scale` without leaf springs and drag, as a fraction of the duration. The results do not
-# depend on it. A length of the scene in its place would make a long search expensive.
+# depend on it. As a fraction of the duration it keeps the number of search steps constant.
 SCALE_WITHOUT_SPRINGS = 5.0 / 64.0
 
 
 @dataclass
 class Part:
-    """A connected part of a rupture behind a curve, until a time.
+    """A connected part of a rupture, behind the curve of its fronts, up to the time ``until``.
 
-    marks are positions from which waves come that change du/dt at once, or faster than a search
-    step. refinement divides the search step. With one_side the part is symmetric, and only x >= 0
-    is computed. alpha is the coefficient of the drag -alpha du/dt.
+    marks are positions where the motion of a front changes suddenly. The waves from there change
+    du/dt within less than a search step. refinement divides the search step. With one_side the part
+    is symmetric, and only x >= 0 is computed. alpha is the coefficient of the drag -alpha du/dt.
     """
 
     curve: Curve
@@ -40,17 +40,23 @@ class Part:
 
     @property
     def scale(self) -> float:
-        """Time over which du/dt changes; without leaf springs and drag, part of the duration."""
+        """Time over which du/dt changes: about 1/sqrt(gamma).
+
+        Without leaf springs and drag there is no such time. Then it is a fraction of the duration.
+        """
         rate = kernel_rate(self.gamma, self.alpha)
         return 1.0 / rate if rate > 0.0 else SCALE_WITHOUT_SPRINGS * self.until
 
     @cached_property
     def static_solution(self) -> StaticSolution:
-        """The static solution that the formulas for slip and strain need."""
+        """A static slip under the pre-stress, which the formulas for slip and strain contain."""
         return StaticSolution(self.curve, self.gamma)
 
     def domains(self, x: np.ndarray, time: np.ndarray) -> DependenceDomains:
-        """Return the domains of dependence of points (x, time) that slide."""
+        """Return the domains of dependence of points (x, time) that slide.
+
+        They compute the fields there, as integrals over the past of the points.
+        """
         return DependenceDomains(
             curve=self.curve, gamma=self.gamma, alpha=self.alpha, y=x, time=time
         )
@@ -62,16 +68,17 @@ class Part:
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return "slip_velocity", "slip" or "strain" at points (x, time) that slide."""
         domains = self.domains(x, time)
-        return (
-            domains.slip_velocity()
-            if name == "slip_velocity"
-            else getattr(domains, name)(self.static_solution)
-        )
+        if name == "slip_velocity":
+            return domains.slip_velocity()
+        if name == "slip":
+            return domains.slip(self.static_solution)
+        return domains.strain(self.static_solution)
 
     def find_stick_times(self, x: np.ndarray, until: float | None = None) -> np.ndarray:
-        """Return stick times, searched from the release on; NaN if a block never sticks.
+        """Return the stick times of positions; NaN if a position does not stick.
 
-        Each position is searched independently of the others.
+        Each position is searched independently of the others, from its release on, up to the time
+        ``until`` (by default that of the part).
         """
         if not x.size:
             return np.zeros(0)

@@ -17,20 +17,21 @@ def steady_pulse(
 ) -> SteadyPulse:
     """Return the steady pulse in uniform pre-stress behind a front.
 
-    Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
-    complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
-    is dropped. With alpha = beta = 0 it is the result of appendix C of the paper before its last
-    step, at any speed.
-    Raises ValueError: outside these ranges, or where the pulse is too large or small.
+    Source: slip is a function U(xi) of the distance xi = x - v t from the front. It obeys
+    beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0, with U(0) = U'(0) = 0. In the
+    solution, an exponential that grows with the distance from the front is left out. With
+    alpha = beta = 0 it is the pulse of appendix C of the paper, but for any front speed v.
+    Raises ValueError: outside these ranges, or where the numbers of the pulse are too large or
+    small for a float.
 
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
     beta : float, damping, >= 0; 0 gives the limit dx -> 0 at any damping ratio
     speed : float, front speed (wave speeds), > 1, or None
-    damping_ratio, release : if speed is None, the speed is `front_speed` at these
-    rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
-        in size
+    damping_ratio, release : if speed is None, the speed is `front_speed` of these arguments
+    rate_strengthening : float, alpha of a term -alpha du/dt, of a size below
+        `critical_rate_strengthening`
 
     Returns
     -------

@@ -2,15 +2,16 @@
 
 The construction has four steps, each in a module of its own:
 
-1. Where tau(x) > 0, a front is faster than the waves (`fast_front`). Its arrival time T(x) is the
-   integral of 1/v(tau(x), beta/dx). The damping beta = (beta/dx) dx tends to 0 and acts at the
-   front alone.
-2. Where tau < 0, the front is slower than the waves, and a free boundary (`slow_front`).
-3. Behind the fronts the undamped equation has Riemann's solution (`riemann`).
-4. It holds up to the trailing edge, where blocks stick (`trailing_edge`).
+1. Where the pre-stress tau is positive, a front is faster than the waves (`fast_front`). Its
+   arrival time is the integral of 1/v, where the front speed v depends on tau and beta/dx. The
+   damping beta itself tends to 0, and acts at the front alone.
+2. Where the pre-stress is negative, a front is slower than the waves. Its path is unknown, and
+   follows from the waves that arrive at it (`slow_front`).
+3. Behind the fronts, slip obeys the undamped equation, which has Riemann's solution (`riemann`).
+4. This solution holds up to the trailing edge, where blocks stick (`trailing_edge`).
 
-`spreading` combines the first two steps for all nucleation points, and `Rupture` answers questions
-about the result.
+`spreading` combines the first two steps for all nucleation points. `Rupture` contains the result
+and computes slip, velocity and strain from it.
 """
 
 from collections.abc import Sequence
@@ -31,14 +32,14 @@ from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
 from .two_fronts import ExactTransition
 
-# The construction continues beyond the duration by this fraction of it, so that the final time is a
-# time like any other.
+# The construction continues beyond the duration by this fraction of it. So its end does not
+# coincide with the last time for which results are requested.
 EXTRA_DURATION = 1e-6
-# The largest product of alpha and the duration, which leaves exponentials far from overflow.
+# The largest product of alpha and the duration, for which exponentials are far from overflow.
 MAX_DECAY = 600.0
 # Names of the fields.
 FIELDS = ("slip_velocity", "slip", "strain")
-# The largest number of points of a map, which takes 100 bytes for each.
+# The largest number of points of a map. Each point takes 100 bytes.
 MAX_MAP_POINTS = 10**7
 # Reasons of limits that come from the trailing edge.
 SLOW_EDGE = "the trailing edge is slower than the waves"
@@ -47,7 +48,10 @@ FALLING_SLIP = "the slip would fall"
 
 @dataclass(frozen=True)
 class Limit:
-    """A point in whose future the construction makes no statement, and the reason."""
+    """A point (x, time) from which on the construction is not valid, and the reason.
+
+    Nothing is known in the future of this point: where a wave from it has arrived.
+    """
 
     x: float
     time: float
@@ -65,20 +69,21 @@ class Rupture(ExplainsRemovedNames):
     ----------
     prestress : Prestress that reaches 1 somewhere: each such position is a nucleation point
     gamma : float, elasticity ratio, > 0; or 0 for the stress boundary
-    damping_ratio, release : beta/dx, from 0 to 1e6, at which dx -> 0; "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e6, which is constant as dx -> 0; "total" or
+        "elastic"
     duration : float, time up to which the rupture is computed, >= 1e-9
     refinement : int, from 1 to 10, factor of the numbers of panels and of search steps, to check
         that the result does not depend on them
     rate_strengthening : float, alpha of a term -alpha du/dt, at most 600/duration, and above the
         value at which slip runs away
 
-    Methods take positions x and times up to ``duration``, numbers or arrays, and return arrays of
-    their shape, NaN where nothing is known: beyond `horizon`, and for events that have not
-    happened until ``duration``.
+    Methods take positions x and times up to ``duration``, as numbers or arrays, and return arrays
+    of the same shape. A value is NaN where it is not known (beyond `horizon`), and if it is the
+    time of an event that has not happened until ``duration``.
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a
     front needs more than 20000 panels. Methods raise it if a position or a time is not finite, or
     if the search for sticks would take more than 3 GB (a minute).
-    Source: derived in the supplement; the lattice tends to it at first order in dx.
+    Source: derived in the supplement. Results on a lattice tend to it at first order in dx.
 
     Examples
     --------
@@ -112,17 +117,19 @@ class Rupture(ExplainsRemovedNames):
         self.duration = float(duration)
         # A later time than this is beyond the duration, apart from rounding.
         self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
+        # The construction goes a little beyond the duration.
         until = self.duration * (1.0 + EXTRA_DURATION)
         self.stretches, self._unknown_points = spread(self.law, until)
         self._parts = [self._make_part(stretch, until) for stretch in self.stretches]
-        self._solved = self._parts
+        self._solved_parts = self._parts
         if prestress.symmetric:
             # A symmetric scene is computed at x >= 0 only.
-            self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0]
+            self._solved_parts = [part for part in self._parts if part.curve.edges[-1] > 0.0]
 
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
-        """Return the part of the rupture behind the fronts of a stretch, until a time."""
+        """Return the part of the rupture behind the two fronts of a stretch, up to a time."""
         curve, law = stretch.curve(), self.law
+        # The marks are all positions where the motion of a front may change suddenly.
         restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
         ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
         marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
@@ -138,21 +145,27 @@ class Rupture(ExplainsRemovedNames):
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
-        """Left and right end of each connected part; the reason is "stops" or "duration"."""
+        """Left and right front of each connected part, where they are at the end.
+
+        The reason is "stops" for a front that has stopped, and "duration" for one that still moves
+        at the end. Any other reason says why the front was not followed further.
+        """
         ends = []
         for part, stretch in zip(self._parts, self.stretches, strict=True):
-            left, right = (self._front_end(part, stretch, side) for side in (LEFT, RIGHT))
+            left = self._front_end(part, stretch, LEFT)
+            right = self._front_end(part, stretch, RIGHT)
             ends.append((left, right))
         return ends
 
     def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
-        """Return the last point, until the duration, of the front on one side of a part."""
+        """Return the last point of the front on one side of a part, not later than the duration."""
         end, reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and end.time <= self._latest_time:
             return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
-        # The curve continues a little beyond the duration.
-        reached = part.curve.edges[part.curve.edge_times <= self.duration]
-        outermost = reached[-1] if side == RIGHT else reached[0]
+        # The curve continues a little beyond the duration. The front is searched from the outermost
+        # edge that it has reached at the duration.
+        reached_edges = part.curve.edges[part.curve.edge_times <= self.duration]
+        outermost = reached_edges[-1] if side == RIGHT else reached_edges[0]
         x = part.curve.front_at(self.duration, outermost, side)
         return FrontEnd(x, self.duration, "duration")
 
@@ -192,7 +205,7 @@ class Rupture(ExplainsRemovedNames):
     def stick_time(self, x) -> np.ndarray:
         """Return the time at which x first sticks.
 
-        Beyond the horizon it may be released again.
+        Beyond the horizon the block at x may be released again.
 
         Parameters
         ----------
@@ -206,21 +219,21 @@ class Rupture(ExplainsRemovedNames):
         return self._nan_where_unknown(x, self._stick_time_beyond_end(x))
 
     def _distinct_positions(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the distinct positions among x, and the index of each x in them.
+        """Return the distinct positions among x, and for each x its index in them.
 
-        If the scene is symmetric, the positions are those of one side.
+        If the scene is symmetric, positions on the left are mirrored to the right.
         """
         x = np.abs(x) if self.prestress.symmetric else x
         positions, index = np.unique(x, return_inverse=True)
         return positions, index.reshape(x.shape)
 
     def _stick_time_beyond_end(self, x: np.ndarray) -> np.ndarray:
-        """Return stick times, also slightly beyond the end and beyond the horizon.
+        """Return stick times, also those slightly after the duration or beyond the horizon.
 
-        NaN if a block never sticks.
+        NaN if a block does not stick.
         """
         positions, index = self._distinct_positions(x)
-        times = [part.stick_time(positions) for part in self._solved]
+        times = [part.stick_time(positions) for part in self._solved_parts]
         return np.fmin.reduce(times)[index]
 
     def final_slip(self, x) -> np.ndarray:
@@ -232,24 +245,24 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        array, 0 where nothing has slipped, NaN where x has not stuck before ``duration``, or where
-        the horizon is earlier than ``duration``
+        array, 0 where nothing has slipped. NaN where x still slides at the end (``duration``), or
+        where the slip at the end is not known
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         has_stuck = np.isfinite(stick)
-        still_slides = np.isfinite(self.release_time(x)) & ~has_stuck
+        slides_at_end = np.isfinite(self.release_time(x)) & ~has_stuck
         slip = self.slip(x, np.where(has_stuck, stick, self.duration))
-        is_unknown = still_slides | self._is_beyond_horizon(x, self.duration)
+        is_unknown = slides_at_end | self._is_beyond_horizon(x, self.duration)
         return np.where(is_unknown, np.nan, slip)
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None if nothing sticks before ``duration``."""
-        first_of_parts = [part.first_stick() for part in self._solved]
+        first_of_parts = [part.first_stick() for part in self._solved_parts]
         first = min(filter(None, first_of_parts), default=None)
-        # Trailing edges are known up to the limit, where the construction ends. A later stick need
-        # not be the first one, because another one may have been missed.
+        # Trailing edges are known up to the earliest limit of the construction. A stick after it
+        # need not be the first one, because another one may have been missed.
         known_until = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
         if not first or first.time > min(known_until, self._latest_time):
             return None
@@ -257,7 +270,10 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def transition(self) -> ExactTransition:
-        """T_trans and L_trans; NaN if nothing sticks before ``duration``."""
+        """T_trans and L_trans of the transition from crack to pulse, which is the first stick.
+
+        Both are NaN if nothing sticks before ``duration``.
+        """
         if not self.first_stick:
             return ExactTransition(np.nan, np.nan)
         left, right = self.fronts_at(*self.first_stick)
@@ -280,15 +296,16 @@ class Rupture(ExplainsRemovedNames):
             return np.nan
         left, right = self.fronts_at(time, self.first_stick.x)
         front = right if side == "right" else left
-        trailing = self._trailing_edge_behind(front, time, self.first_stick.x)
-        unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
-        return np.nan if unknown else abs(front - trailing)
+        trailing_edge = self._trailing_edge_behind(front, time, self.first_stick.x)
+        ends = np.array([trailing_edge, front])
+        is_unknown = self._is_beyond_horizon(ends, time).any()
+        return np.nan if is_unknown else abs(front - trailing_edge)
 
     def _trailing_edge_behind(self, front: float, time: float, stuck: float) -> float:
-        """Return the position of the trailing edge that follows a front, at a time.
+        """Return where the trailing edge that follows a front is at a time.
 
-        front is the position of the front at this time, and stuck a position that has stuck before.
-        The result is the front itself if it has stopped and stuck.
+        front is the position of the front at this time, and stuck is a position that has stuck
+        before. The result is the front itself if the front has stopped and its pulse has ended.
         """
 
         def delay(position: float) -> float:
@@ -303,22 +320,23 @@ class Rupture(ExplainsRemovedNames):
 
         if delay(front) <= 0.0:
             return front
-        # Of several trailing edges between the two positions, that of the pulse is nearest to the
-        # front. It lies between the first knot that has stuck, going back from the front, and the
-        # knot before.
-        knots = np.concatenate([part.knots.x for part in self._solved])
+        # If there are several trailing edges, that of the pulse is nearest to the front. So the
+        # knots between the two positions are examined from the front on. The edge lies between the
+        # first of them that has stuck and the one before.
+        knots = np.concatenate([part.knots.x for part in self._solved_parts])
         knots = np.append(knots, -knots) if self.prestress.symmetric else knots
         is_between = (knots - stuck) * (knots - front) < 0.0
         candidates = np.append(knots[is_between], stuck)
-        candidates = candidates[np.argsort(np.abs(candidates - front))]
-        first_stuck = int(np.argmax(self._stick_time_beyond_end(candidates) <= time))
-        ahead = candidates[first_stuck - 1] if first_stuck else front
-        return root_between(delay, float(candidates[first_stuck]), float(ahead), xtol=1e-11)
+        from_front = candidates[np.argsort(np.abs(candidates - front))]
+        first_stuck = int(np.argmax(self._stick_time_beyond_end(from_front) <= time))
+        ahead = from_front[first_stuck - 1] if first_stuck else front
+        return root_between(delay, float(from_front[first_stuck]), float(ahead), xtol=1e-11)
 
     @cached_property
     def largest_velocity(self) -> float:
-        """Largest slip velocity until ``duration``, as far as the construction holds."""
-        return max(part.largest_velocity(self.duration, self.horizon) for part in self._solved)
+        """Largest slip velocity until ``duration``, of all points before the horizon."""
+        parts = self._solved_parts
+        return max(part.largest_velocity(self.duration, self.horizon) for part in parts)
 
     def slip_velocity(self, x, time) -> np.ndarray:
         """Return the slip velocity du/dt at points.
@@ -383,18 +401,20 @@ class Rupture(ExplainsRemovedNames):
         return self._fields_at_points(tuple(fields), x[None, :], time[:, None])
 
     def _fields_at_points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
-        """Return fields at points, whose positions and times are broadcast."""
+        """Return the named fields at points, whose positions and times are broadcast."""
         x, time = broadcast_numbers(x=x, time=time)
         time = self._limited_to_duration(time)
         positions, index = self._distinct_positions(x)
         values_by_name = {name: np.zeros(x.shape) for name in fields}
-        for part in self._solved:
+        for part in self._solved_parts:
             part.fill_fields(values_by_name, x=positions, index=index, time=time)
         if "strain" in values_by_name and self.prestress.symmetric:
-            # The fields are those at |x|. Only the strain is different, by its sign, at x < 0.
+            # The fields were computed at |x|. At x < 0 only the strain has another sign.
             values_by_name["strain"] *= np.where(x < 0.0, -1.0, 1.0)
-        unknown = self._is_beyond_horizon(x, time)
-        return {name: np.where(unknown, np.nan, values) for name, values in values_by_name.items()}
+        is_unknown = self._is_beyond_horizon(x, time)
+        return {
+            name: np.where(is_unknown, np.nan, values) for name, values in values_by_name.items()
+        }
 
     def _checked_time(self, time: float) -> float:
         """Return a time, checked to be positive and not later than the duration."""
@@ -409,35 +429,44 @@ class Rupture(ExplainsRemovedNames):
         return np.minimum(time, self.duration)
 
     def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
-        """Return times of events; NaN where an event is not known to happen before the end."""
+        """Return times of events at positions x; NaN if an event is not known to happen.
+
+        An event after the duration, or beyond the horizon, is not known to happen.
+        """
         is_before_end = time <= self._latest_time
         is_known = is_before_end & ~self._is_beyond_horizon(x, time)
         return np.where(is_known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
-        """Return a mask of the points in whose past the construction has ended."""
+        """Return a mask of the points that have one of the limits in their past."""
         return time * (1.0 + EQUALITY_TOLERANCE) >= self.horizon(x)
 
     @cached_property
     def _limits(self) -> list[Limit]:
-        """All points in whose future the construction makes no statement."""
+        """All points from which on the construction is not valid, with their reasons."""
         limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
-        for part in self._solved:
-            slow = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
-            falling = part.falling_slip(horizon=partial(_horizon, limits + slow))
-            new = slow + [Limit(point.x, point.time, FALLING_SLIP) for point in falling]
+        for part in self._solved_parts:
+            slow_edges = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
+            # Falling slip beyond the other limits does not count.
+            horizon = partial(_horizon, limits + slow_edges)
+            falling_slips = [
+                Limit(point.x, point.time, FALLING_SLIP) for point in part.falling_slip(horizon)
+            ]
+            limits_of_part = slow_edges + falling_slips
             if self.prestress.symmetric:
-                new += [Limit(-limit.x, limit.time, limit.reason) for limit in new]
-            limits += new
+                limits_of_part += [
+                    Limit(-limit.x, limit.time, limit.reason) for limit in limits_of_part
+                ]
+            limits += limits_of_part
         return [limit for limit in limits if limit.time <= self._latest_time]
 
     @property
     def limit(self) -> Limit | None:
-        """The earliest point in whose future the construction makes no statement, or None."""
+        """The earliest point from which on the construction is not valid; None if there is none."""
         return min(self._limits, key=lambda limit: limit.time, default=None)
 
     def horizon(self, x) -> np.ndarray:
-        """Return the time from which on the construction makes no statement at x.
+        """Return the time from which on nothing is known at x.
 
         Parameters
         ----------
@@ -445,7 +474,7 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        array, inf where there is no such time
+        array, infinite where there is no such time
         """
         return _horizon(self._limits, as_numbers("x", x))
 

@@ -1,4 +1,4 @@
-"""A connected part of a rupture with its trailing edge: fields at all its points, and extremes."""
+"""A connected part of a rupture with its trailing edge: fields, and the largest slip velocity."""
 
 from collections.abc import Callable
 
@@ -8,17 +8,18 @@ from .curve import Point
 from .trailing_edge import PartWithEdge
 from .vector_roots import roots_between
 
-# Number of positions for each knot in the grid for the largest velocity.
+# The largest velocity is first searched on a grid with this number of positions for each knot.
 POSITIONS_PER_KNOT = 3
-# Knots nearer to each other than this, in units of `Part.scale`, count once in this grid.
+# Of knots that are nearer to each other than this, in units of `Part.scale`, only one counts.
 MIN_KNOT_DISTANCE = 0.01
-# Number of positions, and of times, of the finer grids around a peak of the velocity.
+# Around the highest peaks it is searched on finer grids with this number of positions. The velocity
+# of a position is sampled at the same number of times.
 GRID_SIZE = 17
-# Length of the last of these grids, in units of `Part.scale`.
+# Length of the last of these finer grids, in units of `Part.scale`.
 MIN_INTERVAL = 1e-6
-# At most this number of peaks is followed ...
+# At most this number of peaks is examined ...
 MAX_PEAKS = 2
-# ... of those that reach this fraction of the highest.
+# ... and only those that reach this fraction of the highest one.
 PEAK_FRACTION = 0.97
 # Slip is checked at positions this far apart, in units of `Part.scale`.
 CHECK_DISTANCE = 0.25
@@ -35,39 +36,40 @@ class SolvedPart(PartWithEdge):
     _last_stick_times: np.ndarray = np.empty(0)
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
-        """Return stick times at positions.
+        """Return the stick times of positions.
 
-        NaN outside of the part, and if a block does not stick before the end.
+        NaN outside of the part, and where a block does not stick before the end.
         """
         if not np.array_equal(x, self._last_positions):
-            times, covered = np.full(x.shape, np.nan), self.curve.covers(x)
-            times[covered] = self._stick_time(x[covered])
+            times, is_covered = np.full(x.shape, np.nan), self.curve.covers(x)
+            times[is_covered] = self._stick_time(x[is_covered])
             self._last_positions, self._last_stick_times = x, times
         return self._last_stick_times
 
     def fill_fields(self, fields: dict, x: np.ndarray, index: np.ndarray, time: np.ndarray) -> None:
-        """Write values into arrays of fields, by name, at points of this part.
+        """Write the values of fields at points into given arrays.
 
-        A point is a time and the index of one of the distinct positions x. Other points are not
-        changed.
+        fields has the name and the array of each field. A point has the position x[i] and a time,
+        where i is its element of index. Only points that have been released in this part change.
         """
         release, stick = self.curve.arrival(x), np.nan_to_num(self.stick_time(x), nan=np.inf)
-        is_sliding = (time > release[index]) & (time < stick[index])
+        slides = (time > release[index]) & (time < stick[index])
         has_stuck = time >= stick[index]
-        # Where a block has stuck, its slip and strain are computed once for each position.
+        # After a stick, slip and strain do not change. So they are computed once for each position.
         stuck_index = np.unique(index[has_stuck])
         for name, values in fields.items():
-            values[is_sliding] = self.field(name, x[index[is_sliding]], time[is_sliding])
+            values[slides] = self.field(name, x[index[slides]], time[slides])
             if name != "slip_velocity" and stuck_index.size:
                 at_stick = np.zeros(x.size)
                 at_stick[stuck_index] = self.field(name, x[stuck_index], stick[stuck_index])
                 values[has_stuck] = at_stick[index[has_stuck]]
 
     def falling_slip(self, horizon: Callable) -> list[Point]:
-        """Return points of release after which slip would fall before the stick and the horizon.
+        """Return the points of release of positions whose slip would fall while they slide.
 
-        Slip is checked at some positions, from the release to the middle of its time and from there
-        to the end. horizon returns the time until which it is known at positions.
+        Some positions are checked. Their slip must grow from the release to the middle of the
+        sliding time, and from there to its end. This end is the stick, or the horizon if it is
+        earlier. horizon(x) is the time up to which the slip at x is known.
         """
         cell = np.floor(self.knots.x / (CHECK_DISTANCE * self.scale))
         _, first_of_cell = np.unique(cell, return_index=True)
@@ -82,21 +84,20 @@ class SolvedPart(PartWithEdge):
         return [Point(*point) for point in np.stack([x, release], axis=1)[falls].tolist()]
 
     def largest_velocity(self, until: float, horizon: Callable) -> float:
-        """Return the largest slip velocity until a time and before a horizon."""
+        """Return the largest slip velocity of the part, until a time and before a horizon.
 
-        def peak_velocity_before_limits(x: np.ndarray) -> np.ndarray:
+        It is searched on a grid of positions, and then on finer grids around the highest peaks.
+        horizon(x) is the time up to which slip velocity at x is known.
+        """
+
+        def peak_velocity(x: np.ndarray) -> np.ndarray:
             """Return the largest slip velocity of each position until the time and the horizon."""
             return self._peak_velocity(x, np.minimum(horizon(x), until))
 
-        # Positions at the knots of the trailing edge and between them.
-        knots = self.knots.x
-        knots = knots[np.diff(knots, prepend=-np.inf) > MIN_KNOT_DISTANCE * self.scale]
-        last = knots.size - 1
-        fractional_index = np.linspace(0.0, last, POSITIONS_PER_KNOT * last + 1)
-        x = np.interp(fractional_index, np.arange(knots.size), knots)
-        velocity = peak_velocity_before_limits(x)
+        x = self._positions_for_peaks()
+        velocity = peak_velocity(x)
         largest = float(velocity.max())
-        # The highest sample may belong to a peak that is not the highest.
+        # Since the grid is coarse, the highest sample need not be at the highest peak.
         padded = np.pad(velocity, 1)
         is_peak = (velocity > padded[:-2]) & (velocity >= padded[2:])
         peaks = np.flatnonzero(is_peak & (velocity >= PEAK_FRACTION * largest))
@@ -106,41 +107,51 @@ class SolvedPart(PartWithEdge):
             # Within a shorter interval the largest value changes by rounding only.
             while end - start > MIN_INTERVAL * self.scale:
                 grid = np.linspace(start, end, GRID_SIZE)
-                velocity = peak_velocity_before_limits(grid)
+                velocity = peak_velocity(grid)
                 top = int(np.argmax(velocity))
                 largest = max(largest, float(velocity[top]))
                 start, end = grid[max(top - 1, 0)], grid[min(top + 1, GRID_SIZE - 1)]
         return largest
 
+    def _positions_for_peaks(self) -> np.ndarray:
+        """Return the positions of the knots, with POSITIONS_PER_KNOT - 1 more between two knots."""
+        knots = self.knots.x
+        knots = knots[np.diff(knots, prepend=-np.inf) > MIN_KNOT_DISTANCE * self.scale]
+        last = knots.size - 1
+        fractional_index = np.linspace(0.0, last, POSITIONS_PER_KNOT * last + 1)
+        return np.interp(fractional_index, np.arange(knots.size), knots)
+
     def _peak_velocity(self, x: np.ndarray, last: np.ndarray) -> np.ndarray:
         """Return the largest slip velocity of each position before its stick and a last time.
 
-        The velocity is sampled at GRID_SIZE times. Next to the largest sample, the peak is where
-        the acceleration is 0.
+        The velocity is sampled at GRID_SIZE times. Next to the largest sample, the peak is searched
+        where the acceleration is 0.
         """
         release = self.curve.arrival(x)
         end = np.minimum(self.approximate_stick_time(x), last)
+        # The axes are [position, time].
         time = np.linspace(release, np.maximum(release, end), GRID_SIZE, axis=1)
         velocity = self.velocity(np.repeat(x, GRID_SIZE), time.ravel()).reshape(time.shape)
         row, column = np.arange(x.size), np.argmax(velocity, axis=1)
-        before = time[row, np.maximum(column - 1, 0)]
-        after = time[row, np.minimum(column + 1, GRID_SIZE - 1)]
+        time_before = time[row, np.maximum(column - 1, 0)]
+        time_after = time[row, np.minimum(column + 1, GRID_SIZE - 1)]
 
-        def acceleration(time: np.ndarray, which: np.ndarray) -> np.ndarray:
-            """Return the slip acceleration at times, for some of the positions."""
-            by_xi, by_eta = self.domains(x[which], time).velocity_slopes()
+        def acceleration(time: np.ndarray, row: np.ndarray) -> np.ndarray:
+            """Return the slip acceleration at times, for the positions of some rows."""
+            by_xi, by_eta = self.domains(x[row], time).velocity_slopes()
             return by_xi + by_eta
 
-        rise, fall = acceleration(before, row), acceleration(after, row)
-        has_peak = np.flatnonzero((rise > 0.0) & (fall < 0.0))
-        peak = roots_between(
-            lambda time, k: acceleration(time, has_peak[k]),
-            lower=before[has_peak],
-            upper=after[has_peak],
-            at_lower=rise[has_peak],
-            at_upper=fall[has_peak],
+        at_before, at_after = acceleration(time_before, row), acceleration(time_after, row)
+        with_peak = np.flatnonzero((at_before > 0.0) & (at_after < 0.0))
+        peak_time = roots_between(
+            lambda time, k: acceleration(time, with_peak[k]),
+            lower=time_before[with_peak],
+            upper=time_after[with_peak],
+            at_lower=at_before[with_peak],
+            at_upper=at_after[with_peak],
             xtol=1e-7 * self.scale,
         )
         largest = velocity.max(axis=1)
-        largest[has_peak] = np.maximum(largest[has_peak], self.velocity(x[has_peak], peak))
+        at_peak = self.velocity(x[with_peak], peak_time)
+        largest[with_peak] = np.maximum(largest[with_peak], at_peak)
         return largest

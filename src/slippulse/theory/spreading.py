@@ -1,11 +1,11 @@
 r"""The spreading of a rupture from every nucleation point, by fast and slow fronts that may meet.
 
-A `Stretch` is a connected part of the rupture with its left and its right front. One of them begins
-at each interval that is released at t = 0. `spread` lets all fronts grow: first each front as long
-as it is faster than the waves, because such a front depends on nothing behind it. Then the slow
-fronts grow by one panel at a time, the earliest one first, because each of them depends on what the
-others did before. Where a slow front reaches positive pre-stress again, it continues as a fast one.
-Stretches whose fronts have met become one:
+A `Stretch` is a connected part of the rupture with its left and its right front. There is one for
+each interval that is released at t = 0. `spread` lets all fronts run, in two steps. First each
+front runs as long as it is faster than the waves, because such a front depends on nothing behind
+it. Then the slow fronts run by one panel at a time, the earliest one first, because each of them
+depends on what the others did before. Where a slow front reaches positive pre-stress again, it
+continues as a fast one. Stretches whose fronts have met become one:
 
     t |`.          .'`.          .'
       |  `.      .'    `.      .'      the two stretches become one
@@ -34,8 +34,8 @@ REASONS_UNKNOWN = {
 }
 REASON_OVERRUN = "a front arrives where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
-# Two fronts are compared at this distance before the point where they meet. A front that needs a
-# longer time than this for it is slow.
+# Where two fronts meet, the speed of each is judged over this last distance. At the wave speed, 1,
+# a front takes a time of the same size for it; a slow front takes longer.
 MEETING_DISTANCE = 1e-6
 
 
@@ -43,27 +43,29 @@ MEETING_DISTANCE = 1e-6
 class Stretch:
     """A connected part of the rupture and its two fronts.
 
-    The dictionaries hold a value for each side, LEFT or RIGHT.
+    The dictionaries have a value for each side, LEFT or RIGHT. If a value is given "with its side
+    turned to the right", the left side is mirrored at x = 0. So both fronts are treated as right
+    fronts.
     """
 
     # The outermost known point of each front.
     ends: dict[float, Point]
-    # Position of the next nucleation point on each side, infinite if there is none. Seen with this
-    # side turned to the right, so that on the left it is minus the position.
+    # Position of the next nucleation point on each side, with this side turned to the right;
+    # infinite if there is none.
     next_start: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
-    # Reason why a front does not go on: "stops" (for good), "duration" (the time is over), "met"
-    # (another front), or a key of REASONS_UNKNOWN; None while it goes on.
+    # Reason why a front is not followed further: "stops" (for good), "duration" (the time is over),
+    # "met" (another front), or a key of REASONS_UNKNOWN. None if it is followed further.
     end_reason: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
-    # Positions where a slow front became faster than the waves again, and where two fronts met.
+    # Positions where a slow front became faster than the waves again, by side.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
+    # Positions where two fronts met.
     joins: list[float] = field(default_factory=list)
     # State of a slow front, with its side turned to the right.
     progress: dict[float, Progress] = field(
         default_factory=lambda: dict.fromkeys(SIDES, Progress())
     )
-
-    # Curves that `curve` has made, by the side that is turned to the right.
+    # Curves that the method `curve` has made, by the side that is turned to the right.
     curves: dict[float, Curve] = field(default_factory=dict)
 
     def curve(self, side: float = RIGHT) -> Curve:
@@ -72,17 +74,18 @@ class Stretch:
             self.curves[side] = Curve(turned_to_right(side, self.panels))
         left_restarts = [side * x for x in self.restarts[-side]]
         right_restarts = [side * x for x in self.restarts[side]]
-        return self.curves[side].restarted((left_restarts, right_restarts))
+        return self.curves[side].with_restarts((left_restarts, right_restarts))
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels to the front on one side.
 
         The panels, and the point where they end, are given with this side turned to the right.
         """
-        new = turned_to_right(side, panels)
-        self.panels = self.panels + new if side > 0.0 else new + self.panels
-        # Both curves are extended, which is faster than to build them again from all panels. In the
-        # curve that has the other side turned to the right, the new panels come first, mirrored.
+        new_panels = turned_to_right(side, panels)
+        self.panels = self.panels + new_panels if side > 0.0 else new_panels + self.panels
+        # Existing curves are extended, which is faster than to build them again from all panels.
+        # The new panels are the last ones of the curve with this side turned to the right. In the
+        # curve with the other side turned to the right they are mirrored, and come first.
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
@@ -90,38 +93,38 @@ class Stretch:
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
-        """End the front on one side at x: remove the panels, and the part of a panel, beyond it."""
-        # Position of the cut with this side turned to the right.
+        """End the front on one side at x: remove what lies beyond this position."""
+        # The position with this side turned to the right.
         x_of_cut = side * x
-        kept = []
+        kept_panels = []
         for panel in turned_to_right(side, self.panels):
             left, right = panel.x_ends
             if right <= x_of_cut:
-                kept.append(panel)
+                kept_panels.append(panel)
             elif left < x_of_cut:
-                # The parameter s goes from -1 to 1 along the panel. It can be -1 by rounding.
+                # The panel is cut at the parameter s, which runs from -1 to 1 along it. By rounding
+                # s can be -1, so that nothing of the panel is left.
                 _, (s,) = Curve([panel]).locate(np.array([x_of_cut]))
                 if s > -1.0:
-                    kept.append(panel.until(float(s), x_of_cut))
-        time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels, self.curves = turned_to_right(side, kept), {}
+                    kept_panels.append(panel.left_part(float(s), x_of_cut))
+        time = kept_panels[-1].time_ends[1] if kept_panels else 0.0
+        self.panels, self.curves = turned_to_right(side, kept_panels), {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < x_of_cut]
 
 
 def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
-    """Return the connected parts at a time, and points in whose future nothing is known.
+    """Return the connected parts of the rupture at a time, from left to right.
 
-    The parts are ordered from left to right. Each point is returned with its reason.
+    Also return the points in whose future the rupture is unknown, each with its reason.
     """
     laws = {RIGHT: law, LEFT: law.mirrored()}
     stretches = _nucleate(law)
     for stretch, side in product(stretches, SIDES):
         _advance_fast_front(laws[side], stretch=stretch, side=side, until=until)
     stretches = _join_met_stretches(stretches)
-    # The earliest slow front advances first, since each depends on what the others did before.
-    while moving := _moving_fronts(stretches):
-        stretch, side = min(moving, key=lambda front: front[0].ends[front[1]].time)
+    while (front := _earliest_moving_front(stretches)) is not None:
+        stretch, side = front
         _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
         stretches = _join_met_stretches(stretches)
     unknown = []
@@ -129,7 +132,27 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
         reason = str(stretch.end_reason[side])
         if reason in REASONS_UNKNOWN:
             unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
-    # The motion of a front beyond a point where another one has stopped for good is unknown.
+    overrun = _cut_overrunning_fronts(stretches)
+    return stretches, unknown + overrun
+
+
+def _earliest_moving_front(stretches: list[Stretch]) -> tuple[Stretch, float] | None:
+    """Return the stretch and the side of the front to advance next; None if no front moves.
+
+    The front whose known path ends first comes first, since each depends on what the others did
+    before.
+    """
+    fronts = product(stretches, SIDES)
+    moving = [(stretch, side) for stretch, side in fronts if stretch.end_reason[side] is None]
+    return min(moving, key=lambda front: front[0].ends[front[1]].time, default=None)
+
+
+def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]:
+    """End each front where the front of a neighbour has stopped, if it has run beyond this point.
+
+    Its motion beyond the point is unknown. Return these points, each with the reason.
+    """
+    unknown = []
     for (left, right), side in product(pairwise(stretches), SIDES):
         # A front that runs to the left belongs to the right one of two neighbours.
         stopped, arriving = (left, right) if side == LEFT else (right, left)
@@ -138,13 +161,7 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
             arriving.cut(side, x)
             arriving.end_reason[side] = "met"
             unknown.append((arriving.ends[side], REASON_OVERRUN))
-    return stretches, unknown
-
-
-def _moving_fronts(stretches: list[Stretch]) -> list[tuple[Stretch, float]]:
-    """Return the stretch and the side of each front that still moves."""
-    fronts = product(stretches, SIDES)
-    return [(stretch, side) for stretch, side in fronts if stretch.end_reason[side] is None]
+    return unknown
 
 
 def _nucleate(law: FastFront) -> list[Stretch]:
@@ -154,12 +171,14 @@ def _nucleate(law: FastFront) -> list[Stretch]:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
     lefts, rights = zip(*nucleations, strict=True)
-    # Ends of the neighbouring intervals, infinite where there is none.
+    # The nearest ends of the neighbouring intervals, infinite where there is no neighbour.
     ends_before, starts_after = (-np.inf, *rights[:-1]), (*lefts[1:], np.inf)
+    intervals = zip(lefts, rights, ends_before, starts_after, strict=True)
     stretches = []
-    for before, left, right, after in zip(ends_before, lefts, rights, starts_after, strict=True):
+    for left, right, end_before, start_after in intervals:
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
-        stretch = Stretch(ends, next_start={LEFT: -before, RIGHT: after})
+        # A position on the left, turned to the right, has the opposite sign.
+        stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
             panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
@@ -190,8 +209,8 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
     belongs to the pre-stress with this side turned to the right, so that the front runs right.
     """
     piece = law.piece_right_of(side * stretch.ends[side].x)
-    # The slow front ends at the latest where the pre-stress turns positive, or the next nucleation
-    # point lies.
+    # The front is slow up to this position at most: the end of the piece of negative pre-stress, or
+    # the next nucleation point.
     mark = min(piece.right, stretch.next_start[side])
     front = SlowFront(
         curve=stretch.curve(side),
@@ -204,6 +223,7 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     end = stretch.ends[side]
+    # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
     if reason == "stops" and law.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
     if reason == "stops" or reason in REASONS_UNKNOWN:
@@ -213,6 +233,7 @@ def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: fl
     elif reason == "mark" and mark >= stretch.next_start[side]:
         stretch.end_reason[side] = "met"
     elif reason == "mark" and law.piece_right_of(mark).is_above:
+        # The pre-stress is positive beyond the mark.
         stretch.progress[side] = Progress()
         stretch.restarts[side].append(side * mark)
         _advance_fast_front(law, stretch=stretch, side=side, until=until)
@@ -224,7 +245,10 @@ def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
     joined = [stretches[0]]
     for right in stretches[1:]:
         merged = _merge_if_met(joined[-1], right)
-        joined = [*joined, right] if merged is None else [*joined[:-1], merged]
+        if merged is None:
+            joined.append(right)
+        else:
+            joined[-1] = merged
     return joined
 
 
@@ -241,7 +265,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
         """Return how much later the left stretch reaches x than the right one."""
         return float(left_curve.arrival(x) - right_curve.arrival(x))
 
-    # Both stretches have reached the positions between these two.
+    # Both stretches have reached the positions between these two. The left one is first at the low
+    # end, and the right one at the high end.
     low = max(right.ends[LEFT].x, float(left_curve.edges[0]))
     high = min(left.ends[RIGHT].x, float(right_curve.edges[-1]))
     if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
@@ -251,7 +276,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))
-    restart = [x] if np.any(durations > MEETING_DISTANCE) else []
+    is_one_slow = np.any(durations > MEETING_DISTANCE)
+    restart = [x] if is_one_slow else []
     left.cut(RIGHT, x)
     right.cut(LEFT, x)
     return Stretch(

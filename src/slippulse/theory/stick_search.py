@@ -1,16 +1,17 @@
 """Search for the first zero in time of the slip velocity, for each position by itself.
 
-The velocity is sampled from the release on at equal time steps, and where waves arrive. The first
-sample below 0 brackets the stick time. A dip below 0 between two samples would be missed by the
-signs alone, so that each lowest of three samples is looked at again, with finer steps:
+The velocity is sampled from the release on, at equal time steps and when waves arrive. The stick
+time lies between the first sample that is not positive and the sample before it. Between two
+positive samples the velocity may fall below 0 and rise again. To find such a dip, the velocity is
+sampled again with finer steps around each minimum, a sample that is lower than its neighbours:
 
     du/dt
       |    . .
       |  .     .          .
-      | .        .     .     .        the lowest of three samples is looked at again
+      | .        .     .     .        a minimum: sampled again with finer steps
       |            . .         .
     0 +--------------------------.--- t
-      |                            .  the first sample below 0 brackets the stick time
+      |                            .  the first sample below 0: the stick is just before it
 """
 
 from collections.abc import Callable
@@ -23,19 +24,19 @@ from .vector_roots import roots_between
 
 # The first sample is at least this fraction of a step after the release.
 FIRST_SAMPLE = 0.01
-# Number of times of each position that are computed together.
+# Number of samples of each position that are computed together.
 BATCH_SIZE = 8
 # The largest number of samples of all positions together, which take 3 GB.
 MAX_SAMPLES = 2 * 10**8
-# The two steps next to a minimum of du/dt are divided into this number of parts, and the two parts
-# next to the minimum once more.
+# The two steps next to a minimum of du/dt are divided into this number of parts. Then the two parts
+# next to the minimum of the finer samples are divided in the same way.
 FINE_PARTS = 24
 # Error of a stick time.
 TIME_TOLERANCE = 1e-12
-# Fractions of a step, from its end to its start, at which du/dt is computed if it is 0 at the start
-# of the step.
-BRACKET_FRACTIONS = 0.5 ** np.arange(41)
-# Slip velocities on a slow front should be 0, and are below this.
+# If du/dt is 0 at the start of a step, it is computed at these fractions of the step, from its end
+# to its start.
+STEP_FRACTIONS = 0.5 ** np.arange(41)
+# Slip velocity on a slow front is 0, with errors below this.
 QUIET_VELOCITY = 1e-12
 
 
@@ -49,10 +50,10 @@ class VelocitySamples(NamedTuple):
 
 @dataclass(frozen=True)
 class StickSearch:
-    """A search at equal time steps, until a final time; velocity(x, time) is du/dt at points.
+    """A search for stick times at equal time steps, up to the final time ``until``.
 
-    Between two arrivals of waves du/dt is analytic, and changes little during a step
-    (`part.SEARCH_STEP`).
+    velocity(x, time) returns du/dt at points. Between two arrivals of waves du/dt is smooth, and
+    the step is so short that du/dt changes little during it.
     """
 
     velocity: Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -60,18 +61,20 @@ class StickSearch:
     until: float
 
     def find_stick_times(self, x: np.ndarray, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
-        """Return stick times at positions that are released; NaN if a block never sticks.
+        """Return the stick times of positions x, which are released at the times ``release``.
 
-        waves are the times at which waves arrive, [position, wave].
+        NaN if a block does not stick before the final time. waves has the times at which waves
+        arrive, with a row for each position and a column for each wave.
         """
         times = self._sample_times(release, waves)
         stick_times = np.full(x.shape, np.nan)
-        # A batch is examined together with the two samples before it, so that no group of three
-        # samples is missed. Before the first batch, both are the release itself. The first of them
-        # has the velocity -1, so that the release does not count as a minimum.
+        # The samples are computed in batches, from left to right. A batch is examined together with
+        # the two samples before it, because a minimum is found from three samples. Before the first
+        # batch, both are the release itself. The first of them has the velocity -1, so that the
+        # release does not count as a minimum.
         kept_times = np.stack([release, release], axis=1)
         kept_velocities = np.tile([-1.0, 0.0], (x.size, 1))
-        # Positions whose blocks have not stuck until the last sample.
+        # Numbers of the positions whose blocks have not stuck until the last sample.
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
             batch = self._sample(x[sliding], times[sliding, :BATCH_SIZE])
@@ -79,8 +82,8 @@ class StickSearch:
             time = np.append(kept_times[sliding], batch.time, axis=1)
             velocity = np.append(kept_velocities[sliding], batch.velocity, axis=1)
             samples = VelocitySamples(x[sliding], time, velocity)
-            # The column of the first sample at or below 0, after the two samples before the batch.
-            # If there is none, it is the number of columns.
+            # The column of the first sample at or below 0, not counting the two kept samples. If
+            # there is none, it is the number of columns.
             is_stuck = batch.velocity <= 0.0
             has_stuck = is_stuck.any(axis=1)
             first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
@@ -95,18 +98,23 @@ class StickSearch:
         return stick_times
 
     def _sample_times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
-        """Return the times of the samples, [position, time]: equal steps and arrivals of waves."""
+        """Return the times of the samples, [position, time]: equal steps and arrivals of waves.
+
+        The times of a position are sorted. At the end they repeat the final time, so that all
+        positions have equally many, and each batch is full.
+        """
         longest = self.until - np.min(release, initial=self.until)
-        count = release.size * (longest / self.step + BATCH_SIZE + waves.shape[1])
-        if count > MAX_SAMPLES:
+        sample_count = release.size * (longest / self.step + BATCH_SIZE + waves.shape[1])
+        if sample_count > MAX_SAMPLES:
             allowed = f"a time until which sticks are found from {MAX_SAMPLES:.0e} samples"
-            raise ValueError(f"duration: {self.until:g} takes {count:.2g}; allowed: {allowed}")
+            needed = f"{self.until:g} takes {sample_count:.2g}"
+            raise ValueError(f"duration: {needed}; allowed: {allowed}")
         batch_count = longest // (BATCH_SIZE * self.step) + 1
         steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)
         ends = np.full((release.size, BATCH_SIZE), self.until)
         times = np.concatenate([release[:, None] + steps, waves, ends], axis=1)
         # Right after the release du/dt is 0 apart from rounding, so that no sample is taken there.
-        # Written with ~, so that a wave that never arrives (NaN) is left out as well.
+        # A wave that never arrives (NaN) is left out as well, because of the ~.
         is_too_early = ~(times > release[:, None] + FIRST_SAMPLE * self.step)
         times[is_too_early] = self.until
         np.minimum(times, self.until, out=times)
@@ -114,16 +122,18 @@ class StickSearch:
         return times
 
     def _sample(self, x: np.ndarray, time: np.ndarray) -> VelocitySamples:
-        """Return slip velocities at times, [position, time]."""
+        """Return the slip velocities of positions at times, which are indexed [position, time]."""
         velocity = self.velocity(np.repeat(x, time.shape[1]), time.ravel())
         return VelocitySamples(x, time, velocity.reshape(time.shape))
 
-    def _zeros_next_to_minima(self, samples: VelocitySamples, first: np.ndarray) -> np.ndarray:
+    def _zeros_next_to_minima(
+        self, samples: VelocitySamples, first_stuck: np.ndarray
+    ) -> np.ndarray:
         """Return the first zero of du/dt in a dip between samples, for each row; NaN if none.
 
         A sample is a minimum if it is lower than the sample before it, and not higher than the one
         after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
-        are positive, this is repeated around the lowest of them. ``first`` has the column of the
+        are positive, this is repeated around the lowest of them. first_stuck has the column of the
         first sample at or below 0 in each row; later minima are ignored.
         """
         first_zeros = np.full(samples.x.shape, np.nan)
@@ -132,17 +142,20 @@ class StickSearch:
         is_minimum = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
         # Samples at the end of a row may repeat the final time.
         is_minimum &= samples.time[:, 2:] > samples.time[:, 1:-1]
-        is_before_first = np.arange(1, change.shape[1]) < first[:, None]
-        # A row occurs once for each of its minima.
-        rows, before = np.nonzero(is_minimum & is_before_first)
+        is_before_stick = np.arange(1, change.shape[1]) < first_stuck[:, None]
+        # From here on there is one row for each minimum; rows are the rows of samples. before is
+        # the column of the sample before the minimum.
+        rows, before = np.nonzero(is_minimum & is_before_stick)
         start, end = samples.time[rows, before], samples.time[rows, before + 2]
         for _ in range(2 if rows.size else 0):
             fine = self._sample(samples.x[rows], np.linspace(start, end, FINE_PARTS + 1, axis=1))
-            # The first fine sample is positive, so column 0 means that no sample is at or below 0.
+            # The column of the first fine sample at or below 0. It is 0 if there is none, since the
+            # first fine sample is positive.
             column = np.argmax(fine.velocity <= 0.0, axis=1)
             with_zero = np.flatnonzero(column)
             zeros = self._zeros_in_steps(fine, with_zero, column[with_zero])
             first_zeros[rows[with_zero]] = np.fmin(first_zeros[rows[with_zero]], zeros)
+            # The other minima are examined once more, between the neighbours of the lowest sample.
             positive = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
             lowest = np.clip(np.argmin(fine.velocity[positive], axis=1), 1, FINE_PARTS - 1)
             rows = rows[positive]
@@ -161,31 +174,41 @@ class StickSearch:
         start, end = samples.time[rows, columns - 1], samples.time[rows, columns]
         at_start, at_end = samples.velocity[rows, columns - 1], samples.velocity[rows, columns]
         target = np.zeros(rows.size)
-        # If du/dt is 0 at the start of the step, which is the release, the zero is bracketed from a
-        # time where it has risen. Next to a point where a slow front stops it does so only briefly.
+        # If a step begins at the release, du/dt is 0 at its start. The step is then shortened, and
+        # the search is for the time at which du/dt falls to QUIET_VELOCITY.
         quiet = np.flatnonzero(at_start <= 0.0)
-        span = (end - start)[quiet, None]
-        fine = self._sample(x[quiet], start[quiet, None] + span * BRACKET_FRACTIONS)
-        # The columns go from the end of the step, where du/dt has not risen, to its start.
-        risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        row = np.arange(quiet.size)
+        shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
-        start[quiet], end[quiet] = fine.time[row, risen], fine.time[row, risen - 1]
-        at_start[quiet] = fine.velocity[row, risen] - QUIET_VELOCITY
-        at_end[quiet] = fine.velocity[row, risen - 1] - QUIET_VELOCITY
-        zeros, bracketed = end.copy(), np.flatnonzero(at_start > 0.0)
+        start[quiet], end[quiet] = shortened.time.T
+        at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
+        zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
-            """Return du/dt less its target, for some of the rows with a bracket."""
-            chosen = bracketed[which]
+            """Return du/dt minus its target, for some of the steps with a zero."""
+            chosen = has_zero[which]
             return self.velocity(x[chosen], time) - target[chosen]
 
-        zeros[bracketed] = roots_between(
+        zeros[has_zero] = roots_between(
             above_target,
-            lower=start[bracketed],
-            upper=end[bracketed],
-            at_lower=at_start[bracketed],
-            at_upper=at_end[bracketed],
+            lower=start[has_zero],
+            upper=end[has_zero],
+            at_lower=at_start[has_zero],
+            at_upper=at_end[has_zero],
             xtol=TIME_TOLERANCE,
         )
         return zeros
+
+    def _shorten_steps(self, x: np.ndarray, start: np.ndarray, end: np.ndarray) -> VelocitySamples:
+        """Return samples at both ends of shorter steps, in which du/dt falls to QUIET_VELOCITY.
+
+        In the given steps du/dt is 0 at the start, and not positive at the end. In between it may
+        rise, but next to a point where a slow front stops it does so only briefly. If it does not
+        rise, the first sample is at the end of the step, and the second one next to its start.
+        """
+        duration = end - start
+        fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
+        # The columns go back from the end of the step to its start. So this is the column of the
+        # last sample that has risen, and the sample after it is in the column before.
+        risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
+        row, column = np.arange(x.size)[:, None], np.stack([risen, risen - 1], axis=1)
+        return VelocitySamples(x, fine.time[row, column], fine.velocity[row, column])

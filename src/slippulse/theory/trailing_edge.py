@@ -1,22 +1,21 @@
 r"""The trailing edge of one part of a rupture: the time at which each position sticks.
 
-At each position the trailing edge is the first time after release at which du/dt is 0. The
-construction holds as long as the edge runs faster than the waves, that is, as long as du/dt falls
-along both characteristics, by xi = t - y and by eta = t + y. Then no stuck point lies in the past
-of a sliding one, and Riemann's formula holds up to sticking. A block that has stuck is never
-released again, because the stress on it is d2u/dt2 (1 - (dt/dx)^2) < 0, where the acceleration
-d2u/dt2 is that just before sticking and dt/dx is the slope of the edge.
+At each position this is the first time after the release at which du/dt is 0. The construction is
+valid as long as the edge runs faster than the waves. This is so if du/dt falls along both
+characteristics, that is, with xi = t - y and with eta = t + y. Then no stuck point lies in the past
+of a sliding one, and Riemann's formula is valid up to the stick. A block that has stuck is never
+released again, because the stress on it is negative. This stress is d2u/dt2 (1 - (dt/dx)^2), with
+the acceleration d2u/dt2 just before the stick, and the slope dt/dx of the edge.
 
 The edge is computed at knots and interpolated between them (`knots`). The first knots are the ends
-of the panels of the curve, the marks (positions from which waves come that change du/dt at once)
-and the middles between all of these. Then knots are added:
+of the panels of the curve, the marks, and the middles between all of these. (The marks are the
+positions from which waves come that change du/dt at once.) Then knots are added:
 
 1. on both sides of each point where the wave from a mark meets the edge, because the edge has a
    kink there;
 2. on both sides of each point where the edge reaches the final time;
-3. in the middle of every interval whose interpolation does not predict its middle knot, again and
-   again;
-4. in small pieces around each jump of the edge.
+3. in the middle of each interval whose interpolation does not predict its middle, until it does;
+4. around each jump of the edge, which is cut into smaller and smaller pieces.
 
 No stick is missed between two positions that slide at the same time. A stuck region grows to both
 sides faster than the waves. If neither position has felt it yet, it began in the triangle between
@@ -48,11 +47,11 @@ from .lower_bound import stuck_between
 from .part import Part
 from .vector_roots import roots_between
 
-# Shortest interval that is halved, in units of `Part.scale`. A slip that takes less time counts as
-# brief.
+# Shortest interval that is halved, in units of `Part.scale`. A slip that takes a shorter time, in
+# the same units, is brief.
 MIN_INTERVAL = 1e-3
-# Shortest interval that is halved if the edge reaches the final time or a stopped front in it, in
-# the same units.
+# Shortest interval that is halved, in the same units, if the edge reaches the final time or a
+# stopped front in it.
 MIN_INTERVAL_AT_END = 0.01
 # Distance of two knots from the point between them where the wave from a mark meets the edge, in
 # units of `Part.scale`.
@@ -67,27 +66,26 @@ PIECES_PER_CUT = 8
 # An interval at least this long, in units of JUMP_TOLERANCE times the length of the part, has at
 # most one jump.
 SINGLE_JUMP_LENGTH = 1e3
-# Newton's method for a stick time takes at most this number of steps, and fails if it moves farther
-# from its start than this fraction of the interval.
+# The most steps of Newton's method for a stick time.
 MAX_NEWTON_STEPS = 12
+# It fails if it moves farther from its start than this fraction of the interval length.
 MAX_CORRECTION = 0.05
 # It ends when its last step is below this.
 NEWTON_TOLERANCE = 1e-11
 # It also ends when its next step, which is about the product of the last two, is below this
-# fraction of the interval.
+# fraction of the interval length.
 NEXT_STEP_TOLERANCE = 1e-14
 # Stick times that differ by less than this are equal, and slip velocities below it are 0.
 ROUNDING_ERROR = 1e-12
-# Error of du/dt. It makes a stick time uncertain where du/dt falls through 0 slowly, as it does
+# Error of du/dt. It makes a stick time uncertain where du/dt falls slowly through 0, as it does
 # next to where a slow front has stopped.
 VELOCITY_ERROR = 1e-11
-# Uncertainties of stick times below this are neglected. Knots whose larger uncertainty does not
-# exclude that they are the first all count as first.
+# Errors of stick times below this are neglected.
 TIME_ERROR = 1e-9
 
 
 class FirstStick(NamedTuple):
-    """Time and position of the first sticking."""
+    """Time and position of the first stick."""
 
     time: float
     x: float
@@ -103,13 +101,13 @@ class PartWithEdge(Part):
         knots = self._make_knots(x, self.find_stick_times(x))
         if x.size < 2:
             return knots
-        # Every second knot lies in the middle between its neighbours. If these do not predict it,
-        # the two halves of the interval between them are refined.
-        outer, middle = knots.at(np.s_[::2]), knots.at(np.s_[1::2])
+        # Every second knot lies in the middle between its neighbours. If the neighbours do not
+        # predict it, the two intervals next to it are refined.
+        outer, middle = knots.select(np.s_[::2]), knots.select(np.s_[1::2])
         is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
-        left_ends_of_halves = x[:-1]
-        unresolved = left_ends_of_halves[~np.repeat(is_predicted, 2)]
-        x = np.union1d(self._positions_of_landings(knots), self._positions_near_end(knots))
+        left_ends = x[:-1]
+        unresolved = left_ends[~np.repeat(is_predicted, 2)]
+        x = np.union1d(self._positions_near_waves(knots), self._positions_near_end(knots))
         knots = self._with_more_knots(
             knots, x=x, stick=self.find_stick_times(x), unresolved=unresolved
         )
@@ -133,6 +131,7 @@ class PartWithEdge(Part):
         just_before_end = self.until * (1.0 - EQUALITY_TOLERANCE)
         nucleation = curve.edges[np.argmin(curve.edge_times)]
         fronts = [curve.front_at(just_before_end, nucleation, side) for side in (-1.0, 1.0)]
+        # One end of a panel in each cell of the length CELL_LENGTH is sufficient.
         cell = np.floor(curve.edges / (CELL_LENGTH * self.scale))
         is_first_of_cell = np.diff(cell, prepend=-np.inf) > 0.0
         x = np.unique([left, *curve.edges[is_first_of_cell], *self.marks, *fronts])
@@ -149,13 +148,13 @@ class PartWithEdge(Part):
         stick: np.ndarray,
         unresolved: Sequence[float] | np.ndarray = (),
     ) -> Knots:
-        """Return knots with additional ones at x, refined until they predict the edge around these.
+        """Return the knots with new ones at x, and refine the intervals around the new knots.
 
-        stick holds the stick times at x, NaN where there is none. unresolved are the left ends of
+        stick has the stick times at x, NaN where there is none. unresolved has the left ends of
         other intervals that are refined too.
         """
-        # A new knot divides an interval. One part begins at the old knot on its left, and the other
-        # part at the new knot itself.
+        # A new knot divides an interval into two. One of them begins at the old knot on its left,
+        # and the other one at the new knot itself.
         old_left_ends = knots.x[knots.interval_of(x)]
         new_left_ends = x[x < knots.x[-1]]
         left_ends = np.unique([*unresolved, *old_left_ends, *new_left_ends])
@@ -165,11 +164,14 @@ class PartWithEdge(Part):
         return knots
 
     def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:
-        """Return knots at x with stick times that are NaN for positions that do not stick."""
+        """Return knots at positions x with given stick times, NaN where a position does not stick.
+
+        The kind of each knot, and du/dt and its derivatives at the stick time, are computed.
+        """
         sticks = np.isfinite(stick)
         time = np.where(sticks, stick, self.until)
         domains = self.domains(x, time)
-        # The velocity is 0 at a stick, and has to be computed only if a position still slides.
+        # The velocity is 0 at a stick. It is computed only if a position slides at the final time.
         velocity = np.zeros(x.size) if sticks.all() else domains.slip_velocity()
         velocity[sticks] = 0.0
         by_xi, by_eta = domains.velocity_slopes()
@@ -189,42 +191,45 @@ class PartWithEdge(Part):
             velocity_by_eta=by_eta,
         )
 
-    def _positions_of_landings(self, knots: Knots) -> np.ndarray:
-        """Return positions on both sides of where waves from the marks meet the trailing edge.
+    def _positions_near_waves(self, knots: Knots) -> np.ndarray:
+        """Return positions on both sides of each point where a wave from a mark meets the edge.
 
-        When the front arrives at a mark, one wave starts to the right, along t - x = const, and one
-        to the left, along t + x = const.
+        A mark is a position where the motion of a front changes suddenly. When the front arrives
+        there, one wave starts to each side.
         """
+        sides = (-1.0, 1.0)
+        return np.concatenate([self._positions_near_waves_to(knots, side) for side in sides])
+
+    def _positions_near_waves_to(self, knots: Knots, side: float) -> np.ndarray:
+        """Return `_positions_near_waves` for waves to one side, -1 (left) or +1 (right)."""
         marks = np.array(self.marks)
-        arrival = self.curve.arrival(marks)
+        start_times = self.curve.arrival(marks)
+        # Time from the passage of each wave to the stick, [knot, mark]. It changes its sign where
+        # the wave meets the edge.
+        delay = (knots.stick - side * knots.x)[:, None] - (start_times - side * marks)
         is_fast = knots.outruns_waves(np.arange(knots.x.size - 1))
+        k, mark = np.nonzero((delay[1:] * delay[:-1] < 0.0) & is_fast[:, None])
+        at_left, at_right = delay[k, mark], delay[k + 1, mark]
+        left, right = knots.x[k], knots.x[k + 1]
+        # By linear interpolation of the delay, the wave meets the edge near this position.
+        x = left + (right - left) * at_left / (at_left - at_right)
+        # Two steps of Newton's method find where du/dt is 0 on the wave. If x on it changes by dx,
+        # the time changes by side dx. So t + x changes by 2 dx on a wave to the right, and t - x by
+        # -2 dx on a wave to the left. The other one does not change.
+        for _ in range(2 if x.size else 0):
+            time = start_times[mark] + side * (x - marks[mark])
+            domains = self.domains(x, time)
+            by_xi, by_eta = domains.velocity_slopes()
+            slope_on_wave = by_eta if side > 0.0 else by_xi
+            x = x - 0.5 * side * domains.slip_velocity() / slope_on_wave
+            x = x.clip(left, right)
         offset = LANDING_OFFSET * self.scale
-        landings = []
-        for side in (-1.0, 1.0):
-            # Time from the passage of each wave to the stick, [knot, mark]. It changes its sign
-            # where the wave meets the edge.
-            delay = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
-            k, mark = np.nonzero((delay[1:] * delay[:-1] < 0.0) & is_fast[:, None])
-            at_left, at_right = delay[k, mark], delay[k + 1, mark]
-            left, right = knots.x[k], knots.x[k + 1]
-            x = left + (right - left) * at_left / (at_left - at_right)
-            # Two steps of Newton's method find where du/dt is 0 on the wave. If x on it changes by
-            # dx, the time changes by side dx, and so eta (or xi, on a wave to the left) by 2 dx.
-            for _ in range(2 if x.size else 0):
-                time = arrival[mark] + side * (x - marks[mark])
-                domains = self.domains(x, time)
-                by_xi, by_eta = domains.velocity_slopes()
-                slope_on_wave = by_eta if side > 0.0 else by_xi
-                x = x - 0.5 * side * domains.slip_velocity() / slope_on_wave
-                x = x.clip(left, right)
-            # The edge has a kink at x, so that a knot stands on either side of it.
-            landings.append(np.clip([x - offset, x + offset], left, right).ravel())
-        return np.concatenate(landings)
+        return np.clip([x - offset, x + offset], left, right).ravel()
 
     def _velocity_at_end(self, x: np.ndarray, which: np.ndarray | None = None) -> np.ndarray:
         """Return du/dt at positions at the final time.
 
-        The second argument is not used; `roots_between` passes it.
+        ``which`` is not used; `roots_between` passes it.
         """
         return self.velocity(x, np.full(x.size, self.until))
 
@@ -234,7 +239,8 @@ class PartWithEdge(Part):
         k = k[knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)]
         at_left = self._velocity_at_end(knots.x[k])
         at_right = self._velocity_at_end(knots.x[k + 1])
-        # At the final time du/dt is 0 where the edge is then.
+        # At the final time the computed du/dt is positive where a block slides, and negative where
+        # it has stuck before. The edge is in between.
         has_edge = at_left * at_right < 0.0
         left, right = knots.x[k[has_edge]], knots.x[k[has_edge] + 1]
         # The new knots are so near to each other that the interval between them is not divided.
@@ -250,64 +256,75 @@ class PartWithEdge(Part):
         return np.clip([x - offset, x + offset], left, right).ravel()
 
     def _refine(self, knots: Knots, left_ends: np.ndarray) -> tuple[Knots, np.ndarray]:
-        """Add knots in some intervals, and return the left ends of the intervals to refine next.
+        """Add knots in some intervals, which are given by their left ends.
 
-        left_ends are the left ends of the intervals. Intervals with a jump, or in which the edge
-        reaches the final time, are cut into PIECES_PER_CUT pieces; others are halved. Pieces are
-        refined again if they contain the jump or the end, and halves if the interpolation did not
-        predict the middle.
+        Return all knots, and the left ends of the intervals to refine next. A piece of a cut
+        interval is refined if the edge jumps or reaches the final time in it. Both halves of a
+        halved interval are refined if the interpolation did not predict the middle.
         """
         k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left_ends))
-        has_jump = knots.has_jump(k)
-        reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
-        min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
-        min_length[has_jump] = JUMP_TOLERANCE * self._length
-        is_long = knots.x[k + 1] - knots.x[k] > min_length
-        cut = k[is_long & (has_jump | reaches_end)]
-        halved = k[is_long & ~has_jump & ~reaches_end]
-        # The left ends of the pieces are indexed [piece, interval].
+        cut, halved = self._intervals_to_divide(knots, k)
+        # The left ends of the pieces, [piece, interval].
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
         between_pieces = pieces[1:].ravel()
         middles = 0.5 * (knots.x[halved] + knots.x[halved + 1])
         x = np.append(between_pieces, middles)
         if not x.size:
             return knots, x
-        new = self._make_knots(x, self._stick_time(x, knots))
-        is_predicted = knots.predicts_middle(halved, new.at(np.s_[between_pieces.size :]))
-        refined = knots.joined(new)
+        new_knots = self._make_knots(x, self._stick_time(x, knots))
+        new_middles = new_knots.select(np.s_[between_pieces.size :])
+        is_predicted = knots.predicts_middle(halved, new_middles)
+        refined = knots.joined(new_knots)
         self._mark_steep_pieces(refined, pieces)
         halves = np.append(knots.x[halved], middles)
         unresolved_halves = halves[~np.tile(is_predicted, 2)]
         k = np.searchsorted(refined.x, pieces.ravel())
-        is_eventful = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        return refined, np.append(unresolved_halves, pieces.ravel()[is_eventful])
+        has_event = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        return refined, np.append(unresolved_halves, pieces.ravel()[has_event])
+
+    def _intervals_to_divide(self, knots: Knots, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return which of the intervals k are cut into pieces, and which are halved.
+
+        An interval is cut if the edge jumps or reaches the final time in it, and halved otherwise.
+        Intervals that are too short are not divided.
+        """
+        has_jump = knots.has_jump(k)
+        reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
+        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
+        min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
+        min_length[has_jump] = JUMP_TOLERANCE * self._length
+        is_long = knots.x[k + 1] - knots.x[k] > min_length
+        has_event = has_jump | reaches_end
+        return k[is_long & has_event], k[is_long & ~has_event]
 
     @property
     def _length(self) -> float:
-        """Length of the part."""
+        """Length of the part: the distance between its two fronts at the end."""
         return self.curve.edges[-1] - self.curve.edges[0]
 
     def _not_behind_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
         """Return the intervals of k that are not completely in the future of a jump.
 
-        Nothing is known in the future of a jump. Its position in its own interval is not known
-        exactly, so that twice the interval length is added to its time.
+        The future of a jump is where a wave from the jump has arrived. Nothing is known there.
         """
         before_jumps, lengths = knots.ends_before_jumps(k)
-        # A knot is in the future of a jump if its stick time, minus the time of a wave from there,
-        # is later than the jump. The axes are [left or right end, interval, jump].
+        # The axes are [left or right end, interval, jump].
         ends = np.array([k, k + 1])[..., None]
-        wave_time = np.abs(knots.x[ends] - knots.x[before_jumps])
-        earliest_start = (knots.stick[ends] - wave_time).min(axis=0)
-        is_earlier = earliest_start < knots.stick[before_jumps] + 2.0 * lengths
-        return k[is_earlier.all(axis=1)]
+        travel_time = np.abs(knots.x[ends] - knots.x[before_jumps])
+        # A wave from a jump arrives at an end before its stick if it starts before this time. One
+        # end is not in the future of the jump if the smaller of both times is before the jump.
+        latest_start = (knots.stick[ends] - travel_time).min(axis=0)
+        # The jump is somewhere in its interval, so that twice the interval length is added to its
+        # time.
+        is_before_jump = latest_start < knots.stick[before_jumps] + 2.0 * lengths
+        return k[is_before_jump.all(axis=1)]
 
     def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
         """Set the kind SLOWER_THAN_WAVES at knots of intervals all of whose pieces are steep.
 
-        Only one of the pieces contains a jump. If all of them are steep, the edge is slower than
-        the waves, although its slopes at the knots are just below 1.
+        pieces has the left ends of the pieces, [piece, interval]. If the edge jumps in an interval,
+        only one of its pieces contains the jump. If the edge takes longer than a wave in all
+        pieces, it is slower than the waves, although its slopes at the knots are just below 1.
         """
         k = np.searchsorted(knots.x, pieces)
         is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
@@ -318,9 +335,10 @@ class PartWithEdge(Part):
         knots.kind[steep_pieces[-1] + 1] = SLOWER_THAN_WAVES
 
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
-        """Return stick times, accurate to a fraction of the knot spacing.
+        """Return stick times that are interpolated between knots, without further computation.
 
-        For blocks that never stick it is the final time.
+        They are accurate to a fraction of the knot spacing. For blocks that do not stick it is the
+        final time.
         """
         knots = self.knots
         k = knots.interval_of(x)
@@ -329,18 +347,21 @@ class PartWithEdge(Part):
         )
 
     def _stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
-        """Return stick times at positions, using the knots; NaN if a block never sticks."""
+        """Return the exact stick times of positions; NaN if a block does not stick.
+
+        Where the knots allow it, they are found faster than by a search from the release on.
+        """
         knots = knots or self.knots
         if knots.x.size < 2:
             return self.find_stick_times(x)
         k = knots.interval_of(x)
-        inside = (x >= knots.x[0]) & (x <= knots.x[-1])
+        is_between_knots = (x >= knots.x[0]) & (x <= knots.x[-1])
         stick_times = self._stick_times_by_newton(
-            knots, x=x, k=k, is_requested=inside & knots.outruns_waves(k)
+            knots, x=x, k=k, is_requested=is_between_knots & knots.outruns_waves(k)
         )
-        # Where both neighbouring knots slide at the final time, a position whose du/dt is positive
-        # then has not stuck before.
-        slides = np.flatnonzero(inside & knots.has_end_kinds(k, SLIDING, SLIDING))
+        # Between two knots that slide at the final time, a position with positive du/dt at this
+        # time has not stuck before.
+        slides = np.flatnonzero(is_between_knots & knots.has_end_kinds(k, SLIDING, SLIDING))
         slides = slides[self._velocity_at_end(x[slides]) > 0.0]
         unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(stick_times)), slides)
         stick_times[unknown] = self.find_stick_times(x[unknown])
@@ -349,46 +370,50 @@ class PartWithEdge(Part):
     def _stick_times_by_newton(
         self, knots: Knots, x: np.ndarray, k: np.ndarray, is_requested: np.ndarray
     ) -> np.ndarray:
-        """Return stick times in the intervals k by Newton's method, from the interpolated ones on.
+        """Return stick times of positions x in the intervals k, by Newton's method.
 
-        The result is NaN where it is not requested, and where the steps lead too far away from the
-        interpolated time.
+        It starts from the interpolated stick times. The result is NaN where it is not requested,
+        and where the steps lead too far away from the interpolated time.
         """
-        span = knots.x[k + 1] - knots.x[k]
-        s = (x - knots.x[k]) / span
+        length = knots.x[k + 1] - knots.x[k]
+        fraction = (x - knots.x[k]) / length
         guess = knots.interpolate(k, x)
-        # The acceleration at stick, interpolated linearly between the knots.
+        # The acceleration at the stick, interpolated linearly between the knots.
         at_knots = knots.velocity_by_xi + knots.velocity_by_eta
-        acceleration = at_knots[k] * (1.0 - s) + at_knots[k + 1] * s
+        acceleration = at_knots[k] * (1.0 - fraction) + at_knots[k + 1] * fraction
         stick_times, time = np.full(x.shape, np.nan), guess.copy()
         velocity, step = np.zeros(x.shape), np.zeros(x.shape)
-        todo = np.flatnonzero(is_requested)
+        # Numbers of the positions whose stick times are not found yet.
+        missing = np.flatnonzero(is_requested)
         for _ in range(MAX_NEWTON_STEPS):
-            if not todo.size:
+            if not missing.size:
                 break
-            velocity_before, step_before = velocity[todo], step[todo]
-            velocity[todo] = self.velocity(x[todo], time[todo])
-            # After the first step the acceleration is that of the secant.
-            secant = velocity_before - velocity[todo]
+            velocity_before, step_before = velocity[missing], step[missing]
+            velocity[missing] = self.velocity(x[missing], time[missing])
+            # After the first step the acceleration is the change of velocity divided by the step,
+            # unless the step is tiny.
+            secant = velocity_before - velocity[missing]
             secant /= np.where(step_before == 0.0, np.nan, step_before)
             has_secant = np.abs(step_before) > NEWTON_TOLERANCE
-            acceleration[todo] = np.where(has_secant, secant, acceleration[todo])
-            step[todo] = velocity[todo] / acceleration[todo]
-            time[todo] -= step[todo]
-            is_near = np.abs(time[todo] - guess[todo]) <= MAX_CORRECTION * span[todo]
-            size = np.abs(step[todo])
-            next_size = size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
-            done = (size < NEWTON_TOLERANCE) | (next_size < NEXT_STEP_TOLERANCE * span[todo])
-            done &= is_near
-            stick_times[todo[done]] = time[todo[done]]
-            todo = todo[is_near & ~done]
+            acceleration[missing] = np.where(has_secant, secant, acceleration[missing])
+            step[missing] = velocity[missing] / acceleration[missing]
+            time[missing] -= step[missing]
+            is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
+            step_size = np.abs(step[missing])
+            next_size = step_size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
+            is_tiny = step_size < NEWTON_TOLERANCE
+            is_found = is_tiny | (next_size < NEXT_STEP_TOLERANCE * length[missing])
+            is_found &= is_near
+            stick_times[missing[is_found]] = time[missing[is_found]]
+            missing = missing[is_near & ~is_found]
         return stick_times
 
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves.
 
-        They are the knots just before a jump of the edge, the knots of the kind SLOWER_THAN_WAVES,
-        and the stopped ends of fronts from which the edge does not run back faster than the waves.
+        They are the knots just before a jump of the edge, and the knots of the kind
+        SLOWER_THAN_WAVES. A point where a front has stopped is one of them if the edge does not run
+        back from there faster than the waves.
         """
         knots = self.knots
         before_jumps, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
@@ -397,18 +422,19 @@ class PartWithEdge(Part):
         return [Point(float(knots.x[k]), float(knots.stick[k])) for k in slow]
 
     def _stops_without_edge(self) -> list[int]:
-        """Return the numbers of the outer knots where a front stops and no fast edge begins.
+        """Return the numbers of the outermost knots where a front stops and no fast edge begins.
 
         This is so if the edge takes longer than a wave from the stopped front to the nearest knot
-        that is no brief slip.
+        whose kind is not BRIEF_SLIP.
         """
         knots = self.knots
-        resolved = np.flatnonzero(knots.kind != BRIEF_SLIP)
-        if not resolved.size:
+        not_brief = np.flatnonzero(knots.kind != BRIEF_SLIP)
+        if not not_brief.size:
             return []
         stops = []
+        # The left end of the part, and its right end.
         for outermost in (0, -1):
-            end, nearest = range(knots.x.size)[outermost], resolved[outermost]
+            end, nearest = range(knots.x.size)[outermost], not_brief[outermost]
             distance = abs(knots.x[nearest] - knots.x[end])
             delay = abs(knots.stick[nearest] - knots.stick[end])
             # A front that still moves at the final time has not stopped.
@@ -419,9 +445,9 @@ class PartWithEdge(Part):
         return stops
 
     def first_stick(self) -> FirstStick | None:
-        """Return the first sticking, or None if nothing sticks before the final time."""
+        """Return where and when something first sticks; None if nothing does before the end."""
         first = self._first_at_knots()
-        # If the knots have missed an earlier one, more of them are added there.
+        # If positions between the knots have stuck earlier, they become knots too.
         while first:
             x = self._positions_stuck_earlier(first)
             if not x.size:
@@ -431,23 +457,27 @@ class PartWithEdge(Part):
         return first
 
     def _first_at_knots(self) -> FirstStick | None:
-        """Return the first sticking according to the knots, or None if no knot sticks."""
+        """Return where and when something first sticks, by the knots; None if no knot sticks.
+
+        This is at a knot, or at a minimum of the trailing edge between two knots.
+        """
         knots = self.knots
-        stuck = knots.kind != SLIDING
-        if not stuck.any():
+        has_stuck = knots.kind != SLIDING
+        if not has_stuck.any():
             return None
         error = self._stick_time_errors()
-        # If several positions stick first (apart from rounding), the one nearest to x = 0 is
-        # returned.
-        latest = np.where(stuck, knots.stick + error, np.inf)
+        # If several knots stick first, apart from errors and rounding, the one nearest to x = 0 is
+        # chosen.
+        latest = np.where(has_stuck, knots.stick + error, np.inf)
         may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
         first = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
-        # An interval cannot contain a stick before this time.
+        # An interval cannot contain a stick before this time, since the edge is faster than the
+        # waves.
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < first.time)).tolist():
             minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
-            # A kink or an equal time does not count as a minimum.
+            # A difference that is a rounding error does not count.
             if minimum and minimum.time < first.time - ROUNDING_ERROR:
                 first = minimum
         return first
@@ -455,12 +485,12 @@ class PartWithEdge(Part):
     def _stick_time_errors(self) -> np.ndarray:
         """Return the errors of the stick times of knots, 0 where they are negligible.
 
-        They are the error of du/dt divided by the rate at which du/dt falls through 0.
+        An error is that of du/dt, divided by the rate at which du/dt falls through 0.
         """
         knots = self.knots
         deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
         # A slip is brief only next to the point where a front has stopped. Its stick time is the
-        # time at which the front arrives, which is exact.
+        # time at which the front arrives, which has no such error.
         deceleration = np.where(knots.kind == BRIEF_SLIP, np.inf, deceleration)
         error = VELOCITY_ERROR / np.maximum(deceleration, ROUNDING_ERROR)
         error[error < TIME_ERROR] = 0.0
@@ -469,8 +499,8 @@ class PartWithEdge(Part):
     def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the trailing edge may have a minimum.
 
-        Stick times fall from both ends towards the inside of such an interval. Intervals with an
-        uncertain stick time are left out.
+        Stick times fall from both ends towards the inside of such an interval. Intervals in which
+        a stick time at an end has an error are left out.
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
@@ -480,7 +510,7 @@ class PartWithEdge(Part):
         return falls_inwards & is_fast & is_certain
 
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
-        """Return positions between knots that have stuck before the first stick at a knot."""
+        """Return positions that have stuck before the first stick that is known."""
         knots, curve = self.knots, self.curve
         # A stick between two knots makes both of them stick, at the latest when its waves arrive
         # there. So it is not earlier than this time.
@@ -489,19 +519,21 @@ class PartWithEdge(Part):
         is_partly_released = is_released[:-1] | is_released[1:]
         intervals: list[tuple[float, float]] = []
         for k in np.flatnonzero((earliest < first.time) & is_partly_released):
-            # Only the released part of the interval, up to a front inside it, is examined.
+            # If a front is in this interval at the time, only its released part is examined.
             left, right = knots.x[k : k + 2].tolist()
             if not is_released[k]:
                 left = curve.front_at(first.time, right, -1.0)
             if not is_released[k + 1]:
                 right = curve.front_at(first.time, left, 1.0)
+            # If the first stick lies in this interval, both sides of it are examined.
             inner = [first.x] if left < first.x < right else []
             intervals += pairwise([left, *inner, right])
+        # Row 0 has the left ends, and row 1 the right ends.
         pairs = np.array(intervals).reshape(-1, 2).T
         return stuck_between(self, x=pairs, time=first.time, first=first.x)
 
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
-        """Return the first sticking between two positions.
+        """Return the minimum of the trailing edge between two positions.
 
         It is None if the edge does not fall into the interval from both ends.
         """
@@ -511,7 +543,7 @@ class PartWithEdge(Part):
             x = np.array([position])
             return float(self._make_knots(x, self._stick_time(x)).slope[0])
 
-        # If it falls only by rounding errors, one of the knots is the minimum.
+        # If the edge falls only by rounding errors, one of the two positions is the minimum.
         if not edge_slope(left) < 0.0 < edge_slope(right):
             return None
         x = root_between(edge_slope, left, right, xtol=NEWTON_TOLERANCE)

@@ -12,10 +12,11 @@ from .prestress_pieces import nucleation_intervals
 
 
 class ExactTransition(NamedTuple):
-    """The crack-pulse transition: T_trans and L_trans.
+    """The transition from crack to pulse: its time T_trans and its length L_trans.
 
-    T_trans is the time at which something first sticks, or a front has stopped; L_trans is the
-    length of the rupture at that time.
+    T_trans is the time of the first stick. Only for an `ArrestingCrack` it is the time at which the
+    left front has covered a given fraction of its way. L_trans is the distance between the two
+    fronts at that time.
     """
 
     time: float
@@ -25,10 +26,10 @@ class ExactTransition(NamedTuple):
 def fast_fronts(
     prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
 ) -> Curve:
-    """Return both fronts of a single nucleation point at x = 0, up to a distance.
+    """Return both fronts of a single nucleation point at x = 0, up to the distance ``reach``.
 
-    They end where they are not faster than the waves. The panels resolve the waves of leaf springs
-    with the elasticity ratio gamma.
+    They end earlier where they are not faster than the waves. The panels are short enough for the
+    waves behind the fronts, at the elasticity ratio gamma.
     """
     law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)

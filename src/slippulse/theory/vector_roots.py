@@ -1,7 +1,7 @@
 """Roots of many functions at once, with array operations.
 
-The functions are given as a single one, ``function(x, which)``. It returns, for each i, the value
-at x[i] of the function with the number which[i].
+The functions are numbered, and given as a single one, ``function(x, which)``: element i of its
+result is the value of function number which[i] at x[i].
 """
 
 from collections.abc import Callable
@@ -9,8 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 Functions = Callable[[np.ndarray, np.ndarray], np.ndarray]
-# The most secants of `increasing_roots`, which is sufficient for any function that is nearly
-# linear.
+# The most secant steps of `increasing_roots`. A function that is nearly linear needs far fewer.
 MAX_SECANTS = 200
 
 
@@ -25,9 +24,11 @@ def roots_between(
 ) -> np.ndarray:
     """Return the roots of many functions, each between a lower and an upper bound.
 
-    It is Chandrupatla's method, which is similar to Brent's but has only one decision for each
-    step: inverse quadratic interpolation or bisection. at_lower and at_upper are the values at the
-    bounds, and xtol is the error of a root.
+    at_lower and at_upper are the values of the functions at the bounds, which have different signs.
+    xtol is the error of a root.
+
+    This is Chandrupatla's method. Like Brent's method it shrinks a bracket around each root, by
+    interpolation or by bisection.
     """
     if np.any(at_lower * at_upper > 0.0):
         raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
@@ -37,32 +38,34 @@ def roots_between(
     x2, f2 = upper, at_upper
     best = np.array(upper)
     # Numbers of the functions whose roots have not been found yet.
-    alive = np.arange(upper.size)
+    unsolved = np.arange(upper.size)
     # The next point lies at this fraction of the way from x1 to x2.
     fraction = at_lower / (at_lower - at_upper)
-    while alive.size:
+    while unsolved.size:
         x = x1 + fraction * (x2 - x1)
-        f = function(x, alive)
-        keeps_sign = (f > 0.0) == (f1 > 0.0)
-        x3, x2 = np.where(keeps_sign, (x1, x2), (x2, x1))
-        f3, f2 = np.where(keeps_sign, (f1, f2), (f2, f1))
-        best[alive] = np.where(np.abs(f2) < np.abs(f), x2, x)
+        f = function(x, unsolved)
+        # The new point replaces the end of the bracket where the value has the same sign.
+        replaces_x1 = (f > 0.0) == (f1 > 0.0)
+        x3, x2 = np.where(replaces_x1, (x1, x2), (x2, x1))
+        f3, f2 = np.where(replaces_x1, (f1, f2), (f2, f1))
+        best[unsolved] = np.where(np.abs(f2) < np.abs(f), x2, x)
         # The tolerance is at least the spacing of floating-point numbers.
         tolerance = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x))
         min_fraction = tolerance / np.abs(x2 - x)
-        going = (min_fraction < 0.5) & (f != 0.0)
-        alive = alive[going]
-        x1, x2, x3 = np.array([x, x2, x3])[:, going]
-        f1, f2, f3 = np.array([f, f2, f3])[:, going]
-        # The parabola x(f) through the three points is monotonic between x1 and x2, and so stays in
-        # the bracket, under these two conditions. Otherwise the next point is the middle.
+        goes_on = (min_fraction < 0.5) & (f != 0.0)
+        unsolved = unsolved[goes_on]
+        x1, x2, x3 = np.array([x, x2, x3])[:, goes_on]
+        f1, f2, f3 = np.array([f, f2, f3])[:, goes_on]
+        # The root is estimated by a parabola x(f) through the three points. Under these two
+        # conditions the parabola is monotonic between x1 and x2, so that the estimate is in the
+        # bracket. Otherwise the next point is the middle of the bracket.
         xi = (x1 - x2) / (x3 - x2)
         phi = (f1 - f2) / (f3 - f2)
-        stays_inside = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        is_monotonic = (phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
         term_of_x2 = f1 / (f2 - f1) * f3 / (f2 - f3)
         term_of_x3 = (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
-        fraction = np.where(stays_inside, term_of_x2 + term_of_x3, 0.5)
-        fraction = np.clip(fraction, min_fraction[going], 1.0 - min_fraction[going])
+        fraction = np.where(is_monotonic, term_of_x2 + term_of_x3, 0.5)
+        fraction = np.clip(fraction, min_fraction[goes_on], 1.0 - min_fraction[goes_on])
     return best
 
 
@@ -71,37 +74,39 @@ def increasing_roots(
 ) -> np.ndarray:
     """Return the roots of many increasing functions that are nearly linear.
 
-    lower and upper bracket each root, and guess is where its search starts. Each step is that of a
-    secant, or leads to the middle of the bracket if the secant leaves it.
+    Each root lies in the bracket from lower to upper, and its search starts at guess. A secant
+    through the last two points gives the next one. If the secant leaves the bracket, the next point
+    is the middle of the bracket.
     """
     low, high = np.array(lower), np.array(upper)
     # Numbers of the functions whose roots have not been found yet.
-    alive = np.arange(guess.size)
+    unsolved = np.arange(guess.size)
     x_before = np.array(guess)
-    value_before = function(x_before, alive)
+    value_before = function(x_before, unsolved)
     # The first step assumes a slope of 1, and is at most 2 long.
     x = np.clip(x_before - np.clip(value_before, -2.0, 2.0), low, high)
     for _ in range(MAX_SECANTS):
-        value = function(x[alive], alive)
-        high[alive] = np.where(value > 0.0, np.minimum(high[alive], x[alive]), high[alive])
-        low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
-        change = value - value_before[alive]
+        x_now = x[unsolved]
+        value = function(x_now, unsolved)
+        # The point becomes the end of the bracket on its side of the root.
+        high[unsolved] = np.where(value > 0.0, np.minimum(high[unsolved], x_now), high[unsolved])
+        low[unsolved] = np.where(value < 0.0, np.maximum(low[unsolved], x_now), low[unsolved])
+        change = value - value_before[unsolved]
         is_flat = change == 0.0
-        last_step = x[alive] - x_before[alive]
+        last_step = x_now - x_before[unsolved]
         step = np.where(is_flat, 0.0, -value * last_step / np.where(is_flat, 1.0, change))
-        x_next = x[alive] + step
-        is_outside = (x_next <= low[alive]) | (x_next >= high[alive])
-        # The error of a secant step is the product of the last two steps, up to a factor of order
-        # 1.
+        x_next = x_now + step
+        is_outside = (x_next <= low[unsolved]) | (x_next >= high[unsolved])
+        # The error of a secant step is about the product of the last two steps.
         error = np.abs(step) * np.minimum(np.abs(last_step), 1.0)
-        is_tiny = error <= 1e-15 * (1.0 + np.abs(x[alive]))
-        middle = 0.5 * (low[alive] + high[alive])
-        x_before[alive] = x[alive]
-        value_before[alive] = value
-        x[alive] = np.where(is_outside & ~is_tiny, middle, x_next)
-        is_narrow = high[alive] - low[alive] <= 1e-13 * (1.0 + np.abs(x[alive]))
+        is_tiny = error <= 1e-15 * (1.0 + np.abs(x_now))
+        middle = 0.5 * (low[unsolved] + high[unsolved])
+        x_before[unsolved] = x_now
+        value_before[unsolved] = value
+        x[unsolved] = np.where(is_outside & ~is_tiny, middle, x_next)
+        is_narrow = high[unsolved] - low[unsolved] <= 1e-13 * (1.0 + np.abs(x[unsolved]))
         is_root = value == 0.0
-        alive = alive[~(is_tiny | is_narrow | is_root)]
-        if alive.size == 0:
+        unsolved = unsolved[~(is_tiny | is_narrow | is_root)]
+        if unsolved.size == 0:
             return x
-    raise ArithmeticError(f"no root of an increasing function was found near {x[alive[0]]!r}")
+    raise ArithmeticError(f"no root of an increasing function was found near {x[unsolved[0]]!r}")

@@ -1,29 +1,29 @@
 """The Wiener-Hopf factor of a front on the lattice, with leaf springs and damping.
 
-In the frame of a front at speed v, the equation of motion holds with unknown slip behind the front
-and unknown stress ahead of it. Its Fourier transform is one equation for both unknowns. The method
-of Wiener and Hopf solves it by writing the symbol M(k) of the equation as a product of two factors,
-one without zeros and poles in the upper and one in the lower half plane of k. (See Slepyan, Models
-and Phenomena in Fracture Mechanics, for fronts on lattices.) The factor at k = 0 gives the
-pre-stress of the front.
+In the frame of a front of speed v, the equation of motion has two unknowns: the slip behind the
+front, and the stress ahead of it. Its Fourier transform is one equation for both. The method of
+Wiener and Hopf solves it by splitting the symbol M(k) of the equation into two factors. One has
+neither zeros nor poles in the upper half plane of k, and the other one has none in the lower half
+plane. (See Slepyan, Models and Phenomena in Fracture Mechanics, for fronts on lattices.) The value
+of the first factor at k = 0 gives the pre-stress of the front.
 
-In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the
-symbol is the following M(k). The functions below call v - 1 the excess, b the ratio, g the springs
-and a the drag.
+The unit of length is the block spacing. Let w = v k and S(k) = 4 sin^2(k/2). b = beta/dx is the
+damping ratio. Leaf springs enter by g = gamma dx^2 (`gamma_dx2` in the functions below), and drag
+by a = alpha dx (`alpha_dx`). The symbol is
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
-where M_+ is analytic and without zeros for Im k > 0. The symbol is an exact product of an algebraic
+where M_+ is analytic and without zeros for Im k > 0. It is an exact product of an algebraic
 function and two factors that decay on opposite sides of the real axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
     r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w).
 
-An integration contour C passes below the branch points of r and q, and below the waves that are
-radiated behind the front. (At a = 0 the branch points of q are w = +-sqrt(g). The waves lie above C
-by causality, since damping moves them up. For a < 0 waves grow behind the front, and C leaves 0
-more steeply, below them.) Then every factor except 1 - rho e^{ik} is analytic and without zeros
-below C. Closing C downwards leaves
+An integration contour C passes below the branch points of r and q, and below the zeros of M that
+belong to waves radiated behind the front. (At a = 0 the branch points of q are w = +-sqrt(g). By
+causality C passes below the waves, since damping moves them up. For a < 0 waves grow behind the
+front, and C leaves 0 more steeply.) Then every factor except 1 - rho e^{ik} is analytic and without
+zeros below C. Closing C downwards leaves
 
     ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
 
@@ -67,8 +67,8 @@ SERIES_LIMIT = 0.5
 ARTANH_SERIES_LIMIT = 0.1
 
 
-class Nodes(NamedTuple):
-    """Quadrature on the right half of the contour: z, dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+class Contour(NamedTuple):
+    """The right half of the contour: nodes z, weights dz, e^{iz} - 1, and e^{iz} - 1 - i z."""
 
     z: np.ndarray
     weight: np.ndarray
@@ -77,218 +77,264 @@ class Nodes(NamedTuple):
 
 
 class Roots(NamedTuple):
-    """The functions q and r of the module docstring at some nodes."""
+    """The functions q and r of the module docstring at the nodes, [front, node]."""
 
     q: np.ndarray
     r: np.ndarray
 
 
 def log_prestress(
-    excess: np.ndarray,
-    ratio: np.ndarray,
-    springs: float = 0.0,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float = 0.0,
     release: str = "total",
-    drag: float = 0.0,
+    alpha_dx: float = 0.0,
 ) -> np.ndarray:
-    """Return ln tau_0 of steady fronts at speeds v = 1 + excess.
+    """Return ln tau_0 of steady fronts of speeds v.
 
-    excess and ratio (beta/dx) have one dimension. excess is > 0, or >= 0 with leaf springs (springs
-    = g = gamma dx^2), and v >= sqrt(4 + g)/pi. drag is a = alpha dx, which requires springs and is
-    above -2 sqrt(g (1 - 1/v^2)). The release rule is "total", M_+(0) = tau_0, or "elastic",
-    M_+(0)/M_+(i/(b v)) = tau_0. Both hold with leaf springs as without: a block ahead of the front
-    has not slipped, so that its leaf spring is relaxed.
+    The arrays excess_speed, v - 1, and damping_ratio, b = beta/dx, have one element for each front.
+    gamma_dx2 is g = gamma dx^2 (leaf springs), and alpha_dx is alpha dx (drag). Speeds are above 1,
+    or at least 1 with leaf springs, and at least sqrt(4 + g)/pi. Drag requires leaf springs, and is
+    above -2 sqrt(g (1 - 1/v^2)).
+
+    Under the release rule "total" the pre-stress is tau_0 = M_+(0), and under "elastic" it is
+    M_+(0)/M_+(i/(b v)), where M_+ is the Wiener-Hopf factor of the front. Both hold with leaf
+    springs as without: a block ahead of the front has not slipped, so that its leaf spring is
+    relaxed.
     """
-    contour, angle = _choose_contour(excess, ratio=ratio, springs=springs, drag=drag)
+    contour, angle = _choose_contour(
+        excess_speed, damping_ratio=damping_ratio, gamma_dx2=gamma_dx2, alpha_dx=alpha_dx
+    )
     log_values = log_factor(
-        contour, excess=excess[:, None], ratio=ratio[:, None], springs=springs, drag=drag
+        contour,
+        excess_speed=excess_speed[:, None],
+        damping_ratio=damping_ratio[:, None],
+        gamma_dx2=gamma_dx2,
+        alpha_dx=alpha_dx,
     )
     # ln M_+(0): the two halves of the contour contribute complex conjugate integrals.
     log_tau = (log_values @ (contour.weight / contour.z)).imag / np.pi
-    if springs > 0.0:
-        # The factor 1 - rho at z = 0, where q = sqrt(g)/2 and r = sqrt(1 + g/4).
-        q_at_0 = 0.5 * np.sqrt(springs)
+    if gamma_dx2 > 0.0:
+        # The integrand has a pole at z = 0, where the two halves of the contour meet at an angle.
+        # So the pole contributes a fraction of its residue, the logarithm of 1 - rho at 0. There
+        # q = sqrt(g)/2 and r = sqrt(1 + g/4).
+        q_at_0 = 0.5 * np.sqrt(gamma_dx2)
         log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
-        # The contour leaves 0 at an angle, so that the value at 0 contributes the rest of half a
-        # residue.
         log_tau = (0.5 - angle / np.pi) * log_at_0 + log_tau
     else:
-        # The closed form at b = 1, whose ratio to the factor has been integrated.
-        log_tau += np.log(excess / (1.0 + excess))
-    if release == "elastic" and np.any(ratio > 0.0):
-        # ln M_+ at k = i y, with y = 1/(b v). For b = 0 it is 0, so that both rules are the same.
-        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
-        distance = contour.z - 1j * y[:, None]
-        log_at_iy = np.sum(log_values * (contour.weight / distance), axis=1).imag / np.pi
-        if springs == 0.0:
-            # The closed form at b = 1 is 1 - (1 - e^{-y})/(v y) there.
-            numerator = excess * y + _exp_minus_two_terms(-y).real
-            log_at_iy += np.log(numerator / ((1.0 + excess) * y))
-        log_tau -= np.where(ratio > 0.0, log_at_iy, 0.0)
+        # `log_factor` is then relative to b = 1, where M_+(0) = 1 - 1/v.
+        log_tau += np.log(excess_speed / (1.0 + excess_speed))
+    if release == "elastic" and np.any(damping_ratio > 0.0):
+        log_at_iy = _log_factor_at_iy(
+            contour,
+            log_values=log_values,
+            excess_speed=excess_speed,
+            damping_ratio=damping_ratio,
+            gamma_dx2=gamma_dx2,
+        )
+        # Without damping ln M_+(i/(b v)) is 0, so that both rules are the same.
+        log_tau -= np.where(damping_ratio > 0.0, log_at_iy, 0.0)
     return log_tau
 
 
+def _log_factor_at_iy(
+    contour: Contour,
+    log_values: np.ndarray,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float,
+) -> np.ndarray:
+    """Return ln M_+ of each front at k = i y, with y = 1/(b v).
+
+    log_values is the result of `log_factor`; the other arguments are those of `log_prestress`.
+    """
+    y = 1.0 / np.maximum(damping_ratio * (1.0 + excess_speed), 1e-300)
+    z_minus_iy = contour.z - 1j * y[:, None]
+    log_at_iy = np.sum(log_values * (contour.weight / z_minus_iy), axis=1).imag / np.pi
+    if gamma_dx2 == 0.0:
+        # `log_factor` is then relative to b = 1, where M_+(i y) = 1 - (1 - e^{-y})/(v y).
+        numerator = excess_speed * y + _exp_minus_two_terms(-y).real
+        log_at_iy += np.log(numerator / ((1.0 + excess_speed) * y))
+    return log_at_iy
+
+
 def _choose_contour(
-    excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
-) -> tuple[Nodes, float]:
+    excess_speed: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_dx: float
+) -> tuple[Contour, float]:
     """Return a contour that serves all fronts, and the angle of its ray below the real axis.
 
-    Its panels begin at half of the smallest distance at which a zero or a branch point of M can lie
-    from 0. From there to CONTOUR_REACH they have equal lengths in ln |z|.
+    Its panels begin at half of the smallest distance from 0 at which a zero or a branch point of
+    the symbol can lie. From there to CONTOUR_REACH they have equal lengths in ln |z|.
     """
-    # At a zero or branch point |w| is at least this divided by 1 + b. The limits are the branch
-    # points of q (with leaf springs) or the zero of M next to 0 (without), and those of r.
-    smallest_w = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
-    if drag:
-        smallest_w = min(smallest_w, springs / abs(drag))
-    # As w = v z, this is the smallest |z|.
-    smallest_z = np.min(smallest_w / ((1.0 + ratio) * (1.0 + excess)))
-    panels = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
-    angle = _contour_angle(excess, springs, drag)
-    return nodes(panels, angle), angle
+    # (1 + b) |w| is at least 1 at the branch points of r. With leaf springs the branch points of q
+    # may be nearer to 0, and without leaf springs a zero of the symbol.
+    nearest_to_0 = np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed
+    smallest_w = np.minimum(nearest_to_0, 1.0)
+    if alpha_dx:
+        smallest_w = min(smallest_w, gamma_dx2 / abs(alpha_dx))
+    # On the contour w is v z.
+    smallest_z = np.min(smallest_w / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
+    panel_count = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
+    angle = _contour_angle(excess_speed, gamma_dx2, alpha_dx)
+    return make_contour(panel_count, angle), angle
 
 
-def _contour_angle(excess: np.ndarray, springs: float, drag: float) -> float:
+def _contour_angle(excess_speed: np.ndarray, gamma_dx2: float, alpha_dx: float) -> float:
     """Return the angle below the real axis at which the contour leaves 0.
 
-    If waves grow behind the front (drag < 0), the contour must pass below them. It then leaves 0
-    halfway between the waves of the slowest front and the imaginary axis, if that is steeper than
-    CONTOUR_ANGLE.
+    If alpha_dx < 0, friction falls with slip velocity, and waves grow behind the front. The contour
+    must then pass below the zeros of the symbol that belong to these waves. It leaves 0 halfway
+    between the zeros of the slowest front and the imaginary axis, but at least at CONTOUR_ANGLE.
     """
-    if drag >= 0.0:
+    if alpha_dx >= 0.0:
         return CONTOUR_ANGLE
-    slowest = float(np.min(excess))
-    # The sine of the angle between the real axis and the growing waves, with v^2 - 1 written in
-    # terms of v - 1.
-    sine = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+    slowest = float(np.min(excess_speed))
+    # The sine of the angle of these zeros below the real axis, -a v/(2 sqrt(g (v^2 - 1))), where
+    # v^2 - 1 is written in terms of v - 1.
+    sine = -0.5 * alpha_dx * (1.0 + slowest) / np.sqrt(gamma_dx2 * slowest * (2.0 + slowest))
     halfway = 0.5 * (np.arcsin(min(sine, 1.0)) + 0.5 * np.pi)
     return max(CONTOUR_ANGLE, halfway)
 
 
 def log_factor(
-    contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+    contour: Contour,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float,
+    alpha_dx: float,
 ) -> np.ndarray:
-    """Return ln(1 - rho e^{iz}) at the nodes, [front, node]; for g = 0 less its value at b = 1.
+    """Return the logarithm of the factor 1 - rho e^{iz} at the nodes, [front, node].
 
-    excess and ratio are columns.
+    Without leaf springs it is the difference from the logarithm at the damping ratio b = 1, where
+    the factor has a closed form. excess_speed, v - 1, and damping_ratio are columns with one row
+    for each front. The symbols z, q, r, w, rho and b are those of the module docstring.
     """
     z = contour.z
-    iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio=ratio, springs=springs, drag=drag)
-    # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where rho = (r^2 - q^2)/(r + q)^2 and
-    # r^2 - q^2 = 1 + i b w.
+    iw = 1j * z * (1.0 + excess_speed)
+    q, r = q_and_r(iw, damping_ratio=damping_ratio, gamma_dx2=gamma_dx2, alpha_dx=alpha_dx)
+    # 1 - rho e^{iz} = (1 - rho) - rho (e^{iz} - 1), where 1 - rho = 2 q/(r + q) and
+    # rho = (1 + i b w)/(r + q)^2.
     r_plus_q = r + q
-    rho = (1.0 + ratio * iw) / r_plus_q**2
+    rho = (1.0 + damping_ratio * iw) / r_plus_q**2
     factor = 2.0 * q / r_plus_q - rho * contour.exp_minus_1
-    # Near 0 the two terms cancel as v -> 1.
+    # Near z = 0 the two terms cancel as v -> 1. There 1 - e^{i z + ln rho} is computed instead.
     quotient = q / r
-    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess < 1.0)
+    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess_speed < 1.0)
     if np.any(is_close):
-        # Only the first nodes, up to the last one that is close for some front, are computed again.
+        # The nodes up to the last one that is close to 0 for some front.
         last = int(np.flatnonzero(is_close.any(axis=0))[-1]) + 1
         first_nodes = np.s_[:, :last]
         exponent = _exponent_near_zero(
             z[:last],
             iw=iw[first_nodes],
-            q_and_r=Roots(q[first_nodes], r[first_nodes]),
+            roots=Roots(q[first_nodes], r[first_nodes]),
             is_close=is_close[first_nodes],
-            excess=excess,
-            ratio=ratio,
-            springs=springs,
-            drag=drag,
+            excess_speed=excess_speed,
+            damping_ratio=damping_ratio,
+            gamma_dx2=gamma_dx2,
+            alpha_dx=alpha_dx,
         )
         factor[first_nodes] = np.where(
             is_close[first_nodes], -np.expm1(exponent), factor[first_nodes]
         )
-    if springs > 0.0:
-        return log(factor)
-    # The factor at b = 1, i z (v - 1) - (e^{iz} - 1 - i z), divided by 1 + i w.
-    reference = (1j * excess * z - contour.exp_minus_2_terms) / (1.0 + iw)
-    return log(factor / reference)
+    if gamma_dx2 > 0.0:
+        return fast_log(factor)
+    # At b = 1 the factor is [i z (v - 1) - (e^{iz} - 1 - i z)]/(1 + i w).
+    factor_at_b_1 = (1j * excess_speed * z - contour.exp_minus_2_terms) / (1.0 + iw)
+    return fast_log(factor / factor_at_b_1)
 
 
 def _exponent_near_zero(
     z: np.ndarray,
     iw: np.ndarray,
-    q_and_r: Roots,
+    roots: Roots,
     is_close: np.ndarray,
-    excess: np.ndarray,
-    ratio: np.ndarray,
-    springs: float,
-    drag: float,
+    excess_speed: np.ndarray,
+    damping_ratio: np.ndarray,
+    gamma_dx2: float,
+    alpha_dx: float,
 ) -> np.ndarray:
-    """Return i z + ln rho near z = 0, computed without cancellation; 0 where it is not close.
+    """Return i z + ln rho at nodes z near 0, computed without cancellation, and 0 at other nodes.
 
-    With h = q/r, ln rho is -2 artanh h, so that the exponent is i z - 2 h - 2 (artanh h - h). The
-    first two terms are i times a small lag: with z = w/v and -2 i q = W = sqrt(w^2 - g - i a w),
+    is_close is True at the nodes near 0. With h = q/r, ln rho is -2 artanh h, so that the exponent
+    is (i z - 2 h) - 2 (artanh h - h). The first bracket is i times a small lag. With w = v z and
+    W = sqrt(w^2 - g - i a w), which is -2 i q, this is
 
-        lag = -(v - 1) z + (w - W) + W (r - 1)/r.
+        lag = (z - w) + (w - W) + W (r - 1)/r.
     """
-    q, r = q_and_r
-    wave = -2j * q
-    r_minus_1 = (ratio * iw - 0.25 * wave**2) / (r + 1.0)
-    lag = -excess * z + wave * r_minus_1 / r
-    if springs > 0.0:
-        w_minus_wave = (springs + drag * iw) / (-1j * iw + wave)
-        lag = lag + w_minus_wave
+    q, r = roots
+    # W and its difference from w.
+    w_reduced = -2j * q
+    r_minus_1 = (damping_ratio * iw - 0.25 * w_reduced**2) / (r + 1.0)
+    lag = -excess_speed * z + w_reduced * r_minus_1 / r
+    if gamma_dx2 > 0.0:
+        w_minus_w_reduced = (gamma_dx2 + alpha_dx * iw) / (-1j * iw + w_reduced)
+        lag = lag + w_minus_w_reduced
     h = np.where(is_close, q / r, 0.0)
     square, is_large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
-    artanh_minus_h = h * square * _ARTANH(square)
+    artanh_minus_h = h * square * _ARTANH_SERIES(square)
     artanh_minus_h[is_large] = np.arctanh(h[is_large]) - h[is_large]
     return np.where(is_close, 1j * lag - 2.0 * artanh_minus_h, 0.0)
 
 
-def log(z: np.ndarray) -> np.ndarray:
+def fast_log(z: np.ndarray) -> np.ndarray:
     """Return the logarithm of complex numbers, in a fifth of the time of `np.log`."""
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
-def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> Roots:
-    """Return q and r (see the module docstring).
+def q_and_r(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_dx: float) -> Roots:
+    """Return the square roots q and r of the module docstring at given values of i w.
 
-    Both are square roots of quadratic polynomials in i w, and are computed as products of the
-    square roots of their linear factors, so that their branch cuts run straight up from the branch
-    points. With c = b + a/4, 4 r^2 = (i w)^2 + 4 c i w + 4 + g = (i w + c_1)(i w + c_2), where
-    c_1 and c_2 are 2 c +- sqrt(4 c^2 - 4 - g).
+    4 q^2 and 4 r^2 are quadratic polynomials in i w. Each square root is computed as the product of
+    the square roots of two linear factors. Its branch cuts then run straight up from the branch
+    points in the plane of w. For r the factors are
+
+        4 r^2 = (i w)^2 + 4 c i w + 4 + g = (i w + c_1)(i w + c_2),   c = b + a/4.
     """
-    product = 4.0 + springs
-    half_sum = 2.0 * (ratio + 0.25 * drag)
-    discriminant = 4.0 * (ratio + 0.25 * drag) ** 2 - product
+    product_of_c = 4.0 + gamma_dx2
+    mean_of_c = 2.0 * (damping_ratio + 0.25 * alpha_dx)
+    # c_1 and c_2 are 2 c +- sqrt(4 c^2 - 4 - g).
+    discriminant = 4.0 * (damping_ratio + 0.25 * alpha_dx) ** 2 - product_of_c
     are_real = discriminant >= 0.0
     root = np.sqrt(np.abs(discriminant))
-    c_1 = half_sum + np.where(are_real, root, 1j * root)
-    # The smaller real one follows from the product, without cancellation.
-    c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
+    c_1 = mean_of_c + np.where(are_real, root, 1j * root)
+    # If both are real, the smaller one follows from the product without cancellation.
+    c_2 = np.where(are_real, product_of_c / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
-    if springs == 0.0:
+    if gamma_dx2 == 0.0:
         return Roots(0.5 * iw, r)
     # Likewise 4 q^2 = (i w)^2 + a i w + g.
-    root_of_q = np.sqrt(complex(0.25 * drag**2 - springs))
-    q = 0.5 * np.sqrt(iw + 0.5 * drag - root_of_q) * np.sqrt(iw + 0.5 * drag + root_of_q)
+    root_of_q = np.sqrt(complex(0.25 * alpha_dx**2 - gamma_dx2))
+    q = 0.5 * np.sqrt(iw + 0.5 * alpha_dx - root_of_q) * np.sqrt(iw + 0.5 * alpha_dx + root_of_q)
     return Roots(q, r)
 
 
 @lru_cache(maxsize=32)
-def nodes(panels: int, angle: float) -> Nodes:
-    """Return the nodes on the contour: one panel next to 0, the panels of the ray, and the leg.
+def make_contour(panel_count: int, angle: float) -> Contour:
+    """Return the right half of the contour: its ray and its leg.
 
-    panels is the number of panels of the ray, which are of equal length in ln |z|, and angle is the
-    angle of the ray below the real axis.
+    The ray leaves 0 at an angle below the real axis. It has one panel next to 0, and then
+    panel_count panels of equal length in ln |z|. The leg rises from the end of the ray, the corner.
     """
-    log_edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panels, -1.0, -1.0)
-    log_size, log_weight = _panels(log_edges)
-    inner, inner_weight = _panels(np.array([0.0, np.exp(log_edges[0])]))
-    leg, leg_weight = _panels(LEG_EDGES)
-    ray_direction, size = np.exp(-1j * angle), np.exp(log_size)
+    log_edges = np.log(CONTOUR_REACH) - LOG_PANEL_LENGTH * np.arange(panel_count, -1.0, -1.0)
+    log_distance, log_weight = _gauss_legendre(log_edges)
+    # On these panels dz = z d(ln z).
+    distance = np.exp(log_distance)
+    next_to_0, weight_next_to_0 = _gauss_legendre(np.array([0.0, np.exp(log_edges[0])]))
+    leg, leg_weight = _gauss_legendre(LEG_EDGES)
+    ray_direction = np.exp(-1j * angle)
     corner = CONTOUR_REACH * ray_direction
-    z = np.concatenate([inner * ray_direction, size * ray_direction, corner + leg * LEG_DIRECTION])
+    z = np.concatenate(
+        [next_to_0 * ray_direction, distance * ray_direction, corner + leg * LEG_DIRECTION]
+    )
     weight = np.concatenate(
         [
-            inner_weight * ray_direction,
-            size * ray_direction * log_weight,
+            weight_next_to_0 * ray_direction,
+            distance * ray_direction * log_weight,
             leg_weight * LEG_DIRECTION,
         ]
     )
-    return Nodes(
+    return Contour(
         z=z,
         weight=weight,
         exp_minus_1=np.expm1(1j * z),
@@ -296,19 +342,22 @@ def nodes(panels: int, angle: float) -> Nodes:
     )
 
 
-def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return nodes and weights on panels between edges."""
+def _gauss_legendre(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the Gauss-Legendre nodes and weights of all panels between some edges."""
     half = 0.5 * np.diff(edges)[:, None]
-    return (edges[:-1, None] + half * (1.0 + NODES)).ravel(), (half * WEIGHTS).ravel()
+    nodes = edges[:-1, None] + half * (1.0 + NODES)
+    return nodes.ravel(), (half * WEIGHTS).ravel()
 
 
-# Series of artanh h - h = h^3 P(h^2) for small h, and of e^x - 1 - x = x^2 P(x) for small x.
-_ARTANH = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
-_EXP = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
+# Polynomials P in the series artanh h - h = h^3 P(h^2) and e^x - 1 - x = x^2 P(x), for small
+# arguments.
+_ARTANH_SERIES = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
+_EXP_SERIES = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
 
 
 def _exp_minus_two_terms(x: np.ndarray) -> np.ndarray:
     """Return e^x - 1 - x, computed without cancellation."""
     x = np.asarray(x, dtype=complex)
-    series = np.where(np.abs(x) < SERIES_LIMIT, x, 0.0)
-    return np.where(np.abs(x) < SERIES_LIMIT, series**2 * _EXP(series), np.expm1(x) - x)
+    is_small = np.abs(x) < SERIES_LIMIT
+    small_x = np.where(is_small, x, 0.0)
+    return np.where(is_small, small_x**2 * _EXP_SERIES(small_x), np.expm1(x) - x)

@@ -141,10 +141,13 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     """
     scenes, samples = expand(promised(corners(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
-    most_updates = max(bound.block_updates for bound in bounds)
-    most_bytes = max(bound.bytes for bound in bounds)
     runs = run_count(simulation) / chunks
-    return Bound(runs, runs * most_updates, runs * most_bytes)
+    return Bound(
+        runs=runs,
+        block_updates=runs * max(bound.block_updates for bound in bounds),
+        data_bytes=runs * max(bound.data_bytes for bound in bounds),
+        solver_bytes=max(bound.solver_bytes for bound in bounds),
+    )
 
 
 def cost_problems(config: Configuration, altered: Alterations) -> list[str]:

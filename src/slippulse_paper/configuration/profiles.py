@@ -1,15 +1,15 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file, whose points are read into the configuration, or a rough background with
-several seeds, which is expanded into one profile for each seed. Each expanded profile is then a
-`Prestress`.
+A profile may name a file, whose points are read into the configuration, or have a rough background
+with lists of parameters, which is expanded into one profile for each combination. Each expanded
+profile is then a `Prestress`.
 """
 
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from itertools import chain
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +24,8 @@ from .problems import ConfigError
 
 # Keys of a profile that give it a table of pre-stress instead of levels.
 TABLES = frozenset({"points", "file", "rough"})
+# Keys of a rough background that may be lists; the last one may be a range, too.
+ROUGH_LISTS = ("level", "deviation", "correlation_length", "hurst", "seed")
 
 
 def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, Any]:
@@ -90,20 +92,52 @@ def _with_changed_list(simulation: Any, key: str, change: Callable[[Any, str], A
     return {**simulation, "profiles": profiles}
 
 
-def expanded(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return the profiles of runs: one for each seed, with points and without the file name."""
-    return [*chain.from_iterable(map(_profiles_of_seeds, profiles))]
+def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return profiles without the names of the files from which their points were read."""
+    return [{key: profile[key] for key in profile if key != "file"} for profile in profiles]
 
 
-def _profiles_of_seeds(profile: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield one profile for each seed, or the profile itself if it has no seeds."""
-    plain = {key: value for key, value in profile.items() if key != "file"}
-    if "rough" not in plain:
-        yield plain
-        return
-    seeds = plain["rough"]["seed"]
-    for seed in seeds if isinstance(seeds, list) else [seeds]:
-        yield {**plain, "rough": {**plain["rough"], "seed": seed}}
+def rough_lists(background: Mapping[str, Any]) -> dict[str, Sequence]:
+    """Return the values of each key of a rough background that may be a list."""
+    return {name: _values_of(background[name]) for name in ROUGH_LISTS}
+
+
+def _values_of(given: Any) -> Sequence:
+    """Return the values of a key: all whole numbers of a range, or the entries of a list."""
+    if isinstance(given, Mapping):
+        return range(given["from"], given["to"] + 1)
+    return given if isinstance(given, list) else [given]
+
+
+class ExpandedProfiles(Collection[dict[str, Any]]):
+    """The profiles of runs: one for each combination of the lists of a rough background.
+
+    The last list, that of the seeds, varies fastest. The profiles are made when they are needed,
+    because there may be many.
+    """
+
+    def __init__(self, profiles: Sequence[Mapping[str, Any]]) -> None:
+        self._profiles = profiles
+
+    def __len__(self) -> int:
+        return sum(math.prod(map(len, _lists_of(profile))) for profile in self._profiles)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        for profile in self._profiles:
+            for values in product(*_lists_of(profile)):
+                run_profile = dict(profile)
+                if values:
+                    values_by_name = zip(ROUGH_LISTS, values, strict=True)
+                    run_profile["rough"] = {**profile["rough"], **dict(values_by_name)}
+                yield run_profile
+
+    def __contains__(self, profile: object) -> bool:
+        return any(profile == run_profile for run_profile in self)
+
+
+def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
+    """Return the lists of the rough background of a profile; none if it has no such background."""
+    return [*rough_lists(profile["rough"]).values()] if "rough" in profile else []
 
 
 def prestress_of(profile: Mapping[str, Any]) -> Prestress:
@@ -114,7 +148,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 
 
 # The profile of each run is needed several times while the workflow is planned.
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=512)
 def _prestress_of_table(text: str) -> Prestress:
     """Return the pre-stress of a profile with a table, given as JSON, which can be cached."""
     profile = json.loads(text)
@@ -123,7 +157,7 @@ def _prestress_of_table(text: str) -> Prestress:
     return Prestress.through(x, tau, **gaussians)
 
 
-def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
+def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
     """Return the number of each expanded profile, from 1, and its seed (NaN if it has none).
 
     Rough profiles that differ only in the seed have the same number.
@@ -142,15 +176,13 @@ def labels_of(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, float]]:
 
 
 def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the expanded profiles without the seeds between the first and the last of an ensemble.
-
-    A profile without seeds is kept.
-    """
-    numbers = [label["profile"] for label in labels_of(profiles)]
+    """Return profiles without the seeds between the first and the last one."""
     ends = []
-    for index, number in enumerate(numbers):
-        is_first = index == 0 or numbers[index - 1] != number
-        is_last = index == len(numbers) - 1 or numbers[index + 1] != number
-        if is_first or is_last:
-            ends.append(profiles[index])
+    for profile in profiles:
+        background = profile.get("rough")
+        if background is not None:
+            seeds = rough_lists(background)["seed"]
+            end_seeds = [*dict.fromkeys([seeds[0], seeds[-1]])]
+            profile = {**profile, "rough": {**background, "seed": end_seeds}}
+        ends.append(profile)
     return ends

@@ -48,16 +48,19 @@ def _key_text(part: str | int) -> str:
 def problem_line(problem: Mapping, config: Mapping) -> str:
     """Return one error of pydantic about a configuration as a line."""
     kind, path = problem["type"], problem["loc"]
-    if kind == "value_error":
+    entry = _last_known_entry(path, config)
+    # A value of several allowed forms is refused as a whole. Pydantic adds the form to the path.
+    mapping_path = path if kind == "value_error" else path[:-1]
+    has_one_form = len(entry.path) >= len(mapping_path)
+    if kind == "value_error" and has_one_form:
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    if kind == "missing" and isinstance(path[-1], str):
+    if kind == "missing" and isinstance(path[-1], str) and has_one_form:
         return _missing_line(path, config)
     if path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    if kind == "extra_forbidden":
+    if kind == "extra_forbidden" and has_one_form:
         return _unknown_key_line(path, config)
-    entry = _last_known_entry(path, config)
     allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
     return f"{given}; allowed: {allowed}{_remedy(entry.value)}"

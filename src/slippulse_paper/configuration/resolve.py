@@ -17,7 +17,7 @@ from slippulse.model.scene import EXTRA_TERMS
 from slippulse.simulation.accuracy import LARGEST_STEP, TAYLOR_ORDER
 from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 
-from .profiles import ends_of_ensembles, expanded, prestress_of
+from .profiles import ExpandedProfiles, ends_of_ensembles, prestress_of, without_files
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
 # Numbers of times and positions at which a scene is sampled, for its figure and its animation.
@@ -55,7 +55,7 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "rate_strengthening" in given:
         given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
     if "profiles" in given:
-        given["profiles"] = expanded(given["profiles"])
+        given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
     # A fixed beta also fixes the spacing, because another one would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
@@ -133,7 +133,7 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
         (speed,) = _largest_front_speeds(scene, model, np.array([highest]))
         reach = float(speed) * scene.duration
     else:
-        (expanded_profile,) = expanded([profile])
+        (expanded_profile,) = ExpandedProfiles([profile])
         table = prestress_of(expanded_profile)
         # Exact speeds at all points of a table would take seconds. The speed is a convex function
         # of the pre-stress, and so linear interpolation between a few values is an upper bound.

@@ -1,7 +1,7 @@
 """The runs of a resolved simulation: all combinations of the values in its lists."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -11,7 +11,7 @@ from slippulse.model.run import Run
 from slippulse.model.scene import EXTRA_TERMS
 
 from .chunks import runs_of
-from .profiles import TABLES, labels_of, prestress_of
+from .profiles import TABLES, ExpandedProfiles, labels_of, prestress_of
 
 # The value of `right` for which both levels are equal.
 SAME = "same"
@@ -57,7 +57,7 @@ def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
 
 def entries(simulation: Mapping) -> Iterator[Entry]:
     """Yield the values of each run of a resolved simulation, or of one chunk of it."""
-    for values in _combinations(simulation):
+    for values in _combinations(simulation, _axes(simulation)):
         yield Entry(
             release=values["release"],
             prestress=_prestress(values),
@@ -88,13 +88,15 @@ def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
     if not any(TABLES.intersection(profile) for profile in profiles):
         return []
     # With labels in place of the profiles, each combination has the label of its profile.
-    labelled = {**simulation, "profiles": labels_of(profiles)}
-    return [values["profile"] for values in _combinations(labelled)]
+    axes = _axes(simulation) | {"profile": labels_of(ExpandedProfiles(profiles))}
+    return [values["profile"] for values in _combinations(simulation, axes)]
 
 
-def _combinations(simulation: Mapping) -> Iterator[dict[str, Any]]:
-    """Yield the values of each run of a simulation, or of one chunk of it, by name."""
-    axes = _axes(simulation)
+def _combinations(simulation: Mapping, axes: Mapping[str, Collection]) -> Iterator[dict[str, Any]]:
+    """Yield the values of each run of a simulation, or of one chunk of it, by name.
+
+    axes : lists of values by name, from `_axes`
+    """
     chunk = simulation.get("chunk")
     runs_in_chunk = None
     if chunk is not None:
@@ -110,7 +112,7 @@ def run_count(simulation: Mapping) -> int:
     return math.prod(map(len, _axes(simulation).values()))
 
 
-def _axes(simulation: Mapping) -> dict[str, Sequence]:
+def _axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
@@ -131,10 +133,10 @@ def _extra_terms(simulation: Mapping) -> list[dict[str, float]]:
     return [dict(zip(EXTRA_TERMS, values, strict=True)) for values in product(*coefficients)]
 
 
-def _prestress_axes(simulation: Mapping) -> dict[str, Sequence]:
+def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation that give its pre-stress, by name."""
     if "profiles" in simulation:
-        return {"profile": simulation["profiles"]}
+        return {"profile": ExpandedProfiles(simulation["profiles"])}
     right, replacement = simulation["right"], simulation.get("beyond")
     steps: list[tuple] = [()]
     if replacement is not None:

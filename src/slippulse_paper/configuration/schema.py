@@ -23,6 +23,7 @@ from slippulse.model.si_quantities import PROFILE_QUANTITIES
 
 from ..text.markdown import harmless
 from .problems import nearest
+from .profiles import rough_lists
 
 T = TypeVar("T")
 # Names in pydantic of the limits that `check_number` takes.
@@ -89,6 +90,7 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
 Seed = Annotated[int, Field(ge=0)]
+Hurst = Annotated[float, Field(ge=0.0, le=1.0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Boundary = Literal["displacement", "stress"]
@@ -124,7 +126,7 @@ TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
 POINTS = "a list of [x, tau] from left to right, at least two"
 ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop, spacing and seed"
-SEEDS = "a whole number >= 0, or a list of different ones"
+SEEDS = "a whole number >= 0, a list of different ones, or {from: A, to: B} with A < B"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
@@ -144,32 +146,50 @@ KEPT = (
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
 
-class Rough(Block):
-    """Parameters of a rough background, as in `sp.rough`."""
+def check_rising(first: float, last: float) -> None:
+    """Raise ValueError unless the last value of a range is above the first one."""
+    require(last > first, f"to: {last}", f"> from = {first}")
 
-    level: float = key("mean of the pre-stress, below 1 [S]")
-    deviation: NonNegative = key(
+
+class Seeds(Block):
+    from_: Seed = key("first seed", alias="from")
+    to: Seed = key("last seed, larger than the first")
+
+    @model_validator(mode="after")
+    def _check_order(self) -> Self:
+        """Raise ValueError if the last seed is not above the first one."""
+        check_rising(self.from_, self.to)
+        return self
+
+
+class Rough(Block):
+    """Parameters of a rough background, as in `sp.rough`; some may be lists in a simulation."""
+
+    level: float | Distinct[float] = key("mean of the pre-stress, below 1 [S]")
+    deviation: NonNegative | Distinct[NonNegative] = key(
         "standard deviation; values of the pre-stress above 0.95 are set to 0.95 [S]"
     )
-    correlation_length: Positive = key("length beyond which the pre-stress is not correlated [H]")
-    hurst: float = key(
-        "Hurst exponent: 0 gives the roughest profile at short lengths, 1 the smoothest",
-        ge=0.0,
-        le=1.0,
+    correlation_length: Positive | Distinct[Positive] = key(
+        "length beyond which the pre-stress is not correlated [H]"
+    )
+    hurst: Hurst | Distinct[Hurst] = key(
+        "Hurst exponent: 0 gives the roughest profile at short lengths, 1 the smoothest"
     )
     start: float = key("first position; the pre-stress is constant before it [H]")
     stop: float = key("last position; the pre-stress is constant beyond it [H]")
     spacing: Positive = key(
         "distance between the positions at which the random values are drawn [H]"
     )
-    seed: Seed | Distinct[Seed] = key(
-        "seed of the random field; a list of seeds gives one profile for each seed", words=SEEDS
+    seed: Seed | Distinct[Seed] | Seeds = key(
+        "seed of the random field; each seed gives one profile", words=SEEDS
     )
 
     def check(self) -> None:
-        """Raise ValueError if there is no such background."""
-        seed = self.seed if isinstance(self.seed, int) else self.seed[0]
-        rough(**(self.plain() | {"seed": seed}))
+        """Raise ValueError if there is no such background, at any of the levels."""
+        lists = rough_lists(self.plain())
+        first_values = {name: values[0] for name, values in lists.items()}
+        for level in lists["level"]:
+            rough(**(self.plain() | first_values | {"level": level}))
 
 
 class Profile(Block):
@@ -490,6 +510,15 @@ class NamedScene(Profile, PhysicsOfScene):
         return given | {"boundary": BOUNDARY_OF_TOP[top]} if is_known else given
 
     @model_validator(mode="after")
+    def _check_one_background(self) -> Self:
+        """Raise ValueError if a scene has several rough backgrounds, since it is one run."""
+        background = self.rough.plain() if self.rough is not None else {}
+        for name, value in background.items():
+            is_single = not isinstance(value, list | dict)
+            require(is_single, f"rough.{name}: {short_repr(value)}", "one value in a scene")
+        return self
+
+    @model_validator(mode="after")
     def _check_in_model_units(self) -> Self:
         """Raise ValueError if the scene is not allowed, in non-dimensional units too."""
         if self.layer is None:
@@ -540,13 +569,6 @@ class NamedScene(Profile, PhysicsOfScene):
         given["bumps"] = [tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps]
         return self.model_copy(update=given)
 
-    @model_validator(mode="after")
-    def _check_one_seed(self) -> Self:
-        """Raise ValueError if a scene has several seeds, since it is one run."""
-        seed = self.rough.seed if self.rough is not None else 0
-        require(isinstance(seed, int), f"rough.seed: {short_repr(seed)}", "one seed in a scene")
-        return self
-
     def _background_in_model_units(self, layer: Layer) -> dict[str, Any]:
         """Return the steps, points and rough background of a scene in non-dimensional units."""
         given: dict[str, Any] = {
@@ -561,13 +583,14 @@ class NamedScene(Profile, PhysicsOfScene):
             tau = layer.table_from_pascal("points", stress)
             given["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
-            deviation = layer.convert_from_si(self.rough.deviation, "stress_difference")
+            background = self.rough.plain()
+            deviation = layer.convert_from_si(background["deviation"], "stress_difference")
             converted = {
-                "level": layer.level_from_pascal("rough.level", self.rough.level),
+                "level": layer.level_from_pascal("rough.level", background["level"]),
                 "deviation": deviation,
             }
             for name in ("correlation_length", "start", "stop", "spacing"):
-                converted[name] = layer.convert_from_si(getattr(self.rough, name), "length")
+                converted[name] = layer.convert_from_si(background[name], "length")
             given["rough"] = self.rough.model_copy(update=converted)
         return given
 
@@ -647,7 +670,7 @@ class Steps(Block):
     @model_validator(mode="after")
     def _check_order(self) -> Self:
         """Raise ValueError if the last value is not above the first one."""
-        require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
+        check_rising(self.from_, self.to)
         return self
 
 

@@ -1,5 +1,6 @@
-"""Figure 1: the layer on a rigid substrate with both boundary conditions, and the strip over
-which the model integrates.
+"""Figure 1: the layer on a rigid substrate, under both boundary conditions.
+
+The sketch also shows a vertical strip of the layer, over which the model integrates.
 """
 
 import numpy as np
@@ -21,19 +22,22 @@ TITLES = {
 # Length of the layer, depth of the rigid parts and largest displacement, in layer thicknesses.
 LAYER_LENGTH, RIGID_DEPTH = 3.5, 0.2
 MAX_DISPLACEMENT = 0.5
-# Position of the strip, and of zero displacement.
+# Horizontal positions of the strip and of zero displacement, in layer thicknesses.
 STRIP_CENTRE, ZERO_DISPLACEMENT = 1.68, 2.38
 RED = "#c00000"
 HATCHED_LOOK: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the displacement as a function of height, and the strip width.
+    """Return the displacement u_x as a function of the height y, and the width of the strip.
 
-    Section II and appendix A of the paper derive both.
+    The heights are in layer thicknesses: 0 at the bottom of the layer and 1 at its top.
+
+    Source: section II and appendix A of the paper.
     """
-    # Under an imposed stress, the mean over the height stands for the slip. With the top held
-    # the displacement falls linearly to 0, so that its mean is half of the slip.
+    # If the stress is imposed, the model has only the mean displacement over the height, which is
+    # drawn at all heights. If the top is held, the displacement falls linearly from the slip at the
+    # bottom to 0 at the top.
     panels = ["stress", "stress", "displacement", "displacement"]
     displacement = [MAX_DISPLACEMENT, MAX_DISPLACEMENT, MAX_DISPLACEMENT, 0.0]
     rows = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": displacement})
@@ -43,12 +47,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each boundary condition: layer, substrate, strip, friction and axes."""
     figure, panels = new_panels(COLUMN_WIDTH, 3.4, "a;b")
-    look: Look = {"color": BLUE, "linewidth": 0.8, "linestyle": ":"}
+    zero_line: Look = {"color": BLUE, "linewidth": 0.8, "linestyle": ":"}
     for axes, panel in zip(panels, TITLES, strict=True):
         _draw_layer(axes, table["strip_width"].iloc[0])
         _draw_top(axes, panel)
         rows = table[table["panel"] == panel]
-        axes.plot([ZERO_DISPLACEMENT] * 2, [0.0, 1.0], **look)
+        axes.plot([ZERO_DISPLACEMENT] * 2, [0.0, 1.0], **zero_line)
         x = ZERO_DISPLACEMENT + rows["displacement"]
         axes.plot(x, rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
         axes.set_title(TITLES[panel], loc="center")
@@ -57,17 +61,18 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _draw_layer(axes: Axes, strip: float) -> None:
-    """Draw the layer on its substrate, a strip of the given width, and the friction at the bottom.
+def _draw_layer(axes: Axes, strip_width: float) -> None:
+    """Draw the layer on its substrate, the strip, and the friction at the bottom of the layer.
 
     Positions are in layer thicknesses, with y = 0 at the bottom of the layer.
     """
     middle = 0.5 * LAYER_LENGTH
-    layer: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
-    cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
+    layer_look: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    strip_look: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
     axes.add_patch(Rectangle((0.0, -RIGID_DEPTH), LAYER_LENGTH, RIGID_DEPTH, **HATCHED_LOOK))
-    axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **layer))
-    axes.add_patch(Rectangle((STRIP_CENTRE - 0.5 * strip, 0.0), strip, 1.0, **cut))
+    axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **layer_look))
+    strip_begin = STRIP_CENTRE - 0.5 * strip_width
+    axes.add_patch(Rectangle((strip_begin, 0.0), strip_width, 1.0, **strip_look))
     label(axes, STRIP_CENTRE, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
     white = {"facecolor": "white", "edgecolor": "none", "pad": 0.3}
@@ -80,7 +85,7 @@ def _draw_layer(axes: Axes, strip: float) -> None:
 
 
 def _draw_height_and_axes(axes: Axes) -> None:
-    """Draw the height of the layer on its right, and the axes of x and y on its left."""
+    """Draw the height of the layer to its right, and arrows for the axes x and y to its left."""
     right = LAYER_LENGTH + 0.13
     arrow(axes, (right, 0.0), (right, 1.0), MUTED_GREY, **TWO_HEADS)
     for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
@@ -93,7 +98,7 @@ def _draw_height_and_axes(axes: Axes) -> None:
 
 
 def _draw_top(axes: Axes, panel: str) -> None:
-    """Draw the boundary condition on top, and the name of the displacement."""
+    """Draw the boundary condition on top of the layer, and the symbol of the displacement."""
     middle = 0.5 * LAYER_LENGTH
     if panel == "stress":
         for x in np.linspace(0.03, 0.85, 6) * LAYER_LENGTH:

@@ -1,4 +1,4 @@
-"""Figure 2: the regime in which a rupture ends, by boundary, pre-stress and gamma."""
+"""Figure 2: the regime in which a rupture ends, for each boundary, pre-stress and gamma."""
 
 import numpy as np
 import pandas as pd
@@ -32,7 +32,7 @@ NEEDS = {
     },
     "studies": ["regime_plane"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "regimes_displacement": "boundary displacement",
     "regimes_displacement_asymmetric": "boundary displacement",
@@ -51,64 +51,73 @@ LOOKS = {
     "pulse, one-way, steady": (style.YELLOW, "steady pulse"),
     "pulse, one-way, decaying": (style.GREEN, "decaying pulse"),
 }
+# Numbers of the drawn velocity profiles.
 NUMBERS = "①②③④"
 MARK: Look = {"color": BLACK, "markersize": 4.0}
-# The number of levels of each side that is drawn of a sweep.
-DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regimes_stress": 5}
+# Number of pre-stress levels on each side that are drawn, for each sweep.
+LEVEL_COUNTS = {
+    "regimes_displacement": 3,
+    "regimes_displacement_asymmetric": 3,
+    "regimes_stress": 5,
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of the study regime_plane, and runs of the sweeps.
+    """Return the rows of the study regime_plane, and runs of the sweeps with two more roles.
 
     symmetric : all runs with equal levels on both sides
     run : some runs at the largest gamma, evenly spread over both levels
     """
     parts = [tables["regime_plane"]]
-    kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
-    for name, count in DRAWN.items():
-        runs = tables[name]
-        parts.append(runs.loc[runs["left"] == runs["right"], kept].assign(role="symmetric"))
+    columns = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
+    for name, level_count in LEVEL_COUNTS.items():
+        runs = tables[name][columns]
+        parts.append(runs[runs["left"] == runs["right"]].assign(role="symmetric"))
         runs = runs[runs["gamma"] == runs["gamma"].max()]
-        left = runs["left"].isin(spread_values(runs["left"], count))
-        right = runs["right"].isin(spread_values(runs["right"], count))
-        parts.append(runs.loc[left & right, kept].assign(role="run"))
+        has_drawn_left = runs["left"].isin(spread_values(runs["left"], level_count))
+        has_drawn_right = runs["right"].isin(spread_values(runs["right"], level_count))
+        parts.append(runs[has_drawn_left & has_drawn_right].assign(role="run"))
     return pd.concat(parts, ignore_index=True)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the final regimes, and velocity profiles of numbered regimes on the right.
+    """Draw the final regimes, and on the right the velocity profiles of numbered regimes.
 
-    Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma. Panels
-    b and c show planes of the pre-stress on the left and on the right, one for each boundary.
+    Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma: above
+    for the displacement boundary, and below for the stress boundary, where gamma is 0. Panels b and
+    c show planes of the pre-stress on the left and on the right, one for each boundary.
     """
     figure = Figure(figsize=(PAGE_WIDTH, 5.0), layout="constrained")
-    left, profile_figure = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
-    above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
-    symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
+    left_half, right_half = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
+    above, below = left_half.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
+    symmetric_panels = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
+    plane_panels = below.subplots(1, 2)
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
     numbers = numbers_of_regimes(profiles)
-    panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
-    for equal_levels, plane, letter, (boundary, title) in panels:
+    for boundary, axes in zip(BOUNDARIES, symmetric_panels, strict=True):
         rows = table[table["boundary"] == boundary]
-        draw_regimes_of_equal_levels(equal_levels, rows[rows["role"] == "area"])
-        draw_runs(equal_levels, rows[rows["role"] == "symmetric"], "gamma")
-        draw_plane(plane, rows[rows["role"].isin(["area", "line"])], numbers)
-        draw_runs(plane, rows[rows["role"] == "run"], "right")
-        plane.set_title(title, loc="center")
-        panel_letter(plane, letter)
-    symmetric[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
-    symmetric[1].set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
-    symmetric[1].set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
-    panel_letter(symmetric[0], "a")
-    draw_profiles(profile_figure, profiles)
+        draw_regimes_of_equal_levels(axes, rows[rows["role"] == "area"])
+        draw_runs(axes, rows[rows["role"] == "symmetric"], "gamma")
+    for (boundary, title), axes, letter in zip(BOUNDARIES.items(), plane_panels, "bc", strict=True):
+        rows = table[table["boundary"] == boundary]
+        draw_plane(axes, rows[rows["role"].isin(["area", "line"])], numbers)
+        draw_runs(axes, rows[rows["role"] == "run"], "right")
+        axes.set_title(title, loc="center")
+        panel_letter(axes, letter)
+    held, imposed = symmetric_panels
+    held.set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
+    imposed.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
+    imposed.set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
+    panel_letter(held, "a")
+    draw_profiles(right_half, profiles)
     legend_below(figure, legend_entries(table), 3)
     return figure
 
 
 def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], str]:
-    """Return the number of each drawn profile by boundary and regime.
+    """Return the number of each drawn profile, by its boundary and regime.
 
-    The number is also written next to the regime in the plane.
+    The number is written beside the profile, and beside the name of its regime in the plane.
     """
     numbers = {}
     for number, rows in zip(NUMBERS, profiles, strict=False):
@@ -118,13 +127,11 @@ def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], st
 
 
 def legend_entries(table: pd.DataFrame) -> list[Line2D]:
-    """Return one legend entry for each kind of mark that the table of runs needs."""
-    handles = []
-    for label, face in (
-        ("simulation, in the colour of its regime", GREY),
-        ("not settled by its end", "white"),
-    ):
-        handles.append(entry(label, marker="o", markerfacecolor=face, **MARK))
+    """Return one legend entry for each kind of mark that stands for a run (see `draw_runs`)."""
+    label = "simulation, in the colour of its regime"
+    handles = [entry(label, marker="o", markerfacecolor=GREY, **MARK)]
+    label = "not settled by its end"
+    handles.append(entry(label, marker="o", markerfacecolor="white", **MARK))
     if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
     return handles
@@ -134,7 +141,10 @@ def draw_regimes_of_equal_levels(axes: Axes, areas: pd.DataFrame) -> None:
     """Colour and label the regimes of a negative and of a positive pre-stress on both sides.
 
     They are the regimes of the two quadrants of the plane in which both levels have the same sign.
+
+    areas : corners of the areas of the plane, in the columns left and right
     """
+    # The centre of such a quadrant has the same level, -0.5 or 0.5, on both sides.
     centres = areas.groupby(["series", "regime"])[["left", "right"]].mean()
     for level in (-0.5, 0.5):
         has_this_centre = centres.eq(level).all(axis="columns")
@@ -146,8 +156,8 @@ def draw_regimes_of_equal_levels(axes: Axes, areas: pd.DataFrame) -> None:
 
 
 def tint(colour: str) -> tuple[float, ...]:
-    """Mix a colour with white."""
-    return tuple(1.0 - 0.35 * (1.0 - part) for part in to_rgb(colour))
+    """Return a light shade of a colour: 35 % of it, mixed with white."""
+    return tuple(1.0 - 0.35 * (1.0 - component) for component in to_rgb(colour))
 
 
 def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> None:
@@ -155,13 +165,15 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
 
     A regime fills a quadrant, a narrow area, or a line on which one level is 0. Narrow areas and
     lines occur twice, as mirror images, and only those with the lower level on the left are
-    labelled. numbers has the numbers of the regimes whose velocity profiles are drawn, by boundary
-    and regime.
+    labelled.
+
+    numbers : the numbers from `numbers_of_regimes`
     """
     look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
-    for (role, _), part in rows.groupby(["role", "series"], sort=False):
-        boundary, regime = part[["boundary", "regime"]].iloc[0]
-        corners = part[["left", "right"]].to_numpy()
+    for (role, _), shape in rows.groupby(["role", "series"], sort=False):
+        boundary, regime = shape[["boundary", "regime"]].iloc[0]
+        corners = shape[["left", "right"]].to_numpy()
+        # The centre of the shape.
         left, right = corners.mean(axis=0)
         colour, text = LOOKS[regime]
         text = numbers.get((boundary, regime), "") + text
@@ -175,33 +187,34 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
         if is_quadrant:
             axes.text(left, right + 0.1 if right > 0.0 else right, text, **look)
         elif left < right:
-            # A narrow area along a border has its label outside, with a line to it.
-            line = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
-            axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **look)
+            # The label of a narrow area stands outside, with a line that points to the area.
+            pointer = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
+            axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=pointer, **look)
     ticks = (-1, 0, 1)
     axes.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=ticks, yticks=ticks)
     axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")
 
 
-def draw_runs(axes: Axes, runs: pd.DataFrame, upwards: str) -> None:
-    """Mark runs in the colour of their regime, as a function of the pre-stress on the left.
+def draw_runs(axes: Axes, runs: pd.DataFrame, y_column: str) -> None:
+    """Mark runs in the colour of their regime, with the pre-stress on the left as horizontal axis.
 
-    A mark is open if theory has another final regime, and a cross if the run is flagged.
+    A mark is open if theory predicts another final regime, and a cross if the run is flagged.
 
-    upwards : column on the vertical axis
+    y_column : column on the vertical axis
     """
     for run in runs.itertuples():
         colour, _ = LOOKS[run.regime]
         differs_from_theory = run.exact_regime in LOOKS and run.exact_regime != run.regime
         look = MARK | {"markerfacecolor": "white" if differs_from_theory else colour}
         marker = "x" if isinstance(run.run_flags, str) else "o"
-        axes.plot(run.left, getattr(run, upwards), marker, gid=run.role, zorder=3.0, **look)
+        axes.plot(run.left, getattr(run, y_column), marker, gid=run.role, zorder=3.0, **look)
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
-    """Draw one strip for each profile: slip velocity and pre-stress as functions of position."""
+    """Draw one panel for each profile: slip velocity and pre-stress as functions of position."""
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
+    # All panels show the positions from -end to end.
     end = 1.08 * pd.concat(profiles)["x"].abs().max()
     title = rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$"
     strips[0].set_title(title, loc="center")
@@ -213,7 +226,8 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
 def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     """Draw the slip velocity of one profile divided by its largest value, and its pre-stress.
 
-    The pre-stress is drawn from -end to end.
+    number : number of the profile, as text
+    end : the pre-stress is drawn from the position -end to the position end
     """
     first = rows.iloc[0]
     colour, _ = LOOKS[first["regime"]]
@@ -224,13 +238,14 @@ def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     levels = f"{setting(first['left'])}, {setting(first['right'])}"
     label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {levels}"
     axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
-    # The pre-stress stands above, on a scale of its own that has ticks at 0 and 1.
-    zero, one = 1.5, 1.9
+    # The pre-stress stands above the velocity, on a scale of its own: its value 0 is at the height
+    # zero, and its value 1 is higher by unit_height.
+    zero, unit_height = 1.5, 0.4
     axes.axhline(zero, color=GREY, linewidth=0.6, linestyle=":")
     x = np.linspace(-end, end, 201)
     tau = Prestress(first["left"], first["right"])(x)
-    axes.plot(x, zero + 0.4 * tau, color=BLACK, linewidth=0.8, gid="prestress")
-    axes.set_yticks([zero, one], ["0", "1"], fontsize=SMALL_TEXT)
+    axes.plot(x, zero + unit_height * tau, color=BLACK, linewidth=0.8, gid="prestress")
+    axes.set_yticks([zero, zero + unit_height], ["0", "1"], fontsize=SMALL_TEXT)
     axes.set_ylabel(r"$\tau$", y=0.65, rotation=0, va="center")
     axes.set_ylim(0.0, 2.6)
     axes.spines[["left", "right", "top"]].set_visible(False)

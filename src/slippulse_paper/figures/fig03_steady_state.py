@@ -1,4 +1,4 @@
-"""Figure 3: slip velocity of steady pulses under both boundary conditions, beside theory."""
+"""Figure 3: slip velocity of steady pulses under both boundary conditions, compared with theory."""
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "steady_displacement": "boundary displacement and a level above 0",
     "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
@@ -42,6 +42,6 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), half_length)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
-        below = (0.5, -0.17)
-        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below, ncols=3)
+        below_panel = (0.5, -0.17)
+        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below_panel, ncols=3)
     return figure

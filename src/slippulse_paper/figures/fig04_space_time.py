@@ -1,5 +1,6 @@
-"""Figure 4: slip velocity in time and space, of a crack that becomes two pulses and of another one
-that becomes a single pulse.
+"""Figure 4: slip velocity in time and space of two ruptures.
+
+One is a crack that becomes two pulses, and the other is a crack that becomes a single pulse.
 """
 
 from typing import NamedTuple
@@ -21,7 +22,7 @@ NEEDS = {
     "studies": ["exact_space_time"],
     "settings": ["measure.fraction"],
 }
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "space_time_displacement": "boundary displacement and equal levels above 0",
     "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
@@ -38,7 +39,7 @@ MARK_LOOK: Look = {
 
 
 class RuptureExtent(NamedTuple):
-    """The position of the left front and the rupture length, at one time."""
+    """The position of the left front and the distance between both fronts, at one time."""
 
     time: float
     left: float
@@ -49,17 +50,20 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the space-time rows of the first run of each sweep, with these additional roles.
 
     exact_front, exact_trailing : front and trailing edge of the exact solution
-    measured, paper, last_release : a transition or arrest, with its time, the positions of the left
-        and the right front (series), and the rupture length between them (value)
-    fraction : the fraction of |x_minus| that the left front has covered at T_trans (stress boundary
-        only)
+    measured, paper : the measured transition, and the paper's estimate of it
+    last_release : the last release of the left front (stress boundary only)
+    fraction : the fraction of its way to x_minus that the left front has covered at T_trans (stress
+        boundary only)
+
+    The roles measured, paper and last_release have one row for each front, with its position. Both
+    rows have the time, and the distance between the fronts as value.
     """
     parts = []
     for panel in PANELS:
         simulation = f"space_time_{panel}"
         run = point(data[simulation], 0)
         rows = [space_time.run_table(run)]
-        for role, extent in ruptures(run, tables[simulation].iloc[0]).items():
+        for role, extent in rupture_extents(run, tables[simulation].iloc[0]).items():
             right = extent.left + extent.length
             fronts = pd.DataFrame({"series": ["left", "right"], "position": [extent.left, right]})
             rows.append(fronts.assign(role=role, time=extent.time, value=extent.length))
@@ -75,8 +79,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 
 
-def ruptures(run: AnyRun, measured: pd.Series) -> dict[str, RuptureExtent]:
-    """Return the extent of the rupture at its transition and arrest, by role (see `table`)."""
+def rupture_extents(run: AnyRun, measured: pd.Series) -> dict[str, RuptureExtent]:
+    """Return the extent of the rupture for the roles measured, paper and last_release of `table`.
+
+    measured : the row of the run in the measured table
+    """
     time, length = measured["transition_time"], measured["transition_length"]
     left = front_position(run, time, "right") - length
     extents = {"measured": RuptureExtent(time, left, length)}
@@ -93,7 +100,7 @@ def ruptures(run: AnyRun, measured: pd.Series) -> dict[str, RuptureExtent]:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the figure; the legend has an entry for everything that either panel shows."""
+    """Draw one pair of panels for each boundary condition: pre-stress, and space-time map."""
     figure = Figure(figsize=(PAGE_WIDTH, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
@@ -104,25 +111,29 @@ def draw(table: pd.DataFrame) -> Figure:
         space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
         style.panel_letter(profile, letter)
-        when = "first stick"
+        transition = "first stick"
         if "fraction" in roles:
             percent = 100.0 * roles["fraction"]["value"].iloc[0]
-            when = rf"left front at {percent:g} % of its way to $x_-$"
-        title = f"{space_time.run_title(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
-        side.suptitle(title)
+            transition = rf"left front at {percent:g} % of its way to $x_-$"
+        definition = rf"$T_\text{{trans}}$: {transition}"
+        side.suptitle(f"{space_time.run_title(roles)}\n{definition}")
+    # The legend has an entry for everything that either panel shows.
     handles = style.labelled(figure.axes)
     style.legend_below(figure, handles, len(handles))
     return figure
 
 
 def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw exact edges, arrows for T_trans and L_trans, the paper's estimate and last release."""
+    """Mark the transition: measured, by the paper's estimate, and the last release of a front.
+
+    The exact front and trailing edge are drawn as well.
+    """
     look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
-    # The first row has the left front.
-    time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
+    left_front = roles["measured"].iloc[0]
+    time, left, length = left_front[["time", "position", "value"]]
     # A run that ends before its transition has no arrows.
     if np.isfinite(time):
         draw_arrows(axes, RuptureExtent(time, left, length))
@@ -130,38 +141,46 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     look = MARK_LOOK | {"color": ORANGE, "label": "paper's estimate"}
     axes.plot(paper["time"], paper["position"], "D", **look)
     if "last_release" in roles:
-        # Under a stress boundary the paper's estimate of the time is |x_-|.
+        # Under a stress boundary, the paper's estimate of the transition time is |x_minus|.
         x_minus = -float(paper["time"].iloc[0])
         draw_last_release(axes, roles["last_release"].iloc[:1], x_minus)
 
 
 def draw_last_release(axes: Axes, left_front: pd.DataFrame, x_minus: float) -> None:
-    """Draw the last release of the left front, and the line at x_minus, which it approaches."""
+    """Mark the last release of the left front, and draw a line at the balance position x_minus.
+
+    left_front : the row of the last release
+    """
     axes.axhline(x_minus, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
-    # The label stands beside the ticks of the axis.
+    # The label stands to the right of the ticks of the vertical axis.
     axes.annotate("$x_-$", (0.0, x_minus), (6, 1), textcoords="offset points", zorder=4.0)
     look = MARK_LOOK | {"color": "white", "label": "last release"}
     axes.plot(left_front["time"], left_front["position"], "o", **look)
 
 
 def draw_arrows(axes: Axes, rupture: RuptureExtent) -> None:
-    """Draw arrows for T_trans, along the lower edge, and for L_trans, at that time."""
+    """Draw a horizontal arrow for T_trans at the lower edge, and a vertical one for L_trans.
+
+    The vertical arrow leads from front to front at the time T_trans.
+    """
     time, left = rupture.time, rupture.left
-    low, high = axes.get_ylim()
-    height = high - low
-    low -= 0.04 * height
-    axes.set_ylim(low - 0.06 * height, high)
+    bottom, top = axes.get_ylim()
+    # The panel is extended downwards, to make room for the horizontal arrow at this height.
+    height = top - bottom
+    arrow_height = bottom - 0.04 * height
+    axes.set_ylim(arrow_height - 0.06 * height, top)
     arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
     arrow |= {"mutation_scale": 8.0, "path_effects": TEXT_OUTLINE}
-    axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
-    time_arrow = ((0.0, low), (time, low))
+    dotted: Look = {"color": BLACK, "linewidth": 0.6, "linestyle": ":", "zorder": 3.0}
+    axes.plot([time, time], [arrow_height, left], **dotted)
+    time_arrow = ((0.0, arrow_height), (time, arrow_height))
     length_arrow = ((time, left), (time, left + rupture.length))
     for start, stop in (time_arrow, length_arrow):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
     look: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE, "zorder": 4.0}
     # The label of T_trans stands above its arrow, clear of the ticks of the axis.
     label = rf"$T_\text{{trans}} = {time:#.3g}$"
-    axes.annotate(label, (0.0, low), (6, 3), va="bottom", **look)
+    axes.annotate(label, (0.0, arrow_height), (6, 3), va="bottom", **look)
     label = rf"$L_\text{{trans}} = {rupture.length:#.3g}$"
     middle = left + 0.5 * rupture.length
     axes.annotate(label, (time, middle), (4, 0), va="center", **look)

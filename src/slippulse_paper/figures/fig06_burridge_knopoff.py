@@ -1,4 +1,4 @@
-"""Figure 6: the onset of pulses as blocks and springs, drawn from runs at dx = 1."""
+"""Figure 6: the onset of pulses on a lattice of blocks and springs, drawn from runs at dx = 1."""
 
 import numpy as np
 import pandas as pd
@@ -21,31 +21,33 @@ from slippulse.plotting.style import (
 )
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "burridge_knopoff_displacement": "boundary displacement and equal levels above 0",
     "burridge_knopoff_stress": "boundary stress, left level below 0, right level 0 and no steps",
 }
 
-# Distance between the rows of blocks of each panel, in spacings.
+# Lengths in the drawing are in block spacings, unless another unit is given.
+# Distance between the rows of blocks of each panel.
 ROW_DISTANCES = {"displacement": 1.62, "stress": 0.86}
-# Blocks in view without the middle one, and those in view beyond the block that stops the front.
+# Distance from the first to the last block in view, and number of blocks in view beyond the block
+# that stops the left front.
 VIEW_WIDTH = 18
 BLOCKS_BEYOND_ARREST = 2
-# Width and height of a block, and height of the plate above the ground, in spacings.
+# Width and height of a block, and height of the plate above the ground.
 BLOCK_WIDTH = 0.5
 BLOCK_HEIGHT = 0.44
 PLATE_HEIGHT = 1.12
 # Heights of the points of a coil spring: a zigzag with straight ends.
 COIL_SHAPE = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
-# Largest drawn displacement in spacings, and shortest drawn spring divided by its length.
+# Largest drawn displacement, and shortest drawn spring divided by its length at rest.
 MAX_DRAWN_DISPLACEMENT = 0.85
 MIN_DRAWN_SPRING = 0.35
-# Width of the figure, height of a spacing and height of the strip with the pre-stress, in inches.
+# Width of the figure, height of one spacing and height of the strip with the pre-stress, in inches.
 # The figure is narrow, so that its text can be read in one column.
 FIGURE_WIDTH = 5.4
 SPACING_HEIGHT, STRIP_HEIGHT = 0.34, 0.42
-# A light, a medium and a dark colour, which differ in greyscale too.
+# The colours are light, medium and dark, so that they can be told apart in greyscale, too.
 STATE_COLOURS = {"at rest": "#e2e8ee", "sliding": ORANGE, "stuck after sliding": "#00402f"}
 TITLES = {
     "displacement": r"$\Gamma = 1$: leaf springs to a held plate, "
@@ -58,7 +60,8 @@ TITLES = {
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each panel, instant and block of the first run of each sweep.
 
-    The column x has the position at rest.
+    The column x has the position of a block before it slips. The column scale has the factor by
+    which slip is multiplied in the drawing.
     """
     panels = []
     for name in ROW_DISTANCES:
@@ -72,33 +75,38 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def block_states(run: xr.Dataset) -> pd.DataFrame:
-    """Return slip, velocity, pre-stress and state of each block in view, at each drawn instant."""
-    low, high = window(run)
+    """Return slip, velocity, pre-stress and state of each block in view, at each drawn instant.
+
+    The column row numbers the instants from 0 on.
+    """
+    first, last = view(run)
     # The springs of one more block on each side are partly in view.
-    shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
+    shown = run.sel(sample_position=slice(first - 1.5, last + 1.5))
     x = shown["sample_position"].values
     parts = []
     for row, (instant, sample) in enumerate(instants(run)):
-        now = shown.isel(sample_time=sample)
-        slip, velocity = now["sample_slip"].values, now["sample_velocity"].values
+        at_instant = shown.isel(sample_time=sample)
+        slip, velocity = at_instant["sample_slip"].values, at_instant["sample_velocity"].values
         state_without_motion = np.where(slip > 0.0, "stuck after sliding", "at rest")
         blocks = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity})
         blocks["prestress"] = prestress_from(run.attrs)(x)
         blocks["state"] = np.where(velocity > 0.0, "sliding", state_without_motion)
-        parts.append(blocks.assign(row=row, instant=instant, time=float(now["sample_time"])))
+        time = float(at_instant["sample_time"])
+        parts.append(blocks.assign(row=row, instant=instant, time=time))
     return pd.concat(parts, ignore_index=True)
 
 
 def displacement_scale(rows: pd.DataFrame) -> float:
     """Return the factor by which slip is multiplied in the drawing, in spacings.
 
-    It limits the largest displacement, and keeps the most compressed spring long enough.
+    It is the largest factor that keeps each block within MAX_DRAWN_DISPLACEMENT of its position at
+    rest, and each spring longer than MIN_DRAWN_SPRING times its length at rest.
     """
-    slip_of_neighbours = rows.groupby("row")["slip"].diff()
-    # By how much two neighbours come closer at most.
-    approach = float(-slip_of_neighbours.min())
-    free_length = 1.0 - BLOCK_WIDTH
-    largest_for_springs = (1.0 - MIN_DRAWN_SPRING) * free_length / approach
+    # Two neighbouring blocks come closer if the left one slips more than the right one.
+    slip_difference = rows.groupby("row")["slip"].diff()
+    largest_approach = float(-slip_difference.min())
+    length_at_rest = 1.0 - BLOCK_WIDTH
+    largest_for_springs = (1.0 - MIN_DRAWN_SPRING) * length_at_rest / largest_approach
     return min(MAX_DRAWN_DISPLACEMENT / rows["slip"].max(), largest_for_springs)
 
 
@@ -109,50 +117,62 @@ def arresting_block(run: xr.Dataset) -> float:
     return float(leftmost_released - run.attrs["dx"])
 
 
-def window(run: xr.Dataset) -> tuple[float, float]:
+def view(run: xr.Dataset) -> tuple[float, float]:
     """Return the positions of the first and last block in view.
 
-    The view is centred on the nucleation, or begins at the arrest of the left front if it stops.
+    If the levels on both sides are equal, the nucleation is in the middle of the view. Otherwise
+    the left front stops, and the view begins a little beyond the block that stops it.
     """
     if run.attrs["left"] == run.attrs["right"]:
         return -0.5 * VIEW_WIDTH, 0.5 * VIEW_WIDTH
-    low = arresting_block(run) - BLOCKS_BEYOND_ARREST
-    return low, low + VIEW_WIDTH
+    first = arresting_block(run) - BLOCKS_BEYOND_ARREST
+    return first, first + VIEW_WIDTH
 
 
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     """Return the name of each drawn instant, and the index of its sample in time.
 
-    The instants are the start, half of the time of the first stick, the first stick, the last
-    instant at which no block outside of the view has slipped, and one halfway to it.
+    The instants are the start, the middle between the start and the first stick, the first stick,
+    the middle between the first stick and the last instant, and the last instant. At the last
+    instant, the rupture still lies within the view.
     """
-    low, high = window(run)
+    first_in_view, last_in_view = view(run)
     # Slip and velocity have one row for each sampled time and one column for each position.
     x, velocity = run["sample_position"].values, run["sample_velocity"].values
     slip = run["sample_slip"].values
-    is_outside = (x <= low) | (x >= high)
+    is_outside = (x <= first_in_view) | (x >= last_in_view)
     has_slipped_outside = (slip[:, is_outside] > 0.0).any(axis=1)
     last = int(np.flatnonzero(~has_slipped_outside)[-1])
     is_stuck = (slip > 0.0) & (velocity <= 0.0)
     # If no block sticks, the run remains a crack until the last instant.
     first_stick = int(np.argmax(is_stuck.any(axis=1))) if is_stuck[: last + 1].any() else last
-    if is_stuck[last, x == 0.0].all():
-        # The centre has stuck. A pulse runs on each side on which blocks slide.
-        left_slides = (velocity[last, x < 0.0] > 0.0).any()
-        right_slides = (velocity[last, x > 0.0] > 0.0).any()
-        last_name = ("arrested", "pulse", "two pulses")[int(left_slides) + int(right_slides)]
-    else:
-        last_name = "crack"
+    # Here, "later" stands for the middle between the first stick and the last instant.
     later = (first_stick + last) // 2
     # If two instants fall on the same sample, the name of the later one is kept.
     name_of_sample = {0: "start", first_stick // 2: "crack", first_stick: "first stick"}
-    name_of_sample |= {later: "later", last: last_name}
+    name_of_sample[later] = "later"
+    name_of_sample[last] = rupture_name(x, velocity[last], is_stuck[last])
     return [(name, sample) for sample, name in sorted(name_of_sample.items())]
 
 
+def rupture_name(x: np.ndarray, velocity: np.ndarray, is_stuck: np.ndarray) -> str:
+    """Return "crack", "two pulses", "pulse" or "arrested" for the blocks at one instant.
+
+    x, velocity, is_stuck : position, slip velocity, and whether a block has stuck after sliding
+    """
+    centre_has_stuck = is_stuck[x == 0.0].all()
+    if not centre_has_stuck:
+        return "crack"
+    # A pulse runs on each side on which blocks slide.
+    left_slides = (velocity[x < 0.0] > 0.0).any()
+    right_slides = (velocity[x > 0.0] > 0.0).any()
+    return ("arrested", "pulse", "two pulses")[int(left_slides) + int(right_slides)]
+
+
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw one panel for each boundary condition: the pre-stress, and rows of blocks with time
-    increasing downwards.
+    """Draw one panel for each boundary condition: the pre-stress, and below it rows of blocks.
+
+    There is one row for each instant; time increases downwards.
     """
     row_counts = table.groupby("panel")["row"].nunique()
     # Heights in inches of the strip with the pre-stress and of the rows, for each panel.
@@ -198,26 +218,26 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
 
     Distances are in spacings. The ground of row n lies n row distances below 0.
     """
-    # Half of the outermost springs lies outside of the view.
+    # The panel ends inside of the outermost blocks, so that their springs are cut.
     low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
     has_leaf_springs, row_distance = name == "displacement", ROW_DISTANCES[name]
     for row, blocks in rows.groupby("row"):
         blocks = blocks.sort_values("x")
         ground = -row_distance * row
-        rest = blocks["x"].to_numpy()
-        centre = rest + (blocks["scale"] * blocks["slip"]).to_numpy()
-        draw_coil_springs(axes, centre, ground)
+        positions_at_rest = blocks["x"].to_numpy()
+        centres = positions_at_rest + (blocks["scale"] * blocks["slip"]).to_numpy()
+        draw_coil_springs(axes, centres, ground)
         axes.plot([low, high], [ground, ground], color=BLACK, linewidth=0.8)
         # A tick on the ground marks the position at rest.
-        axes.vlines(rest, ground - 0.09, ground, color="0.4", linewidth=0.6)
+        axes.vlines(positions_at_rest, ground - 0.09, ground, color="0.4", linewidth=0.6)
         if has_leaf_springs:
             axes.plot([low, high], [ground + PLATE_HEIGHT] * 2, color=BLACK, linewidth=1.8)
-            draw_leaf_springs(axes, rest, centre, ground)
+            draw_leaf_springs(axes, positions_at_rest, centres, ground)
         is_framed = blocks["arresting_block"]
         look: Look = {"edgecolor": np.where(is_framed, BLACK, "0.2")}
         look |= {"linewidth": np.where(is_framed, 1.8, 0.5), "zorder": 3}
         look["color"] = blocks["state"].map(STATE_COLOURS)
-        axes.bar(centre, BLOCK_HEIGHT, BLOCK_WIDTH, ground, **look)
+        axes.bar(centres, BLOCK_HEIGHT, BLOCK_WIDTH, ground, **look)
         first = blocks.iloc[0]
         text = rf"$t = {first['time']:.1f}$" + "\n" + first["instant"]
         look = {"ha": "right", "va": "center", "linespacing": 0.95}
@@ -231,24 +251,35 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.spines[["left", "right", "top"]].set_visible(False)
 
 
-def draw_coil_springs(axes: Axes, centre: np.ndarray, ground: float) -> None:
-    """Draw a coil spring between each pair of neighbouring blocks, at half of their height."""
-    begin, end = centre[:-1] + 0.5 * BLOCK_WIDTH, centre[1:] - 0.5 * BLOCK_WIDTH
-    # One row for each spring.
+def draw_coil_springs(axes: Axes, centres: np.ndarray, ground: float) -> None:
+    """Draw a coil spring between each pair of neighbouring blocks, at half of their height.
+
+    centres : horizontal positions of the centres of the blocks
+    ground : height of the ground on which the blocks stand
+    """
+    begin, end = centres[:-1] + 0.5 * BLOCK_WIDTH, centres[1:] - 0.5 * BLOCK_WIDTH
+    # One row for each spring, and one column for each point of the zigzag.
     x = np.linspace(begin, end, COIL_SHAPE.size, axis=1)
     y = ground + 0.5 * BLOCK_HEIGHT + COIL_SHAPE
     axes.plot(x.T, y, color="0.35", linewidth=0.6, gid="coil springs")
 
 
-def draw_leaf_springs(axes: Axes, rest: np.ndarray, centre: np.ndarray, ground: float) -> None:
-    """Draw the leaf spring of each block, which is clamped vertically at both ends.
+def draw_leaf_springs(
+    axes: Axes, positions_at_rest: np.ndarray, centres: np.ndarray, ground: float
+) -> None:
+    """Draw the leaf spring of each block, from the plate above its position at rest to the block.
 
-    It leads from the plate above the position at rest to the block.
+    The spring is clamped vertically at both ends.
+
+    centres : horizontal positions of the centres of the blocks
+    ground : height of the ground on which the blocks stand
     """
-    along = np.linspace(0.0, 1.0, 15)
+    # The fraction of the height from the plate down to the block.
+    fraction = np.linspace(0.0, 1.0, 15)
     plate, top_of_block = ground + PLATE_HEIGHT, ground + BLOCK_HEIGHT
-    displacement = (centre - rest)[:, np.newaxis]
-    # A cubic polynomial whose slope is 0 at both ends.
-    x = rest[:, np.newaxis] + displacement * along**2 * (3.0 - 2.0 * along)
-    y = plate + (top_of_block - plate) * along
+    # One row for each spring, and one column for each point of it. The shape is a cubic polynomial
+    # that is vertical at both ends.
+    displacement = (centres - positions_at_rest)[:, np.newaxis]
+    x = positions_at_rest[:, np.newaxis] + displacement * fraction**2 * (3.0 - 2.0 * fraction)
+    y = plate + (top_of_block - plate) * fraction
     axes.plot(x.T, y, color=BLUE, linewidth=0.9, gid="leaf springs")

@@ -1,4 +1,8 @@
-"""Figure 7: a fault with a damaged core, and its stress drop by contrast of stiffness."""
+"""Figure 7: a fault with a damage zone, and its stress drop as a function of the stiffness ratio.
+
+The damage zone is a layer of thickness H and shear modulus G between the fault and stiffer host
+rock, which has the thickness H_r and the shear modulus G_r.
+"""
 
 import matplotlib
 import numpy as np
@@ -23,12 +27,13 @@ from .shared.sketch import MUTED_GREY, TWO_HEADS, arrow, label
 NEEDS = {"studies": ["damage_zone"]}
 table = as_given
 
-# Width of the sketch and position of zero displacement, in thicknesses of the damage zone.
+# Width of the sketch and horizontal position of zero displacement, in thicknesses of the damage
+# zone.
 SKETCH_WIDTH, ZERO_DISPLACEMENT = 4.2, 1.95
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the sketch above, and below it the stress drop as a function of G/G_r."""
+    """Draw the sketch of the fault, and below it the stress drop as a function of G/G_r."""
     figure, (sketch_axes, curve_axes) = new_panels(
         COLUMN_WIDTH, 4.1, "a;b", height_ratios=[1.0, 1.1]
     )
@@ -38,7 +43,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
-    """Draw the stress drop for each thickness of the host rock, with its name at the right end."""
+    """Draw the stress drop for each thickness of the host rock, with a label at the right end."""
     groups = curves.groupby("thickness_ratio")
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
@@ -61,7 +66,8 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     """
     top = float(after["y"].max())
     draw_layers(axes, top)
-    x_before, x_after = (ZERO_DISPLACEMENT + rows["displacement"] for rows in (before, after))
+    x_before = ZERO_DISPLACEMENT + before["displacement"]
+    x_after = ZERO_DISPLACEMENT + after["displacement"]
     axes.plot(x_before, before["y"], color=GREY, linewidth=1.2, linestyle="--", gid="before")
     axes.plot(x_after, after["y"], color=BLUE, linewidth=1.6, gid="after")
     axes.fill_betweenx(after["y"], x_before, x_after, color=BLUE, alpha=0.18, linewidth=0.0)
@@ -76,7 +82,10 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
 
 
 def draw_layers(axes: Axes, top: float) -> None:
-    """Draw the damage zone and the host rock up to a height, and the line of zero displacement."""
+    """Draw the damage zone, the host rock above it, and the line of zero displacement.
+
+    top : height of the upper end of the host rock
+    """
     axes.add_patch(Rectangle((0.0, 0.0), SKETCH_WIDTH, 1.0, facecolor="#f6d9b8"))
     axes.add_patch(Rectangle((0.0, 1.0), SKETCH_WIDTH, top - 1.0, facecolor="#d7dde4"))
     for y, linewidth in ((0.0, 1.8), (1.0, 0.7), (top, 1.0)):
@@ -88,7 +97,7 @@ def draw_layers(axes: Axes, top: float) -> None:
 
 
 def draw_dimensions(axes: Axes, top: float) -> None:
-    """Draw the thicknesses on the right, and the axis of y with its values on the left."""
+    """Draw the thicknesses of both layers on the right, and the axis of heights y on the left."""
     right = SKETCH_WIDTH + 0.16
     arrow(axes, (right, 0.0), (right, 1.0), MUTED_GREY, **TWO_HEADS)
     arrow(axes, (right, 1.0), (right, top), MUTED_GREY, **TWO_HEADS)
@@ -101,7 +110,10 @@ def draw_dimensions(axes: Axes, top: float) -> None:
 
 
 def label_displacements(axes: Axes, top: float, slip: float, imposed: float) -> None:
-    """Name the slip, the imposed displacement, and the displacements before and after slip."""
+    """Write names beside the arrows of slip and imposed displacement, and beside the curves.
+
+    slip, imposed : lengths of the two arrows
+    """
     zero = ZERO_DISPLACEMENT
     label(axes, zero + 0.5 * slip, -0.22, r"slip $\delta$", ORANGE, va="top")
     label(axes, zero + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")

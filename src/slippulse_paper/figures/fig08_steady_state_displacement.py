@@ -9,7 +9,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "steady_displacement": "boundary displacement and a level above 0",
 }

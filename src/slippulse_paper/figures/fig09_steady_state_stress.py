@@ -9,7 +9,7 @@ NEEDS = {
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
 }

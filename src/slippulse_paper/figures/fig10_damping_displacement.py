@@ -7,7 +7,7 @@ NEEDS = {
     "measured": {"damping_displacement": ["transition"]},
     "uncertainties": ["damping_displacement"],
 }
-# A run of each simulation that the figure can draw, in words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "damping_displacement": "boundary displacement and equal levels above 0",
 }

@@ -4,7 +4,7 @@ from .shared.scaling import damping_figure, transition_table
 
 draw, table = damping_figure, transition_table
 NEEDS = {"measured": {"damping_stress": ["transition"]}, "uncertainties": ["damping_stress"]}
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "damping_stress": "boundary stress, left level below 0, right level 0 and no steps",
 }

@@ -35,16 +35,16 @@ class Curve(NamedTuple):
 def save_animation(
     run: xr.Dataset, title: str, path: str | Path, layer: Layer | None = None
 ) -> None:
-    """Write an animated GIF of frames that are evenly spread over the samples of a run.
+    """Write an animated GIF whose frames are evenly spread over the sampled times of a run.
 
-    With a layer, the axes are in SI units.
+    layer : if given, the axes are in SI units
     """
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
     curves = _draw_first_frame(figure, run, layer)
     times, unit_of_time = _drawn_values(run["sample_time"].values, "time", layer)
     frames = spaced_indices(times.size, FRAME_COUNT)
     clock = figure.suptitle("", fontsize=9.0)
-    # A dollar in the title is a text and begins no formula.
+    # A dollar sign in the title is a character, and does not begin a formula.
     plain_title = title.replace("$", r"\$")
 
     def draw(frame: int) -> None:
@@ -53,26 +53,27 @@ def save_animation(
             curve.line.set_ydata(curve.values[frame])
         clock.set_text(rf"{plain_title}: $t = {times[frame]:.2f}$ {unit_of_time}".rstrip())
 
-    # The layout is computed once, for the longest title, so that frames do not jump.
+    # The layout is computed once, for the frame with the longest title. Otherwise the panels would
+    # move from frame to frame.
     draw(int(frames[-1]))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")
     animation = FuncAnimation(figure, draw, frames=frames)
     writer = PillowWriter(fps=FRAMES_PER_SECOND)
-    write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))
+    write_whole(path, lambda file: animation.save(file, writer=writer, dpi=DOTS_PER_INCH))
 
 
 def _draw_first_frame(figure: Figure, run: xr.Dataset, layer: Layer | None) -> list[Curve]:
     """Draw one panel for each of FIELDS, at the first sampled time, and return their curves."""
     lower, upper = drawn_range(run)
     positions = run["sample_position"].values
-    inside = (positions >= lower) & (positions <= upper)
+    is_in_range = (positions >= lower) & (positions <= upper)
     all_x, unit_of_x = _drawn_values(positions, "length", layer)
-    x = all_x[inside]
+    x = all_x[is_in_range]
     panels = figure.subplots(2, 1, sharex=True)
     curves = []
     for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
-        values, unit = _drawn_values(run[name].values[:, inside], QUANTITIES[name], layer)
+        values, unit = _drawn_values(run[name].values[:, is_in_range], QUANTITIES[name], layer)
         largest = np.nanmax(values)
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         (line,) = axes.plot(x, values[0], color=colour)
@@ -89,7 +90,7 @@ def _with_unit(label: str, unit: str) -> str:
 
 
 def _drawn_values(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
-    """Return values as they are drawn, and their unit, which is empty without a layer."""
+    """Return values as they are drawn, and their unit; the unit is empty without a layer."""
     if layer is None:
         return values, ""
     numbers = layer.convert_to_si(values, quantity)

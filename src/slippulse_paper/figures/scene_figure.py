@@ -18,10 +18,10 @@ from slippulse.plotting.style import BLUE, GREY, ORANGE, PAGE_WIDTH, Look, by_ro
 from ..text.numerals import MAX_DIGITS, number, with_uncertainty
 from .shared.main_numbers import with_symbols
 
-# How many blocks of a profile are drawn.
+# A field at the end is drawn at about this number of blocks.
 PROFILE_POINTS = 400
 FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
-# The number of a steady pulse that equals the largest value of each field.
+# The largest value of each field in a steady pulse is this predicted number of the pulse.
 LARGEST_VALUES = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
@@ -39,12 +39,13 @@ def table(
     title : the title of the scene
     profile : a field at the end of the run, as a function of position
     steady : the largest value of a field in the exact steady pulse of each side
-    number : a row of ``numbers``
+    number : one of the numbers below the panels
 
-    The arguments:
-
-    numbers : from `main_numbers.scene_numbers`; in SI units if there is a layer
+    Parameters
+    ----------
+    numbers : table from `main_numbers.scene_numbers`; in SI units if there is a layer
     theory : measured and predicted numbers of the run
+    title : title of the scene
     layer : if given, the table is converted to SI units
     """
     parts = [
@@ -68,9 +69,9 @@ def profile_rows(run: xr.Dataset, field: str) -> pd.DataFrame:
     """
     lower, upper = space_time.drawn_range(run)
     x, values = run["x"].values, run[field].values
-    inside = np.flatnonzero((x >= lower) & (x <= upper))
-    spaced = inside[spaced_indices(inside.size, PROFILE_POINTS)]
-    largest = inside[np.argmax(values[inside])]
+    in_range = np.flatnonzero((x >= lower) & (x <= upper))
+    spaced = in_range[spaced_indices(in_range.size, PROFILE_POINTS)]
+    largest = in_range[np.argmax(values[in_range])]
     kept = np.union1d(spaced, largest)
     rows = {"role": "profile", "series": field, "position": x[kept], "value": values[kept]}
     return pd.DataFrame(rows)
@@ -79,11 +80,11 @@ def profile_rows(run: xr.Dataset, field: str) -> pd.DataFrame:
 def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
     """Return the largest value of each field in the exact steady pulse of each side.
 
-    The position is the end of the drawn range on the side of the pulse. Sides without a pulse or
-    without theory have no rows.
+    It is drawn as a line from x = 0 to the column position, which is the end of the drawn range on
+    the side of the pulse. Sides without a pulse or without theory have no rows.
     """
     lower, upper = space_time.drawn_range(run)
-    # The right pulse has a measured state. On the left there is a pulse if any block has stuck.
+    # Only the pulse on the right is measured. On the left there is a pulse if any block has stuck.
     has_left_pulse = math.isfinite(run.attrs["first_stick_time"])
     has_right_pulse = theory["pulse_state"] not in ("none", "stopped")
     rows = []
@@ -97,39 +98,43 @@ def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw pre-stress and map, both fields at the end with exact steady pulses, and the numbers."""
-    roles, empty = by_role(table), table.iloc[:0]
-    numbers, steady = roles.get("number", empty), roles.get("steady", empty)
+    """Draw the space-time map, both fields at the end, and the numbers, in three rows."""
+    roles, no_rows = by_role(table), table.iloc[:0]
+    numbers, steady = roles.get("number", no_rows), roles.get("steady", no_rows)
     # Numbers are written in two columns.
     line_count = math.ceil(len(numbers) / 2)
     figure = Figure(figsize=(PAGE_WIDTH, 4.9 + 0.16 * line_count), layout="constrained")
     heights = (3.1, 1.6, 0.2 + 0.16 * line_count)
-    upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
-    profile_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
-    space_time.draw_profile(profile_axes, roles)
+    upper, middle, lower = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
+    prestress_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
+    space_time.draw_profile(prestress_axes, roles)
     space_time.draw_map(map_axes, roles)
     map_axes.legend(loc="upper left")
-    panel_letter(profile_axes, "a")
+    panel_letter(prestress_axes, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
     upper.suptitle(f"{title}\n{space_time.run_title(roles)}")
-    for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
+    for axes, letter, field in zip(middle.subplots(1, 2), "bc", FIELDS, strict=True):
         draw_field(axes, roles, field, steady[steady["series"] == field])
         panel_letter(axes, letter)
-    write_numbers(text, numbers, line_count)
+    write_numbers(lower, numbers, line_count)
     return figure
 
 
 def draw_field(
     axes: Axes, roles: dict[str, pd.DataFrame], field: str, steady: pd.DataFrame
 ) -> None:
-    """Draw a field at the end, and dashed lines at its largest value in steady pulses."""
+    """Draw a field at the end, and dashed lines at its largest value in steady pulses.
+
+    steady : the rows of `steady_rows` for this field
+    """
     rows = roles["profile"][roles["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
     for pulse in steady.itertuples():
         axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
-    # The velocity is 0 in the middle, where the legend fits. Its entries hold for both panels.
+    # The legend stands in the panel of the velocity, which is 0 in the middle. It holds for both
+    # panels.
     if len(axes.lines) > 2 and field == "slip_velocity":
         axes.legend(handles=axes.lines[1:3], loc="center")
     axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
@@ -140,12 +145,16 @@ def draw_field(
 
 
 def write_numbers(figure: SubFigure, numbers: pd.DataFrame, line_count: int) -> None:
-    """Write the numbers beside theory, in two columns with this number of lines."""
+    """Write each number with its uncertainty and its value by theory, in two columns.
+
+    line_count : number of lines of a column
+    """
     for index, row in enumerate(numbers.itertuples()):
         measured = f"{with_uncertainty(row.value, row.uncertainty)} {_unit(row)}".strip()
         text = f"{with_symbols(row.label)}: {measured}"
         if math.isfinite(row.theory):
             text += f" (theory {number(row.theory, MAX_DIGITS)})"
+        # Numbers with an even index are in the left column.
         line, column = divmod(index, 2)
         height = 1.0 - (line + 0.6) / (line_count + 0.4)
         figure.text(0.06 + 0.48 * column, height, text, va="center")

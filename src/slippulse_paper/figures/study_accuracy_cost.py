@@ -1,4 +1,8 @@
-"""Errors by stencil passes for every scheme and order, and fronts that lock onto the step."""
+"""Errors as functions of work for every scheme and order, and fronts that lock onto the time step.
+
+The work of a run is the number of passes of the stencil over one block. It does not depend on the
+machine.
+"""
 
 import numpy as np
 import pandas as pd
@@ -22,11 +26,12 @@ NEEDS = {"studies": ["accuracy_cost"]}
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of two parts of the figure, which the column part names.
 
-    trade : errors by work, in the form that `error_rows` returns
-    locking : front speed by scheme and step, as in the study
+    trade : errors as functions of work, in the form that `error_rows` returns
+    locking : front speed for each scheme and time step, as in the study
     """
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
+    # The column work has the cost of all quantities.
     errors = error_rows(trade, "work", lambda quantity: "work").assign(part="trade")
     table = pd.concat([study[study["part"] == "locking"], errors], ignore_index=True)
     columns = ["part", "role", "quantity", "scheme", "order", "step", "dx", "work", "error"]
@@ -44,18 +49,19 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the front speed as a function of the step, for both schemes.
+    """Draw the front speed as a function of the time step dt, for both schemes.
 
-    Under the textbook scheme fronts lock onto the speeds dx/(n dt) with a whole number n, which are
-    drawn as grey lines.
+    With the textbook scheme, fronts lock onto the speeds dx/(n dt), where n is a whole number. Grey
+    lines show these speeds.
     """
     fixed, localised = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
     # One row for each step dt/dx, and one column for each n.
-    locked = 1.0 / np.outer(steps, np.arange(1, 12))
-    is_shown = (locked > low) & (locked < high)
-    lines = axes.plot(steps, np.where(is_shown, locked, np.nan), color="0.75", linewidth=0.8)
+    locked_speeds = 1.0 / np.outer(steps, np.arange(1, 12))
+    is_shown = (locked_speeds > low) & (locked_speeds < high)
+    shown_speeds = np.where(is_shown, locked_speeds, np.nan)
+    lines = axes.plot(steps, shown_speeds, color="0.75", linewidth=0.8)
     lines[0].set_label(r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$")
     axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
     axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")

@@ -1,7 +1,7 @@
 """The depth to which a steady pulse enters negative pre-stress: exact, on lattices, estimated.
 
-The pulse comes from the level tau_0 > 0 and enters the barrier tau_b < 0. Exact depths scale with
-gamma as gamma^(-1/2), so they are shown at one gamma.
+The pulse comes from the level tau_0 > 0 and enters a barrier of the level tau_b < 0. Exact depths
+are proportional to gamma^(-1/2), so all depths are scaled to one gamma.
 """
 
 from typing import NamedTuple
@@ -28,10 +28,10 @@ from slippulse.plotting.style import (
 
 NEEDS = {"studies": ["barriers"]}
 
-# Points of the interpolated map along each axis, its colour bands, and its contour lines.
+# The interpolated map: points along each axis, number of colour bands, and depths of its contours.
 MAP_POINTS, COLOUR_BANDS = 41, 33
 CONTOUR_DEPTHS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
-# Elasticity ratio and levels of pre-stress of the curves. Depths of other ratios are scaled to it.
+# Elasticity ratio gamma to which the curves are scaled, and levels tau_0 of the curves.
 CURVE_GAMMA = 0.65
 CURVE_LEVELS = (0.2, 0.5, 0.8)
 
@@ -41,13 +41,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     depth : depths on lattices and exact ones, as in the study
     fine : exact depths at gamma = 1, interpolated to a finer map
-    curve : exact depths and the paper's estimate at CURVE_GAMMA and CURVE_LEVELS, interpolated
+    curve : exact depths and the authors' later estimate (column paper), interpolated to the levels
+        CURVE_LEVELS, at CURVE_GAMMA
     """
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
         fine = _interpolated(rows, levels, 1.0, {"exact": 0.5})
+        # Exact depths are proportional to gamma^(-1/2), and the estimate to gamma^(-1).
         powers = {"exact": 0.5, "paper": 1.0}
         curve = _interpolated(rows, np.array(CURVE_LEVELS), CURVE_GAMMA, powers)
         parts.append(fine.assign(part="fine", damping_ratio=ratio))
@@ -58,11 +60,14 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def _interpolated(
     rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
 ) -> pd.DataFrame:
-    """Interpolate depths at some levels and evenly spaced barriers.
+    """Interpolate depths between the levels tau_0 and barriers tau_b of the study.
+
+    The barriers of the result are evenly spaced in the logarithm.
 
     rows : depths at gamma = 1
-    levels, gamma : levels before the barrier, and the gamma to which depths are scaled
-    powers : for each column of depths, the power of 1/gamma with which it scales
+    levels : levels tau_0 before the barrier, for the result
+    gamma : the gamma to which depths are scaled
+    powers : for each column of depths, the power p of its proportionality to gamma^(-p)
     """
     # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
     known_levels = np.sort(rows["tau0"].unique())
@@ -71,9 +76,10 @@ def _interpolated(
     pairs = pd.MultiIndex.from_product([levels, -np.exp(log_barriers)], names=["tau0", "barrier"])
     columns = pairs.to_frame(index=False)
     for name, power in powers.items():
-        # One row for each level and one column for each barrier. The columns are reversed, because
-        # |tau_b| falls where tau_b rises.
+        # One row for each level and one column for each barrier. The columns are reversed, so that
+        # |tau_b| rises from left to right.
         known_depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+        # The depths are interpolated first between the levels, and then between the barriers.
         at_levels = barycentric_interpolate(known_levels, np.log(known_depths), levels)
         log_depths = barycentric_interpolate(known_log_barriers, at_levels, log_barriers, axis=1)
         columns[name] = np.exp(log_depths).ravel() / gamma**power
@@ -81,15 +87,16 @@ def _interpolated(
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw maps without and with damping above, and below them curves and convergence."""
+    """Draw maps of the depth without and with damping, and below them curves and convergence."""
     figure, (*map_panels, curve_axes, convergence_axes) = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ratios = np.sort(runs["damping_ratio"].unique())
     depths = Depths(fine["exact"].min(), fine["exact"].max())
     for axes, ratio in zip(map_panels, ratios, strict=True):
-        of_ratio, runs_of_ratio = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        image = _draw_map(axes, of_ratio, runs_of_ratio, depths)
+        exact_depths = fine[fine["damping_ratio"] == ratio]
+        lattice_depths = finest[finest["damping_ratio"] == ratio]
+        image = _draw_map(axes, exact_depths, lattice_depths, depths)
         axes.set_title(conditions(True, damping_ratio=ratio))
     bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
@@ -110,9 +117,12 @@ class Depths(NamedTuple):
 
 
 def _draw_map(axes: Axes, fine: pd.DataFrame, runs: pd.DataFrame, depths: Depths) -> QuadContourSet:
-    """Draw exact depths by both levels in colour and as contours, and lattice runs as markers.
+    """Draw exact depths in colour and as contours, and lattice runs as markers.
 
-    A marker has the colour of its depth, and a shape for each gamma. Return the coloured map.
+    The axes are the level tau_0 before the barrier and the level -tau_b of the barrier. A marker
+    has the colour of its depth, and a shape for each gamma. Return the coloured map.
+
+    depths : range of the colours
     """
     # Only the light part of the colour map is used, so that dark lines are visible.
     norm = LogNorm(depths.smallest, 3.0 * depths.largest)
@@ -150,7 +160,10 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
-    """Draw exact depths, the estimate, and the finest lattices, all scaled to one gamma."""
+    """Draw depths as functions of the barrier: exact, by the estimate, and on the finest lattices.
+
+    All depths are scaled to CURVE_GAMMA.
+    """
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
         colour = style.colour("tau_0", tau0)

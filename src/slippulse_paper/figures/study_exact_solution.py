@@ -1,4 +1,7 @@
-"""Whole ruptures, exact and on lattices, and how their difference falls with the spacing."""
+"""Compare whole ruptures on lattices with the exact solution.
+
+The difference between both falls with the block spacing.
+"""
 
 import numpy as np
 import pandas as pd
@@ -30,7 +33,7 @@ QUANTITY_MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the map, (b) fronts and trailing edges, (c) slip, (d) the difference by spacing."""
+    """Draw (a) a map, (b) fronts and trailing edges, (c) slip, (d) differences by spacing."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     map_axes, edge_axes, slip_axes, difference_axes = panels
     mapped_scene = next(iter(SCENE_COLOURS))
@@ -55,7 +58,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_map(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw slip velocities by time and position, with the exact edges of the rupture.
+    """Draw the slip velocity in time and space, with the exact front and trailing edge as lines.
 
     The lower half is exact, and the upper half is from a lattice.
     """
@@ -63,13 +66,13 @@ def _draw_map(axes: Axes, rows: pd.DataFrame) -> None:
     exact = rows[rows["role"] == "exact"]
     for quantity, dashes in (("release", "-"), ("stick", "--")):
         axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
-    for height, half in ((0.05, "exact"), (0.91, "lattice")):
-        axes.text(0.03, height, half, transform=axes.transAxes)
+    axes.text(0.03, 0.05, "exact", transform=axes.transAxes)
+    axes.text(0.03, 0.91, "lattice", transform=axes.transAxes)
     axes.set_xlim(0.0, None)
 
 
 def _add_edge_legend(axes: Axes, dx: float) -> None:
-    """Add a legend for fronts and trailing edges, exact and on lattices with the spacing dx."""
+    """Add a legend for fronts and trailing edges, exact and on lattices of the spacing dx."""
     label_of_style = {
         "-": "front, exact",
         "--": "trailing edge, exact",
@@ -95,7 +98,10 @@ def _scene_entries(scenes: pd.DataFrame) -> list[Line2D]:
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the difference of each quantity as a function of spacing, with a line for each scene."""
+    """Draw the difference between lattice and exact solution as a function of the spacing.
+
+    There is one marker for each quantity, and one colour for each scene.
+    """
     for quantity, marker in QUANTITY_MARKERS.items():
         for scene, line in rows[rows["quantity"] == quantity].groupby("scene"):
             look: Look = {"color": SCENE_COLOURS[str(scene)], "linewidth": 0.7}

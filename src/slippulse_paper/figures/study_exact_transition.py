@@ -18,7 +18,7 @@ NEEDS = {
     },
     "studies": ["gaussian_transition"],
 }
-# Which runs of each simulation the figure can draw, in the words of configuration/drawn.py.
+# Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
     "scaling_displacement": "boundary displacement and equal levels above 0",
     "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
@@ -32,19 +32,22 @@ QUANTITY_LOOKS = {"time": ("v", BLACK), "length": ("P", GREY)}
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
-    sweep, refinement : one row for each run, with T_trans and L_trans as measured, by the paper's
-        formulas (paper_) and exact (exact_)
+    sweep : the runs of figure 5
+    refinement : runs on refined lattices
     gaussian : the rows of the study gaussian_transition
+
+    A run has T_trans and L_trans as measured (columns transition_time and transition_length), by
+    the paper's formulas (prefix paper_), and exact (prefix exact_).
     """
-    kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
+    columns = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
-        kept += [f"{source}_{quantity}" for quantity in QUANTITY_LOOKS]
+        columns += [f"{source}_{quantity}" for quantity in QUANTITY_LOOKS]
     roles = {
         "scaling_displacement": "sweep",
         "scaling_stress": "sweep",
         "transition_convergence": "refinement",
     }
-    parts = [tables[name][kept].assign(role=role) for name, role in roles.items()]
+    parts = [tables[name][columns].assign(role=role) for name, role in roles.items()]
     parts.append(tables["gaussian_transition"].assign(role="gaussian"))
     return pd.concat(parts, ignore_index=True)
 
@@ -63,9 +66,12 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_distributions(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
-    """Draw the fraction of runs with an error below a value, for theory and paper's formula.
+    """Draw the distribution of errors: the fraction of runs whose error is smaller than a value.
 
-    Flagged runs are left out.
+    There is one line for exact theory and one for the paper's formula, for each boundary. Flagged
+    runs are left out.
+
+    quantity : "time" or "length"
     """
     for boundary, (colour, boundary_name) in BOUNDARY_LOOKS.items():
         sound = runs[(runs["boundary"] == boundary) & runs["run_flags"].isna()]
@@ -80,15 +86,19 @@ def draw_distributions(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
 
 
 def draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
-    """Draw the errors of all runs as functions of spacing, with a line through the largest ones."""
+    """Draw the errors of all runs as functions of the spacing.
+
+    A line connects the largest errors of all spacings.
+    """
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITY_LOOKS.items():
         ratio = runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"]
         error = np.abs(ratio - 1.0)
         axes.plot(spacing, error, marker, color=colour, markersize=2.5, **OPEN_MARKER)
-        largest = error.groupby(spacing).max()
+        # The index of this series has the spacings.
+        largest_error = error.groupby(spacing).max()
         label = f"${scaling.QUANTITIES[quantity]}$, largest"
-        axes.plot(largest, marker=marker, color=colour, label=label)
+        axes.plot(largest_error, marker=marker, color=colour, label=label)
     style.draw_first_order(axes, spacing, slope=0.4, colour=BLACK)
     axes.set(xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
     axes.set_title(r"$\Gamma = 1$, refining")
@@ -97,7 +107,11 @@ def draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
 
 
 def draw_exact_times(axes: Axes, study: pd.DataFrame) -> None:
-    """Draw the exact transition time for nucleation at a point (uniform) and by a Gaussian."""
+    """Draw the exact transition time divided by the paper's estimate pi/sqrt(gamma).
+
+    The dashed line holds for a rupture that starts at a point of uniform pre-stress. The other
+    lines, one for each gamma, hold for nucleation by the Gaussian.
+    """
     uniform = study[study["gamma"].isna()]
     axes.axhline(1.0, color=BLACK, linewidth=0.6)
     axes.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")

@@ -1,4 +1,7 @@
-"""Other friction laws: where pulses stick or creep, and the front speed at fixed damping."""
+"""Other friction laws than that of the paper: their regimes, and their front speed.
+
+Some pulses stick, and others creep. The front speed is shown at a fixed damping beta.
+"""
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,7 +14,7 @@ NEEDS = {"studies": ["friction_laws"]}
 table = style.as_given
 
 RATE_LABEL, WEAKENING_LABEL = r"$F/\tau_0$", r"$\gamma d_c/\tau_0^2$"
-# The laws of each panel, with its axis label and the formula of the friction strength.
+# The friction laws in each panel, the label of its horizontal axis, and the formulas of the laws.
 PANEL_LAWS = {
     ("rate_weakening", "bounded_rate"): (RATE_LABEL, r"$-\min(a\dot u,F)$, $F\dot u/(\dot u+v_0)$"),
     ("slip_weakening",): (WEAKENING_LABEL, r"$1-u/d_c$"),
@@ -37,16 +40,18 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
-    """Draw front speeds under slip weakening as functions of d_c/dx, exact and on lattices.
+    """Draw front speeds under slip weakening, exact and on lattices.
 
-    A level of pre-stress has one colour, and a spacing one marker.
+    The horizontal axis is the slip-weakening distance d_c divided by the block spacing. Each level
+    of the pre-stress has a colour, and each spacing has a marker.
     """
-    for colour, (level, of_level) in zip(LEVEL_COLOURS, runs.groupby("level"), strict=True):
-        for marker, (dx, points) in zip(MARKERS, of_level.groupby("dx"), strict=False):
-            resolution = points["d_c"] / dx
-            (line,) = axes.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            axes.plot(resolution, points["speed"], marker, color=colour, **OPEN_MARKER)
-        # The exact lines of a level look alike, and the last one gets the entry in the legend.
+    for colour, (level, runs_at_level) in zip(LEVEL_COLOURS, runs.groupby("level"), strict=True):
+        for marker, (dx, points) in zip(MARKERS, runs_at_level.groupby("dx"), strict=False):
+            relative_distance = points["d_c"] / dx
+            exact_speed = points["exact_speed"]
+            (line,) = axes.plot(relative_distance, exact_speed, color=colour, linewidth=0.8)
+            axes.plot(relative_distance, points["speed"], marker, color=colour, **OPEN_MARKER)
+        # The exact lines of a level look alike, so only the last one gets an entry in the legend.
         line.set_label(rf"exact, $\tau_0 = {level:g}$")
     for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
         label = rf"lattice, $\Delta x = {dx:g}$"

@@ -1,6 +1,6 @@
 """The front speed as a function of pre-stress, damping, leaf springs and spacing.
 
-In all panels lines are the exact speeds of the study front_law, and markers are lattice runs.
+In all panels, lines are the exact speeds of the study front_law, and markers are lattice runs.
 """
 
 import numpy as np
@@ -34,16 +34,19 @@ NEEDS = {
 }
 
 RELEASE_RULES = ("total", "elastic")
-# Narrower pulses stick inside the lattice waves at their front, which the theory leaves out.
+# The theory of fronts with leaf springs holds for pulses of at least this number of blocks. A
+# narrower pulse sticks within the lattice waves behind its front, which the theory leaves out.
 MIN_PULSE_BLOCKS = 4.0
+# Columns of the table that describe a run or a line.
 COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx"]
 COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the lines of the study front_law (role theory) and the runs of each panel.
+    """Return the lines of the study front_law (role theory) and runs (role simulation).
 
-    The column sound is True if the theory should hold for a run.
+    The column panel names the panel of a row: prestress, springs or refined. The column sound is
+    True if the theory should hold for a run.
     """
     lines = tables["front_law"].assign(role="theory")
     runs = pd.concat(
@@ -71,7 +74,10 @@ def uniform_runs(tables: dict) -> pd.DataFrame:
 
 
 def spring_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs with leaf springs under the release rule of the lines."""
+    """Return the runs with leaf springs that have the release rule of the lines.
+
+    The column springs has gamma dx^2, the dimensionless stiffness of the leaf springs.
+    """
     runs = tables["front_speed_springs"]
     release = lines.loc[lines["panel"] == "springs", "release"].iloc[0]
     runs = runs[runs["release"] == release]
@@ -81,8 +87,8 @@ def spring_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
 def refined_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
     """Return the runs on refined lattices that belong to a line.
 
-    Along a line either beta or b = beta/dx is fixed: the column held says which of them, and the
-    column fixed has its value.
+    As dx falls along a line, either beta or b = beta/dx is kept fixed. The column held names the
+    fixed one, and the column fixed has its value.
     """
     at_fixed_ratio = tables["continuum_fixed_ratio"]
     at_fixed_ratio = at_fixed_ratio.assign(held="b", fixed=at_fixed_ratio["damping_ratio"])
@@ -90,8 +96,9 @@ def refined_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
     at_fixed_beta = at_fixed_beta.assign(held="beta", fixed=at_fixed_beta["beta"])
     runs = pd.concat([at_fixed_ratio, at_fixed_beta])
     columns = ["release", "left", "gamma", "held", "fixed"]
-    with_a_line = lines.loc[lines["panel"] == "refined", columns].drop_duplicates()
-    return runs.merge(with_a_line).assign(panel="refined")
+    parameters_of_lines = lines.loc[lines["panel"] == "refined", columns].drop_duplicates()
+    # Merging keeps only the runs that have the parameters of a line.
+    return runs.merge(parameters_of_lines).assign(panel="refined")
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -114,14 +121,14 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the speed divided by that without damping, as a function of pre-stress."""
+    """Draw the front speed, divided by the speed without damping, as a function of pre-stress."""
     # The undamped speed is 1/sqrt(1 - tau_0^2).
     rows = rows.assign(scaled_speed=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
     for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
         line = group[group["role"] == "theory"]
         look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
         axes.plot(line["left"], line["scaled_speed"], **look)
-        _points(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
+        _mark_runs(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
     axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
 
 
@@ -129,26 +136,31 @@ def _draw_strong_damping(axes: Axes) -> None:
     """Draw the limit b -> infinity under the elastic rule, where v = 1/sqrt(1 - tau_0)."""
     tau0 = np.linspace(0.0, 1.0, 101)
     label = r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
-    # This is v sqrt(1 - tau_0^2).
+    # The vertical axis shows v sqrt(1 - tau_0^2), which simplifies to this.
     scaled_speed = np.sqrt(1.0 + tau0)
     limit = axes.plot(tau0, scaled_speed, ":", color=BLACK, label=label)
     axes.legend(handles=limit, loc="upper left")
 
 
 def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the speed as a function of gamma dx^2; a cross marks where a line ends."""
+    """Draw the front speed as a function of the stiffness gamma dx^2 of the leaf springs.
+
+    A cross marks where a line ends, because no front beyond is faster than the waves. Levels of the
+    pre-stress are distinguished by dashes and markers, and damping ratios by colours.
+    """
     look_of_level = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
     for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
         dashes, marker = look_of_level[level]
         shade = colour("damping_ratio", ratio)
         axes.plot(line["springs"], line["speed"], dashes, color=shade)
-        # The theory has no speed where no front is faster than the waves.
+        # The theory has no speed where no front is faster than the waves. A line ends at the last
+        # point before these.
         has_speed = line["speed"].notna()
         next_has_none = line["speed"].isna().shift(-1, fill_value=False)
-        last = line[has_speed & next_has_none]
-        axes.plot(last["springs"], last["speed"], "x", color=shade)
-        _points(axes, group, "springs", "speed", marker)
+        end = line[has_speed & next_has_none]
+        axes.plot(end["springs"], end["speed"], "x", color=shade)
+        _mark_runs(axes, group, "springs", "speed", marker)
     for level, (dashes, marker) in look_of_level.items():
         axes.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
@@ -160,9 +172,11 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
-    """Draw front speeds on refined lattices, with both limits as horizontal lines.
+    """Draw front speeds as functions of the spacing, and two limits as horizontal lines.
 
-    limit : the exact speed in the limit dx -> 0 at fixed beta, under the elastic rule
+    One limit is the speed without damping.
+
+    limit : the other limit, the exact speed as dx -> 0 at fixed beta, under the elastic rule
     """
     symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])
@@ -171,7 +185,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
         label = rf"fixed ${symbols[held]} = {fixed:g}$, {rule}"
         look: Look = {"color": GREY, "linewidth": 0.8}
         axes.plot(line["dx"], line["speed"], **look)
-        _points(axes, group, "dx", "speed", marker)
+        _mark_runs(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=label, **look)
     undamped = rows["undamped"].max()
     _mark_speed(axes, limit, r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
@@ -190,12 +204,12 @@ def _mark_speed(axes: Axes, speed: float, label: str, dashes: str, side: str) ->
     axes.text(0.99, speed, label, path_effects=TEXT_OUTLINE, **look)
 
 
-def _points(
+def _mark_runs(
     axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None
 ) -> None:
-    """Mark simulated speeds in the colour of their damping ratio.
+    """Mark the runs among some rows in the colour of their damping ratio.
 
-    Markers are open if the theory should not hold.
+    Markers are open if the theory should not hold for a run.
 
     x, y : columns on the axes
     """

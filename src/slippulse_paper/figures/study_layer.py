@@ -1,8 +1,9 @@
-"""Pulses of the layer in the plane: what sets speed, width and slip, and which are stable.
+"""Pulses of the layer in the plane: their speed, width, slip and stability.
 
 The fracture energy is always divided by the energy G_0 that the layer releases. The width of a
-pulse is compared with sqrt(2/gamma - 1), which is the distance that a front at the speed of the
-longitudinal wave runs while a shear wave crosses the layer.
+pulse is compared with sqrt(2/gamma - 1) layer thicknesses: at this distance behind the tip of a
+rupture, shear waves from the top of the layer reach the fault. (The tip runs at the speed of the
+longitudinal wave.)
 """
 
 import numpy as np
@@ -27,12 +28,13 @@ from slippulse.plotting.style import (
 NEEDS = {"studies": ["layer", "layer_map"]}
 
 QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
-# Parameters that distinguish the pulses.
+# Parameters that identify a pulse.
 PULSE_COLUMNS = ["gamma", "tau0", "fracture_energy"]
 FORMULA_COLUMNS = [f"paper_{quantity}" for quantity in QUANTITIES]
 MARKERS = ("o", "^", "s", "D")
 # Colours end at this fraction of the largest velocity, which only the tip of the pulse has.
 BRIGHTEST_FRACTION = 0.6
+# Markers of what the pulses of a point of the map do.
 OUTCOMES: dict[str, Look] = {
     "steady": {"marker": "o", "color": GREEN, "label": "steady"},
     "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"}
@@ -47,11 +49,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of four parts of the figure, which the column part names.
 
     field : velocity in the layer at one time
-    pulse : one row for each pulse on its finest grid, measured at the last station (see
-        `drawn_pulses`); columns change_of_QUANTITY have the absolute change from the second finest
-        grid
+    pulse : one row for each pulse, from `drawn_pulses`
     step : slip of pulses that enter another pre-stress
-    map : outcome as a function of gamma and fracture energy
+    map : what a pulse does (column outcome) for each gamma and fracture energy
     """
     study = tables["layer"]
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
@@ -65,9 +65,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the pulses at one level of pre-stress, with their change from a coarser grid.
+    """Return the pulses at one level of pre-stress: their quantities on the finest grid.
 
-    A station is a position on the fault at which a pulse is measured. The last one counts.
+    The columns change_of_QUANTITY have the absolute changes from the second finest grid.
 
     rows : rows of the part pulse of the study, for all levels, grids and stations
     """
@@ -75,6 +75,7 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     # The level at which most fracture energies have been run.
     level = rows["tau0"].mode().iloc[0]
     rows = rows[rows["tau0"] == level]
+    # A station is a position on the fault at which a pulse is measured. The last one is used.
     at_last_station = rows[rows["station"] == rows["station"].max()]
     # The rows of a pulse are in the order of their grids, the finest last.
     by_pulse = at_last_station.groupby(PULSE_COLUMNS)
@@ -85,7 +86,7 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) velocity, (b-d) speed, width and slip, (e) pulses across a step, (f) the map."""
+    """Draw (a) velocity, (b to d) speed, width and slip, (e) pulses across a step, (f) a map."""
     figure, panels = style.new_panels(
         PAGE_WIDTH, 5.6, "aaaaaa;bbccdd;eeefff", height_ratios=(1.0, 2.3, 2.1)
     )
@@ -97,12 +98,15 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _crossing_width(gamma: float | pd.Series) -> float | pd.Series:
-    """Return sqrt(2/gamma - 1), the width that pulses are compared with; gamma may be a Series."""
+    """Return sqrt(2/gamma - 1), the width with which pulses are compared, in layer thicknesses."""
     return np.sqrt(2.0 / gamma - 1.0)
 
 
 def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
-    """Draw the velocity in the layer, and the shear front that starts from its top at the tip."""
+    """Draw the velocity in the layer, and as a dashed line the shear front from its top.
+
+    The shear front leads from the top of the layer, above the tip of the rupture, to the fault.
+    """
     # One row for each height and one column for each position.
     grid = field.pivot(index="y", columns="x", values="velocity")
     brightest = BRIGHTEST_FRACTION * float(grid.to_numpy().max())
@@ -124,7 +128,10 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
 
 
 def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
-    """Draw speed, width and slip as functions of the fracture energy, with the paper's formulas."""
+    """Draw speed, width and slip as functions of the fracture energy.
+
+    Error bars are changes from a coarser grid, and dashed lines are formulas of the paper.
+    """
     speed_axes, width_axes, slip_axes = panels
     for marker, (gamma, rows) in zip(MARKERS, pulses.groupby("gamma"), strict=False):
         rows = rows.sort_values("fracture_energy")
@@ -132,7 +139,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
         look: Look = {"color": colour, "capsize": 1.5, "linewidth": 0.8}
         look |= {"fmt": f"{marker}-", "label": rf"$\gamma = {gamma:.2g}$"}
         crossing_width = _crossing_width(gamma)
-        # Each quantity is divided by a unit of its own.
+        # In its panel, each quantity is divided by this unit.
         units = {
             "speed": 1.0,
             "pulse_width": crossing_width,
@@ -162,8 +169,8 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
 def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
     """Draw the slip that pulses leave behind, as a function of position.
 
-    A pulse with a dotted line passes from the pre-stress ``before`` to tau_0 on its way. A pulse
-    with a solid line has the same pre-stress all the way.
+    A pulse with a solid line runs in the same pre-stress tau_0 all the way. A pulse with a dotted
+    line begins in another pre-stress, ``before``.
     """
     for (tau0, before), rows in steps.groupby(["tau0", "before"]):
         rows = rows.sort_values("sample_position")
@@ -180,7 +187,10 @@ def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
-    """Mark what the pulses of each point do, as a function of fracture energy and width."""
+    """Mark what the pulse of each point does: whether it is steady, grows, dies, or neither.
+
+    The axes are the fracture energy and the width sqrt(2/gamma - 1).
+    """
     for outcome, rows in points.groupby("outcome"):
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
         axes.plot(rows["fracture_energy"], _crossing_width(rows["gamma"]), **look)

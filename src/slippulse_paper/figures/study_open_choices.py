@@ -1,6 +1,7 @@
-"""A specification curve: claims judged by numbers, at every choice that the paper leaves open.
+"""A specification curve: how far claims are off, at every choice that the paper leaves open.
 
-Each claim is judged at all combinations of the open choices. The figure shows all the deviations.
+Each claim with a numerical tolerance is judged at all combinations of the open choices. The figure
+shows the deviation at each combination.
 """
 
 import pandas as pd
@@ -40,14 +41,15 @@ SOLUTION_MARKERS: dict[str, Look] = {
     "exact": {"marker": "o"},
     "lattice": {"marker": "s"} | OPEN_MARKER,
 }
-# Offset of a deviation from its row, by release rule.
+# Vertical distance of a deviation from the middle of its row, by release rule.
 ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each claim and combination of choices.
 
-    A claim without open choices has one row.
+    A claim without open choices has one row. The column over has the deviation divided by the
+    tolerance.
     """
     names = ["id", "label", "verdict", "tolerance", "choice"]
     rows = []
@@ -55,30 +57,32 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         if claim["kind"] not in NUMERIC_KINDS or not claim["tolerance"]:
             continue
         fields = {name: claim[name] for name in names}
-        combinations = claim["choices"]
-        if not combinations:
-            combinations = [{"deviation": claim["deviation"]}]
-        for combination in combinations:
-            # A combination has the deviation, and the choices that differ from these.
-            rows.append({"release": "", "solution": "lattice"} | combination | fields)
+        # A combination has the deviation, and by name the choices that differ from the defaults.
+        defaults = {"release": "", "solution": "lattice"}
+        combinations = claim["choices"] or [{"deviation": claim["deviation"]}]
+        rows += [defaults | combination | fields for combination in combinations]
     columns = [*names, "deviation", "release", "solution"]
     drawn = pd.DataFrame(rows)[columns].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw deviations divided by tolerances, with a row for each claim, the largest on top."""
+    """Draw deviations divided by tolerances, with one row of markers for each claim.
+
+    The claim with the largest value is on top.
+    """
     table = table.fillna({"choice": "", "release": ""})
-    farthest = table.groupby(["id", "label"])["over"].max().sort_values()
-    figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(farthest)), layout="constrained")
+    largest = table.groupby(["id", "label"])["over"].max().sort_values()
+    figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(largest)), layout="constrained")
     axes = figure.subplots()
+    # Verdicts change at 1. A band around 1 shows ratios that are close to the tolerance.
     axes.axvspan(1.0 / TOLERANCE_BAND, TOLERANCE_BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
-    for position, (id, _) in enumerate(farthest.index):
+    for position, (id, _) in enumerate(largest.index):
         draw_claim(axes, table[table["id"] == id], position)
     axes.set(xscale="log", xlabel="deviation / tolerance", xlim=(0.7 * MIN_SHOWN_RATIO, None))
-    axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
-    axes.set_ylim(-0.7, len(farthest) - 0.3)
+    axes.set_yticks(range(len(largest)), largest.index.get_level_values("label"), fontsize=7.0)
+    axes.set_ylim(-0.7, len(largest) - 0.3)
     figure.supylabel("claim")
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
     shown = [name for name in CHOICE_LOOKS if (table["choice"] == name).any()]
@@ -89,9 +93,11 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
-    """Mark the deviations of one claim in a row at this position.
+    """Mark the deviations of one claim in a row.
 
     The colour is that of the choice on which the verdict depends most.
+
+    position : vertical position of the row
     """
     for (choice, solution), rows in claim.groupby(["choice", "solution"]):
         choice_look = CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])

@@ -1,4 +1,4 @@
-"""The steady pulse as a function of damping: formulas of the paper, exact theory, simulations."""
+"""The steady pulse as a function of damping: simulations, exact theory and the paper's formulas."""
 
 import numpy as np
 import pandas as pd
@@ -22,7 +22,7 @@ NEEDS = {
 }
 
 QUANTITY_LABELS = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
-# The measured columns on refined lattices.
+# The quantities that are compared on refined lattices, and their measured columns.
 REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
     "front_speed": "front_speed_right"
 }
@@ -31,9 +31,10 @@ REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each quantity of a pulse, in three parts, which the column role names.
 
-    theory : exact values divided by the paper's formula (over_paper), by damping ratio
-    simulation : measured values, with the exact ones (theory) and those of the paper's formula
-    refined : measured values on lattices of several spacings, with their limit (theory)
+    theory : exact values divided by the paper's formula (column over_paper) at each damping ratio
+    simulation : measured values (column value), exact ones (theory), and those by the paper's
+        formula (paper)
+    refined : measured values on lattices of several spacings (value), and their limit (theory)
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     curves = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
@@ -66,17 +67,19 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_quantity(axes, table[table["quantity"] == quantity])
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
-    first = quantity_panels[0]
-    first.plot([], [], "o", color=GREY, label="simulation")
-    style.legend_above(figure, first)
+    # The three panels share the legend of the first one.
+    first_axes = quantity_panels[0]
+    first_axes.plot([], [], "o", color=GREY, label="simulation")
+    style.legend_above(figure, first_axes)
     draw_errors_by_spacing(refined_axes, roles["refined"])
     return figure
 
 
 def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw a quantity divided by the paper's formula, by damping ratio, for each level.
+    """Draw a quantity, divided by the paper's formula, as a function of the damping ratio.
 
-    Theory is a line; runs are markers, which are open if the run is flagged.
+    Each level of the pre-stress has a colour. Exact theory is drawn as lines, and runs as markers,
+    which are open if the run is flagged.
     """
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
     for level, group in rows.groupby("left"):
@@ -85,14 +88,17 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
         label = None if theory.empty else rf"exact, $\tau_0 = {level:g}$"
         axes.plot(theory["damping_ratio"], theory["over_paper"], color=colour, label=label)
         runs = group[group["role"] == "simulation"]
-        for is_flagged, marks in runs.groupby(runs["run_flags"].notna()):
+        for is_flagged, drawn_runs in runs.groupby(runs["run_flags"].notna()):
             look: Look = OPEN_MARKER if is_flagged else {}
-            ratio = marks["value"] / marks["paper"]
-            axes.plot(marks["damping_ratio"], ratio, "o", color=colour, **look)
+            ratio = drawn_runs["value"] / drawn_runs["paper"]
+            axes.plot(drawn_runs["damping_ratio"], ratio, "o", color=colour, **look)
 
 
 def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the relative deviation of each quantity from its exact limit, by block spacing."""
+    """Draw the relative error of each quantity on refined lattices, as a function of the spacing.
+
+    The error is measured from the exact limit for dx -> 0.
+    """
     for quantity, colour, marker in zip(REFINED_COLUMNS, COLOUR_CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)

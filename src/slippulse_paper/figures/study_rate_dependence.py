@@ -1,4 +1,8 @@
-"""Friction that is linear in slip rate: which pulses stick, their sizes, and their maps."""
+"""Friction that is linear in slip rate: which pulses stick, and how they look.
+
+The friction is alpha times the slip rate. The figure shows alpha divided by sqrt(gamma), which is
+dimensionless; its column is scaled_rate.
+"""
 
 import numpy as np
 import pandas as pd
@@ -17,14 +21,17 @@ RATE_LABEL = r"$\alpha/\sqrt{\gamma}$"
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) regimes, (b) width and slip of pulses, (c) a map of each regime, (d) Gamma = 0."""
+    """Draw (a) regimes, (b) pulse width and slip, (c) two pulses in time and space, (d) an arrest.
+
+    Panels a to c have leaf springs (Gamma = 1), and panel d has none (Gamma = 0).
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     plane_axes, pulse_axes, map_axes, arrest_axes = panels
     table = table.assign(scaled_rate=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     roles = style.by_role(table)
     runs = roles["lattice"]
     _draw_plane(plane_axes, runs, roles["limit"])
-    # The level at which pulses and maps are shown.
+    # Panels b and c show pulses at this level of the pre-stress.
     level = roles["map"]["level"].iloc[0]
     _draw_pulses(pulse_axes, roles["steady"], runs[runs["level"] == level])
     pulse_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice")
@@ -35,7 +42,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_pulses(axes: Axes, steady: pd.DataFrame, runs: pd.DataFrame) -> None:
-    """Draw width and slip of pulses by rate strengthening, exact and on lattices."""
+    """Draw width and slip of pulses by rate strengthening: exact lines, and lattices as markers."""
     width, slip = r"width $W_\text{p}$", r"slip $u$"
     looks = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
     for column, (colour, marker, label) in looks.items():
@@ -46,7 +53,7 @@ def _draw_pulses(axes: Axes, steady: pd.DataFrame, runs: pd.DataFrame) -> None:
 
 
 def _draw_maps(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the maps of a creeping pulse (upper half) and of a sticking pulse (lower half)."""
+    """Draw the slip velocity of a creeping pulse (upper half) and a sticking pulse (lower half)."""
     draw_halves(axes, rows, "regime")
     for regime, half in rows.groupby("regime"):
         rate = half["scaled_rate"].iloc[0]
@@ -56,9 +63,10 @@ def _draw_maps(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def _draw_arrest(axes: Axes, lattices: pd.DataFrame, asymptotes: pd.DataFrame) -> None:
-    """Draw the largest velocity by time without leaf springs, on the finest lattice.
+    """Draw how the largest velocity decays without leaf springs, on the finest lattice.
 
-    The line is the asymptote for the weakest rate strengthening; it is the same for all of them.
+    The line is the asymptote of this decay at long times. It is the same for every rate
+    strengthening, and is drawn from the weakest one.
     """
     finest = lattices[lattices["dx"] == lattices["dx"].min()]
     groups = finest.groupby("rate_strengthening")
@@ -76,7 +84,12 @@ def _draw_arrest(axes: Axes, lattices: pd.DataFrame, asymptotes: pd.DataFrame) -
 
 
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
-    """Draw the regimes of runs by rate strengthening and level, with the exact limit."""
+    """Draw the regimes of runs by rate strengthening and level.
+
+    Exact theory has sticking pulses in the shaded region between its two lines.
+
+    limit : rate strengthening at the line on the right, for each level
+    """
     look: Look = {"color": BLUE, "alpha": 0.12, "linewidth": 0.0}
     axes.fill_betweenx(limit["level"], -limit["scaled_rate"], limit["scaled_rate"], **look)
     axes.plot(limit["scaled_rate"], limit["level"], label="exact", **THEORY_LOOK)

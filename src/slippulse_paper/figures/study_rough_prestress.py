@@ -1,7 +1,9 @@
-"""Pulses on a rough pre-stress: deaths and barriers (Gamma = 1), and random walks (Gamma = 0).
+"""Pulses on a rough pre-stress, which is a random field: how far they run before they die.
 
-An ensemble is a set of runs whose pre-stress is drawn from the same random field. It has one colour
-and one marker, and is named by the four parameters of the field.
+With the displacement held (Gamma = 1), barriers of the pre-stress stop pulses. With the stress held
+(Gamma = 0), the velocity of a pulse performs a random walk. An ensemble is a set of runs whose
+pre-stress is drawn from the same random field. It has one colour and one marker, and is named by
+the four parameters of the field.
 """
 
 from collections.abc import Iterator
@@ -17,40 +19,48 @@ from slippulse.plotting.style import BLACK, GREY, MARKERS, OPEN_MARKER, PAGE_WID
 
 NEEDS = {"studies": ["rough_prestress"]}
 
-# Parameters of the random field of an ensemble, and their symbols as a title of the legend.
+# Parameters of the random field of an ensemble: mean, standard deviation, correlation length and
+# Hurst exponent. The title of the legend has their symbols.
 PARAMETERS = ["level", "deviation", "correlation_length", "hurst"]
 LEGEND_TITLE = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
+# If there are more ensembles than colours, only the death rates of the others are drawn.
 COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY, BLACK)
-# A larger study has more ensembles than colours. Of the others, only death rates are drawn.
 ENSEMBLE_MARKERS = (*MARKERS, "X")
-# Survival is drawn only if more than this fraction of the pulses has died.
+# With the stress held, survival is drawn only if more than this fraction of the pulses has died.
 MIN_DRAWN_DEATHS = 0.1
-# The guide of slope -1/2 begins at this fraction of the largest distance, above the curve by the
-# second factor.
+# The line of the power law begins at this fraction of the largest distance. It lies above the curve
+# by the second factor.
 GUIDE_START, GUIDE_OFFSET = 0.2, 1.5
 
 
 class Ensemble(NamedTuple):
-    """One ensemble of the study: its look, its row of the part ensemble, and all its rows."""
+    """One ensemble of the study, with its look and its rows of the table."""
 
     colour: str
     marker: str
     label: str
-    row: pd.Series
-    rows: pd.DataFrame
+    row: pd.Series  # its row of the part "ensemble", which has its death rate
+    rows: pd.DataFrame  # all its rows
 
     def part(self, name: str) -> pd.DataFrame:
-        """Return the rows of one part of the study."""
+        """Return the rows of the ensemble in one part of the study."""
         return self.rows[self.rows["part"] == name]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the table of the study; the balance is NaN if it is not reached within the table."""
+    """Return the table of the study rough_prestress, with NaN in place of infinite numbers.
+
+    The column balance has the position at which the integral of the pre-stress has fallen to 0. It
+    is infinite if the integral stays positive.
+    """
     return style.as_given(data, tables, settings).replace(np.inf, np.nan)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) survival and (b) death rate at Gamma = 1, (c) survival and (d) velocity at 0."""
+    """Draw the two boundary conditions in two rows of panels.
+
+    Displacement held: (a) survival, (b) death rate. Stress held: (c) survival, (d) velocity.
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
     survival_axes, rate_axes, walk_axes, velocity_axes = panels
     at_gamma_1 = table[table["boundary"] == "displacement"]
@@ -77,7 +87,7 @@ def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
     """Yield the ensemble of each row of ``rows``, until the colours or the markers are used up.
 
     table : all rows of the study with one boundary condition
-    rows : those in its part "ensemble" that are drawn, one for each ensemble
+    rows : its rows of the part "ensemble" that are to be drawn, one for each ensemble
     """
     looks = zip(COLOURS, ENSEMBLE_MARKERS, rows.iterrows(), strict=False)
     for colour, marker, (_, row) in looks:
@@ -87,7 +97,10 @@ def ensembles(table: pd.DataFrame, rows: pd.DataFrame) -> Iterator[Ensemble]:
 
 
 def draw_survival(axes: Axes, ensemble: Ensemble) -> None:
-    """Draw the fraction of pulses alive as a function of distance, with its confidence band."""
+    """Draw the fraction of pulses that are alive as a function of distance.
+
+    A band shows its confidence interval.
+    """
     curve = ensemble.part("survival")
     look: Look = {"color": ensemble.colour, "linewidth": 1.0, "label": ensemble.label}
     axes.step(curve["distance"], curve["survival"], where="post", **look)
@@ -105,8 +118,13 @@ def finish_survival(axes: Axes, stop: float) -> None:
 
 
 def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the death rate of an ensemble and its confidence interval."""
+    """Mark the death rate of an ensemble, with its confidence interval, by the predicted rate.
+
+    Both are numbers of events for each layer thickness that a pulse runs. The predicted rate is
+    that of barriers which stop pulses.
+    """
     row = ensemble.row
+    # The error bars below and above the mark.
     below, above = row["rate"] - row["rate_low"], row["rate_high"] - row["rate"]
     look: Look = {"color": ensemble.colour, "fmt": ensemble.marker} | OPEN_MARKER
     look |= {"capsize": 2.0, "markersize": 4.0}
@@ -114,9 +132,11 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
 
 
 def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
-    """Mark ensembles without a colour, and draw the line of equal rates.
+    """Mark ensembles without a colour, and draw the line on which both rates are equal.
 
-    The band around the line is a factor of two to both sides.
+    Within the band around the line, they differ by less than a factor of two.
+
+    dying : rows of the ensembles in which a pulse died
     """
     others = dying.iloc[len(COLOURS) :]
     axes.plot(others["barrier_rate"], others["rate"], ".", color=GREY, zorder=1.0)
@@ -133,8 +153,8 @@ def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
 def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     """Draw the survival over a long distance and a power law, and set the axes of panel c.
 
-    This survival follows from the balance alone: a pulse dies where the integral of its pre-stress
-    has fallen to 0. The power law has the exponent of a random walk.
+    This survival is not simulated. It follows from the pre-stress alone, because a pulse dies where
+    the integral of the pre-stress has fallen to 0. The power law has the exponent of a random walk.
     """
     axes.plot(
         long_survival["distance"],
@@ -145,8 +165,9 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     start = GUIDE_START * long_survival["distance"].max()
     tail = long_survival[long_survival["distance"] > start]
     first = tail.iloc[0]
-    guide = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
-    axes.plot(tail["distance"], guide, ":", color=BLACK, label="power law $x^{-1/2}$")
+    # A power law of the distance that is higher than the survival by a constant factor.
+    power_law = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
+    axes.plot(tail["distance"], power_law, ":", color=BLACK, label="power law $x^{-1/2}$")
     axes.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))
     axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 0$")
     axes.legend(
@@ -155,18 +176,18 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
 
 
 def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the velocity of each pulse that is alive, as a function of its exact velocity."""
+    """Mark the slip velocity of each pulse that is alive at the end, by its exact velocity."""
     pulses = ensemble.part("pulse")
     alive = pulses[~pulses["died"].astype(bool)]
     look: Look = {"color": ensemble.colour, "label": ensemble.label}
     look |= {"markersize": 2.5, "linestyle": "none"} | OPEN_MARKER
-    # Ensembles with a smaller deviation are drawn on top of those with a larger one.
+    # Ensembles with a smaller deviation of the pre-stress are drawn on top of the others.
     look["zorder"] = 3.0 - ensemble.row["deviation"]
     axes.plot(alive["exact_velocity"], alive["velocity"], ensemble.marker, **look)
 
 
 def finish_velocities(axes: Axes) -> None:
-    """Draw the line on which both velocities are equal."""
+    """Draw the line on which both velocities are equal, and set the axes of panel d."""
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
     axes.set(

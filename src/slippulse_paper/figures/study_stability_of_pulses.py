@@ -1,8 +1,8 @@
 """Pulses that enter another pre-stress.
 
-Under a displacement boundary (Gamma = 1) they settle to the steady pulse of the new pre-stress.
-Under a stress boundary (Gamma = 0) they grow, decay or stay as they are. The pre-stress has a step
-on both sides: a pulse forms in the level ``before`` and enters the other level.
+A pulse forms in one level of the pre-stress (column before) and enters another one (column level)
+at a step. Under a displacement boundary (Gamma = 1) it settles to the steady pulse of the new
+level. Under a stress boundary (Gamma = 0) it grows, decays or stays as it is.
 """
 
 import numpy as np
@@ -20,12 +20,12 @@ from ..text.numerals import setting
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
-# Largest number of points kept of a lattice, and one in how many of them is marked.
+# About this number of points of a lattice is kept. Of these, one in POINTS_PER_MARKER is marked.
 LATTICE_POINTS = 100
 POINTS_PER_MARKER = 5
-# What rounding leaves of a distance that is exactly 0.
+# A relative deviation that is exactly 0 is computed with about this error.
 ROUNDING_ERROR = 2e-9
-# The smallest drawn velocity.
+# The smallest slip velocity on the axis.
 MIN_DRAWN_VELOCITY = 0.03
 
 
@@ -33,7 +33,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
     exact, lattice : final slip by distance x from the step, under a displacement boundary
-    velocity : largest slip velocity by time, under a stress boundary
+    velocity : largest slip velocity at each sampled time, under a stress boundary
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
@@ -52,25 +52,25 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def lattice_slip(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
     """Return the final slip of a run as a function of the distance x from the step.
 
-    exact : the exact slip of all runs, whose range of distances is kept
+    exact : the exact slip of all runs; the result covers the same distances
     """
-    position, level = prestress_from(run.attrs).steps[-1]
-    x = run["x"].values - position
+    step_position, level = prestress_from(run.attrs).steps[-1]
+    x = run["x"].values - step_position
     exact_x = exact.loc[np.isclose(exact["level"], level), "x"]
     has_stuck = np.isfinite(run["stick_time"].values)
-    inside = np.flatnonzero(has_stuck & (x > exact_x.min()) & (x < exact_x.max()))
-    kept = inside[:: max(1, inside.size // LATTICE_POINTS)]
+    stuck_blocks = np.flatnonzero(has_stuck & (x > exact_x.min()) & (x < exact_x.max()))
+    kept = stuck_blocks[:: max(1, stuck_blocks.size // LATTICE_POINTS)]
     rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
     return rows.assign(level=level, dx=run.attrs["dx"])
 
 
 def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
     """Return the largest slip velocity on the right of x = 0 at each sampled time."""
-    position, level = prestress_from(run.attrs).steps[-1]
-    right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
-    largest = right.max("sample_position").values
+    step_position, level = prestress_from(run.attrs).steps[-1]
+    velocity_on_right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
+    largest = velocity_on_right.max("sample_position").values
     rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
-    return rows.assign(level=level, before=run.attrs["right"], step=position)
+    return rows.assign(level=level, before=run.attrs["right"], step=step_position)
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -103,7 +103,11 @@ def draw(table: pd.DataFrame) -> Figure:
 def _draw_slip(
     axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray, label: str
 ) -> None:
-    """Draw the exact slip, the marked points of the lattice, and the end of the memory."""
+    """Draw the exact slip, the marked points of the lattice, and the end of the memory.
+
+    A pulse remembers the old level only up to a finite distance beyond the step, its memory. From
+    there on, its slip is exactly that of the steady pulse.
+    """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     axes.plot(exact["x"], exact["slip"], color=colour, label=label)
     axes.plot(marked["x"], marked["slip"], "o", color=colour, markersize=2.2, **OPEN_MARKER)
@@ -113,9 +117,12 @@ def _draw_slip(
 def _draw_deviation(
     axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray
 ) -> None:
-    """Draw the relative deviation from the new steady slip, by distance in units of the memory."""
+    """Draw the relative deviation from the new steady slip, by distance in units of the memory.
+
+    The memory is explained in `_draw_slip`.
+    """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    # The exact deviation is 0 beyond the memory of the pulse. Draw it up to the first such point.
+    # Beyond the memory the exact deviation is 0. It is drawn up to the first such point.
     is_drawn = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
     look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
     for rows, line in ((exact[is_drawn], "-"), (marked, "o")):
@@ -137,7 +144,10 @@ def _finish_deviation(axes: Axes) -> None:
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw one line for each level, labelled with it, in a colour for growth, decay or neither."""
+    """Draw the largest velocity as a function of time, with one line for each level.
+
+    A line has the colour of growth, decay or neither, and its level is written at its end.
+    """
     rows = rows[rows["largest_velocity"] > 0.0]
     colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
     look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
@@ -147,10 +157,10 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
         label_time, label_velocity = time.iloc[-1], velocity.iloc[-1]
         if label_velocity <= MIN_DRAWN_VELOCITY:
-            # Put the label where the line leaves the panel. Velocities fall with time, so they
+            # The label stands where the line leaves the panel. Velocities fall with time, so they
             # ascend in reversed order.
-            ascending = np.log(velocity.iloc[::-1])
-            label_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending, time.iloc[::-1])
+            ascending_velocity = np.log(velocity.iloc[::-1])
+            label_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending_velocity, time.iloc[::-1])
             label_velocity = 1.15 * MIN_DRAWN_VELOCITY
         place = (label_time, label_velocity)
         axes.annotate(setting(level), place, color=BLACK, fontsize=SMALL_TEXT, **look)

@@ -1,4 +1,4 @@
-"""A user-defined sweep: its main numbers as functions of what varies, beside exact theory."""
+"""The main numbers of a user-defined sweep as functions of the parameters that vary in it."""
 
 import pandas as pd
 from matplotlib.axes import Axes
@@ -19,7 +19,7 @@ from slippulse.plotting.style import (
 
 from .shared.main_numbers import main_numbers, with_symbols
 
-# Columns that may vary in a sweep.
+# Columns of parameters that may vary in a sweep.
 VARYING_COLUMNS = (
     "tau_0",
     "left",
@@ -32,8 +32,8 @@ VARYING_COLUMNS = (
     "release",
     "dx",
 )
-# The same for a sweep with pre-stress tables, which seed and profile number describe better than
-# the levels at their ends.
+# The same for a sweep with pre-stress tables. Seed and profile describe a table better than the
+# levels at its ends.
 TABLE_SWEEP_COLUMNS = (
     "seed",
     "profile",
@@ -50,11 +50,12 @@ COLUMN_WORDS |= {"profile": "profile", "seed": "seed"}
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """Return `main_numbers` of each run, with its flags and four columns for the figure.
+    """Return `main_numbers` of each run, with its flags and four more columns.
 
-    axis, x : the column on the horizontal axis, and its value
-    series : the values of the other columns that vary, as a text
-    fixed : the settings that all runs share, as a text
+    axis : name of the parameter on the horizontal axis
+    x : value of this parameter
+    series : values of the other parameters that vary, as a text
+    fixed : settings that all runs share, as a text
     """
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
@@ -62,14 +63,14 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     varying = varying_columns(runs)
     if not varying:
         varying = ["profile" if "profile" in runs else "left"]
-    axis, *others = varying
+    axis, *other_columns = varying
     parts = []
     for _, run in runs.iterrows():
-        series = ", ".join(f"{_name(column)} = {_text(run[column])}" for column in others)
+        series = ", ".join(f"{_name(column)} = {_text(run[column])}" for column in other_columns)
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
     rows = pd.concat(parts).set_index("quantity")
-    # A quantity that equals another one in every run is left out.
+    # If two quantities are equal in every run, only the first one is kept.
     values_of_all_runs = rows.groupby("quantity", sort=False)["value"].agg(tuple)
     kept = values_of_all_runs.drop_duplicates().index
     levels = ["tau_0"] if has_equal_levels else ["left", "right"]
@@ -79,7 +80,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
     """Return the boundary condition and the settings that all runs share, as a text.
 
-    levels : the columns with the levels of the pre-stress, which tables of pre-stress do not have
+    levels : the columns with the levels of the pre-stress; left out for tables of pre-stress
     """
     has_springs = runs["boundary"].iloc[0] == "displacement"
     columns = ["gamma"] if has_springs else []
@@ -91,14 +92,14 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
-    """Return the columns that vary: numbers before texts, and those with most values first."""
+    """Return the columns that vary: numbers before texts, and then those with most values first."""
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
-    # A column that always equals another one is left out.
+    # If two columns are equal in every run, only the first one is kept.
     different = runs[[*columns]].T.drop_duplicates().index
     varying = [column for column in different if runs[column].nunique() > 1]
 
     def rank(column: str) -> tuple[bool, int]:
-        """Return a key that sorts numbers before texts, and then by the number of values."""
+        """Return the key of a column for the sorting."""
         is_number = runs[column].dtype.kind == "f"
         return not is_number, -runs[column].nunique()
 
@@ -106,12 +107,12 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
 
 
 def _name(column: str) -> str:
-    """Return the words or the symbol of a column."""
+    """Return the name of a column in the figure: words, or a symbol as a formula."""
     return COLUMN_WORDS.get(column) or f"${SYMBOLS[column]}$"
 
 
 def _text(value: float | str) -> str:
-    """Write a value of a column that may have numbers or texts."""
+    """Return a value, which may be a number or a text, as text."""
     return value if isinstance(value, str) else f"{value:g}"
 
 
@@ -119,12 +120,13 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each quantity: runs as markers, open if flagged, and theory as lines."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
     figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
-    quantities = [rows for _, rows in table.groupby("quantity", sort=False)]
-    drawn = quantities[: len(panels)]
+    rows_by_quantity = [rows for _, rows in table.groupby("quantity", sort=False)]
+    # Quantities for which there is no panel are left out.
+    drawn = rows_by_quantity[: len(panels)]
     for axes, rows in zip(panels, drawn, strict=False):
         draw_quantity(axes, rows)
-    for empty in panels[len(drawn) :]:
-        empty.set_visible(False)
+    for empty_panel in panels[len(drawn) :]:
+        empty_panel.set_visible(False)
     figure.suptitle(table["fixed"].iloc[0])
     series, _ = panels[0].get_legend_handles_labels()
     handles = [*series, entry("simulation", marker="o", color=GREY)]
@@ -137,7 +139,10 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw one quantity; each series has a colour, if there are enough colours."""
+    """Draw one quantity: runs as markers, open if flagged, and theory as a line.
+
+    Each series has a colour. If there are not enough colours, everything is grey.
+    """
     groups = rows.groupby("series", sort=False)
     has_colours = 1 < groups.ngroups <= len(COLOUR_CYCLE)
     colours = COLOUR_CYCLE if has_colours else [GREY] * groups.ngroups
@@ -145,7 +150,8 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
         group = group.sort_values("x")
         is_flagged = group["run_flags"].notna()
         axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-        sound, flagged = group["value"].mask(is_flagged), group["value"].where(is_flagged)
-        axes.plot(group["x"], sound, "o", color=colour, label=series or None)
+        # Values that are not to be drawn are NaN.
+        unflagged, flagged = group["value"].mask(is_flagged), group["value"].where(is_flagged)
+        axes.plot(group["x"], unflagged, "o", color=colour, label=series or None)
         axes.plot(group["x"], flagged, "o", color=colour, **OPEN_MARKER)
     axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))

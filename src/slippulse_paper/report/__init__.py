@@ -1,4 +1,4 @@
-"""The report and the pages of results, written from tables and texts.
+"""Write the report and the pages of results from tables and texts.
 
-No number is typed into a text: each one comes from a table or from the configuration.
+No number is typed into a text: each number comes from a table or from the configuration.
 """

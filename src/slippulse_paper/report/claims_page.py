@@ -42,17 +42,20 @@ SIGNS = {
 }
 # A bar has its full length if the deviation is this many times the tolerance, or more.
 FULL_BAR_RATIO = 2.0
-# Kinds of tables by folder. Other tables are called by the name of their folder.
+# Names of tables on the page, by their folder. For other folders, the name of the folder is used.
 TABLE_KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
 Rows = Sequence[Mapping]
-# A claim that rests on more simulations than this is regenerated with everything else.
+# The command that regenerates the tables of a claim names at most this number of simulations and
+# studies. For a claim with more of them it regenerates everything.
 MAX_NAMED_SIMULATIONS = 6
 
 
 def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[str]) -> str:
-    """Return the page of claims and findings, given as in their JSON files.
+    """Return the page of claims and findings as HTML.
 
-    ``tables`` are the paths of all tables relative to the page, which links to them.
+    claims, findings : contents of claims.json and findings.json
+    altered : values of the configuration that differ from the shipped ones
+    tables : paths of all tables relative to the page, which links to them
     """
     ledger = Ledger(claims)
     texts = [finding["text"] for finding in findings]
@@ -78,9 +81,10 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
 
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Return the paths of the tables that a claim is judged by.
+    """Return the paths of the tables by which a claim is judged.
 
-    The keys are the name of a simulation or study, and the kind of table.
+    The result maps the name of a simulation or study to its tables, and the kind of a table (see
+    TABLE_KINDS) to its path.
 
     source : the text in which the claim names its simulations and studies
     tables : paths of all tables
@@ -88,8 +92,8 @@ def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str
     paths: dict[str, dict[str, str]] = {}
     for path in map(Path, tables):
         folder = path.parts[0]
-        kind = TABLE_KINDS.get(folder, folder)
-        paths.setdefault(path.stem, {})[kind] = path.as_posix()
+        table_kind = TABLE_KINDS.get(folder, folder)
+        paths.setdefault(path.stem, {})[table_kind] = path.as_posix()
     if source.startswith("every simulation"):
         return paths
     names = dict.fromkeys(re.findall(r"\w+", source))
@@ -97,7 +101,10 @@ def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str
 
 
 def command(tables: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the command that regenerates the tables that `tables_behind` returns."""
+    """Return the command that regenerates some tables.
+
+    tables : the result of `tables_behind`; empty for a claim that only tests check
+    """
     if not tables:
         return "make test"
     if len(tables) > MAX_NAMED_SIMULATIONS:
@@ -108,7 +115,7 @@ def command(tables: Mapping[str, Mapping[str, str]]) -> str:
 
 
 class Bar(NamedTuple):
-    """A bar that shows a deviation: its text, and its length in per cent of the full length."""
+    """A bar that shows a deviation: the text beside it, and its length in per cent."""
 
     text: str
     length: float
@@ -117,7 +124,7 @@ class Bar(NamedTuple):
 def bar_of(claim: Entry) -> Bar | None:
     """Return the bar that shows the deviation of a claim divided by its tolerance.
 
-    Returns None for a kind of claim that has no bar.
+    Returns None if the claim has no deviation, no tolerance, or a kind without a bar.
     """
     if claim.kind not in ("exact", "approximate") or claim.deviation is None or not claim.tolerance:
         return None

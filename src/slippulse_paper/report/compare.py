@@ -2,7 +2,8 @@
 
 python -m slippulse_paper.report.compare results other/results [results/compare.html]
 
-With a third argument it also writes the page of old beside new, and its numbers as CSV beside it.
+The first folder has the new results, and the second has the old ones. With a third argument, the
+program also writes a page that shows both, and a CSV file with all compared numbers.
 """
 
 import json
@@ -27,10 +28,10 @@ from .compared_numbers import (
     read_runs,
     with_uncertainties,
 )
-from .joined_runs import describe_run, join_runs, varying_parameters
+from .joined_runs import JoinedRuns, describe_run, join_runs, varying_parameters
 
 MAX_SHOWN_LINES = 10
-# The line about a difference between the two files of each name.
+# The files that are compared beside the tables, and the line about a difference in each of them.
 CHANGE_LINES = {
     "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
     "claims.json": "{key}: verdict {here!r} against {shipped!r}",
@@ -39,10 +40,10 @@ CHANGE_LINES = {
 
 @dataclass(frozen=True)
 class TableRuns:
-    """Runs of one table: how many are in both folders, and descriptions of the others.
+    """The runs of one table: how many are in both folders, and descriptions of the others.
 
-    A pair of altered runs differs only in the parameters ``altered_parameters``, each of which has
-    one value in the new table and another one in the old table.
+    A pair of altered runs is a new and an old run that differ only in ``altered_parameters``. Each
+    of these parameters has one value in all new runs and another value in all old runs.
     """
 
     table: str
@@ -59,9 +60,10 @@ class Comparison:
 
     numbers : one row for each number that is in both folders
     runs : one entry for each table
-    changes : changed values of the configuration and changed verdicts, by the name of their file
-    older : folders in which such a file is older than other results, and so does not describe
-        them, by its name
+    changes : changed values of the configuration ("provenance.json") and changed verdicts
+        ("claims.json")
+    older : for each of these two files, the folders in which it is older than other results and
+        therefore does not describe them
     disagreements : lines about results of the same run that differ
     other_differences : lines about everything that is altered, or in one folder only
     """
@@ -74,26 +76,26 @@ class Comparison:
     other_differences: list[str] = field(default_factory=list)
 
     def count(self, outcome: str) -> int:
-        """Return how many numbers have an outcome."""
+        """Return how many numbers have an outcome of `compared_numbers`, such as "agrees"."""
         return int((self.numbers["outcome"] == outcome).sum()) if len(self.numbers) else 0
 
     @property
     def agree(self) -> int:
-        """Number of numbers that agree."""
+        """Return how many numbers agree."""
         return self.count(AGREES)
 
     @property
     def unknown(self) -> int:
-        """Number of numbers that differ between lattices and have no uncertainty."""
+        """Return how many numbers differ between different lattices and have no uncertainty."""
         return self.count(UNKNOWN)
 
     @property
     def compared(self) -> int:
-        """Number of numbers of runs that are the same in both folders."""
+        """Return how many numbers belong to runs that are in both folders."""
         return self.agree + self.unknown + self.count(DIFFERS)
 
     def older_files(self, name: str) -> str:
-        """Return the paths of a file of this name that is older than other results, as text."""
+        """Return the paths at which a file is older than other results, as text."""
         return " and ".join(str(folder / name) for folder in self.older[name])
 
     def summary(self) -> str:
@@ -112,7 +114,7 @@ def compare(new: Path, old: Path) -> Comparison:
     new_tables, old_tables = _table_names(new), _table_names(old)
     for name in sorted(new_tables ^ old_tables):
         result.other_differences.append(f"{name}: in one folder only")
-    # In each folder, the files that were not made again after a change of what they depend on.
+    # In each folder, the files that are older than something that they depend on.
     older_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
     for name in CHANGE_LINES:
         result.older[name] = [
@@ -135,7 +137,10 @@ def _table_names(results: Path) -> set[str]:
 
 
 def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
-    """Record the values that differ between the configurations or between the verdicts."""
+    """Record how the configurations or the verdicts of both folders differ.
+
+    name : "provenance.json" for the configurations, "claims.json" for the verdicts
+    """
     if result.older[name]:
         newer = f"other results are newer than {result.older_files(name)}"
         result.other_differences.append(f"{name}: not compared, since {newer}")
@@ -150,9 +155,10 @@ def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> No
 
 
 def _read_content(path: Path) -> dict:
-    """Return what is compared of a file: the configuration, or the verdict of each claim.
+    """Return the part of a file that is compared: the configuration, or the verdict of each claim.
 
-    The preset is left out, because the uncertainties cover its lattices.
+    The preset is left out, because the uncertainties of the numbers cover the differences between
+    the lattices of presets.
     """
     with named_in_errors(path):
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -164,21 +170,16 @@ def _read_content(path: Path) -> dict:
 def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.DataFrame:
     """Compare one table of both folders, record what differs, and return the numbers of its runs.
 
-    Numbers of the same run in both folders are judged. Those of altered runs (see `TableRuns`) are
+    Numbers of runs that are in both folders are judged. Those of altered runs (see `TableRuns`) are
     only listed.
     """
     new_table = read_runs(new / "measurements" / name)
     old_table = read_runs(old / "measurements" / name)
     parameters = varying_parameters(new_table, old_table)
     joined = join_runs(new_table, old_table)
-    runs = TableRuns(
-        table=Path(name).stem,
-        same_count=len(joined.same_runs),
-        altered_count=len(joined.altered_runs),
-        altered_parameters=joined.altered_parameters,
-        only_new=_describe_rows(new_table, joined.only_new, parameters),
-        only_old=_describe_rows(old_table, joined.only_old, parameters),
-    )
+    only_new = _describe_rows(new_table, joined.only_new, parameters)
+    only_old = _describe_rows(old_table, joined.only_old, parameters)
+    runs = _table_runs(name, joined, only_new, only_old)
     result.runs.append(runs)
     differences = _differences_of_runs(runs) + _differences_of_columns(new_table, old_table)
     # Grid studies give the uncertainties of the numbers.
@@ -205,20 +206,40 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
     return numbers.assign(table=runs.table)[["table", *numbers.columns]]
 
 
+def _table_runs(
+    name: str, joined: JoinedRuns, only_new: list[str], only_old: list[str]
+) -> TableRuns:
+    """Return how the runs of a table are joined.
+
+    name : file name of the table
+    only_new, only_old : descriptions of the runs that are in one folder only
+    """
+    return TableRuns(
+        table=Path(name).stem,
+        same_count=len(joined.same_runs),
+        altered_count=len(joined.altered_runs),
+        altered_parameters=joined.altered_parameters,
+        only_new=only_new,
+        only_old=only_old,
+    )
+
+
 def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str]) -> list[str]:
-    """Return a description of each of some runs."""
+    """Return a description of each run in some rows of a table.
+
+    rows : labels of the rows
+    parameters : columns that the descriptions contain
+    """
     return [describe_run(run, parameters) for run in table.loc[rows].to_dict("records")]
 
 
 def _differences_of_runs(runs: TableRuns) -> list[str]:
-    """Return lines on the runs that are in one folder only, and on altered runs."""
+    """Return lines about the runs that are in one folder only, and about altered runs."""
     lines = [f"only in this folder: {run}" for run in runs.only_new]
     lines += [f"only in the other folder: {run}" for run in runs.only_old]
-    if runs.altered_count:
-        one_pair = runs.altered_count == 1
-        pairs = (
-            "1 pair of runs differs" if one_pair else f"{runs.altered_count} pairs of runs differ"
-        )
+    count = runs.altered_count
+    if count:
+        pairs = "1 pair of runs differs" if count == 1 else f"{count} pairs of runs differ"
         lines.append(f"{pairs} in {', '.join(runs.altered_parameters)}")
     return lines
 
@@ -240,7 +261,7 @@ def _differing_numbers(numbers: pd.DataFrame) -> list[str]:
 
 
 def _print_lines(title: str, lines: Sequence[str]) -> None:
-    """Print a title and the first lines, or nothing if there are no lines."""
+    """Print a title and the first MAX_SHOWN_LINES lines, or nothing if there are no lines."""
     if not lines:
         return
     print(f"{title}:")
@@ -253,8 +274,8 @@ def _print_lines(title: str, lines: Sequence[str]) -> None:
 def main(arguments: Sequence[str]) -> int:
     """Compare two folders, write the page if its path is given, and return the exit code.
 
-    With a page the exit code is 0. Otherwise it is 0 only if everything is in both folders and
-    agrees.
+    Without a page, the exit code is 0 only if everything is in both folders and agrees. With a
+    page, differences do not count as a failure, and the exit code is 0. It is 1 after an error.
     """
     paths = [Path(argument) for argument in arguments]
     new, old = paths[:2]

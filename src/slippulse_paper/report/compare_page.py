@@ -1,6 +1,6 @@
-"""Write results/compare.html: the old results beside the new ones, with every figure inside.
+"""Write results/compare.html, a page that shows old and new results side by side.
 
-All compared numbers are in a CSV file beside the page.
+The page contains the pictures of all figures. All compared numbers are in a CSV file beside it.
 """
 
 import base64
@@ -30,7 +30,10 @@ PICTURE_COLOURS = 128
 
 @dataclass(frozen=True)
 class ChangedVerdict:
-    """A claim whose verdict changed, with its entries in both claims.json (None if missing)."""
+    """A claim whose verdict changed, with its entries in the old and the new claims.json.
+
+    An entry is None if the folder does not have the claim.
+    """
 
     id: str
     statement: str
@@ -40,7 +43,13 @@ class ChangedVerdict:
 
 @dataclass(frozen=True)
 class ShownTable:
-    """Rows of the page for one table: its runs, its counts by outcome, and some differences."""
+    """The part of the page about one table.
+
+    runs : how many runs are in both folders, and descriptions of the others
+    counts : how many numbers have each outcome
+    differing_count : how many numbers differ
+    rows : the numbers that differ most
+    """
 
     runs: TableRuns
     counts: dict[str, int]
@@ -50,7 +59,7 @@ class ShownTable:
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture as a data URI, with its size in pixels."""
+    """A picture as a data URI, which a page can contain, with its size in pixels."""
 
     uri: str
     width: int
@@ -59,7 +68,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class FigurePair:
-    """A figure of both folders (None if missing), and whether its drawn numbers are equal."""
+    """The old and the new picture of a figure, or None if a folder does not have it.
+
+    is_equal : True if both pictures show the same numbers
+    """
 
     name: str
     is_equal: bool
@@ -68,12 +80,12 @@ class FigurePair:
 
 
 def write_comparison(result: Comparison, new: Path, old: Path, path: Path) -> None:
-    """Write the page, and the numbers of both folders beside it as CSV."""
+    """Write the page to ``path``, and beside it a CSV file with all compared numbers."""
     if not path.parent.is_dir():
         raise ValueError(f"{path.parent}: no such folder; allowed: a folder of results")
-    numbers = path.with_suffix(".csv")
-    save_table(result.numbers, numbers)
-    write_text(comparison_page(result, new, old, numbers.name), path)
+    numbers_path = path.with_suffix(".csv")
+    save_table(result.numbers, numbers_path)
+    write_text(comparison_page(result, new, old, numbers_path.name), path)
 
 
 def comparison_page(result: Comparison, new: Path, old: Path, numbers: str) -> str:
@@ -116,7 +128,10 @@ def changed_verdicts(result: Comparison, new: Path, old: Path) -> list[ChangedVe
 
 
 def shown_table(runs: TableRuns, numbers: pd.DataFrame) -> ShownTable:
-    """Return what the page shows of one table. ``numbers`` are the compared ones of all tables."""
+    """Return the part of the page about one table.
+
+    numbers : the compared numbers of all tables
+    """
     table_numbers = numbers[numbers["table"] == runs.table]
     differing = differing_numbers(table_numbers)
     counts = table_numbers["outcome"].value_counts().to_dict()
@@ -124,16 +139,17 @@ def shown_table(runs: TableRuns, numbers: pd.DataFrame) -> ShownTable:
 
 
 def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers that differ, the largest differences first.
+    """Return the numbers that differ, in the order of their differences, the largest first.
 
-    Differences are relative to the allowed one. Numbers without an uncertainty come last.
+    A difference counts relative to the allowed difference. Numbers without an uncertainty come
+    last.
     """
-    is_shown = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
-    differing = numbers[is_shown & (numbers["new"] != numbers["old"])]
+    may_differ = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
+    differing = numbers[may_differ & (numbers["new"] != numbers["old"])]
     has_study = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     difference = (differing["new"] - differing["old"]).abs()
     excess = difference / differing["allowed"].clip(lower=1e-300)
-    # The difference of a number and a missing one is NaN. It counts as the largest.
+    # If one of the numbers is missing, the difference is NaN. It counts as the largest.
     ranks = pd.DataFrame({"has_study": has_study, "excess": excess.fillna(float("inf"))})
     ranks = ranks.sort_values(["has_study", "excess"], ascending=False, kind="stable")
     return differing.loc[ranks.index]
@@ -146,7 +162,7 @@ def figure_names(new: Path, old: Path) -> list[str]:
 
 
 def figure_pair(name: str, new: Path, old: Path) -> FigurePair:
-    """Return both pictures of a figure, and whether the numbers drawn are equal."""
+    """Return both pictures of a figure, and whether both show the same numbers."""
     new_numbers, old_numbers = _drawn_numbers(name, new), _drawn_numbers(name, old)
     return FigurePair(
         name,
@@ -166,7 +182,7 @@ def embedded_picture(path: Path) -> Picture | None:
     try:
         with Image.open(path) as picture:
             picture.load()
-            # A picture with a palette stays small only if it is not converted to full colour.
+            # A picture with a palette must be converted to full colour before it is made smaller.
             reduced = picture if picture.width <= MAX_PICTURE_WIDTH else picture.convert("RGB")
             reduced.thumbnail((MAX_PICTURE_WIDTH, 10 * MAX_PICTURE_WIDTH))
             with_palette = reduced.convert("RGB").quantize(

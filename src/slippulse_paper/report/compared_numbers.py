@@ -15,12 +15,12 @@ from slippulse.data.tables import load_table
 from .joined_runs import LATTICE_COLUMNS, RUN_COLUMNS, columns_in_both, describe_pair
 
 TEXT_COLUMNS = ("boundary", "release", "quantity")
-# Relative difference that is always allowed, since tables have nine digits.
+# Relative difference that is always allowed, since numbers in tables have nine digits.
 TABLE_PRECISION = 1e-8
-# Difference allowed between numbers without an uncertainty from equal lattices, relative to the
-# number or to 1, whichever is larger.
+# Difference that is allowed between numbers from equal lattices if they have no uncertainty. It is
+# relative to the number or to 1, whichever is larger.
 EQUAL_LATTICE_TOLERANCE = 1e-6
-# Outcomes for a number that is in both folders. Numbers of altered runs are not judged.
+# Outcomes of the comparison of a number. Numbers of altered runs are not judged.
 AGREES = "agrees"
 DIFFERS = "differs"
 UNKNOWN = "no uncertainty"
@@ -29,9 +29,13 @@ ALTERED = "altered run"
 
 @dataclass(frozen=True)
 class MeasuredRuns:
-    """Runs of one table of one folder: all columns, the compared numbers, their uncertainties.
+    """The runs of one table of one folder, with the uncertainties of their numbers.
 
-    The three tables have the same rows. ``numbers`` and ``uncertainties`` have the same columns.
+    table : all columns
+    numbers : the columns with compared numbers
+    uncertainties : the uncertainties of these numbers, in columns of the same names
+
+    The three tables have the same rows, one for each run.
     """
 
     table: pd.DataFrame
@@ -54,7 +58,10 @@ class ComparedColumns:
 
 
 def compared_columns(new: pd.DataFrame, old: pd.DataFrame) -> ComparedColumns:
-    """Return the columns that are compared. A column with text in one table counts as text."""
+    """Return the columns that are compared: measured numbers, and texts.
+
+    A column that has text in one of the tables counts as text.
+    """
     numbers, texts = [], []
     for name in columns_in_both(new, old, new.columns):
         if name in RUN_COLUMNS:
@@ -78,7 +85,7 @@ def with_uncertainties(table: pd.DataFrame, numbers: list[str], study: Path) -> 
 
 
 def differing_texts(new: MeasuredRuns, old: MeasuredRuns, columns: list[str]) -> Iterator[str]:
-    """Yield a line for each text that differs between runs with the same lattice."""
+    """Yield a line for each text in some columns that differs between runs on equal lattices."""
     new_texts = new.table[columns].astype(object).fillna("")
     old_texts = old.table[columns].astype(object).fillna("")
     is_same_lattice = _is_same_lattice(new, old)
@@ -97,8 +104,8 @@ def compare_numbers(
 ) -> pd.DataFrame:
     """Compare the numbers of runs that are the same in both folders.
 
-    Returns one row for each number of each run. A number that only one of two runs on equal
-    lattices has is included, and differs.
+    The result has one row for each number of each run, with its outcome. If only one of the two
+    runs has a number, it counts as different on equal lattices, and is left out otherwise.
 
     parameters : columns that describe a run
     """
@@ -117,20 +124,23 @@ def compare_numbers(
     numbers.loc[is_within, "outcome"] = AGREES
 
     is_known = numbers[["new", "old"]].notna()
-    is_missing_once = is_known.any(axis=1) & is_same_lattice
-    return numbers[is_known.all(axis=1) | is_missing_once]
+    is_known_twice, is_known_once = is_known.all(axis=1), is_known.any(axis=1)
+    return numbers[is_known_twice | (is_known_once & is_same_lattice)]
 
 
 def list_altered_numbers(
     new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]
 ) -> pd.DataFrame:
-    """Return the numbers of altered runs in the same form as `compare_numbers`, without judging."""
+    """Return the numbers of altered runs in the form of `compare_numbers`, but without judging."""
     numbers = compare_numbers(new, old, parameters)
     return numbers.dropna(subset=["new", "old"]).assign(outcome=ALTERED)
 
 
 def _list_numbers(new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]) -> pd.DataFrame:
-    """Return one row for each number of each pair of runs, with the sum of both uncertainties."""
+    """Return one row for each number of each pair of runs, with the allowed difference.
+
+    The allowed difference is the sum of both uncertainties, and a little more for rounding.
+    """
     quantities = new.numbers.columns
     parameters = list(parameters)
     runs = [
@@ -157,14 +167,17 @@ def _list_numbers(new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str
 
 
 def _is_same_lattice(new: MeasuredRuns, old: MeasuredRuns) -> np.ndarray:
-    """Return for each pair of runs whether their lattices are the same."""
+    """Return for each pair of runs whether both runs have the same lattice."""
     columns = columns_in_both(new.table, old.table, LATTICE_COLUMNS)
     is_equal = new.table[columns].to_numpy() == old.table[columns].to_numpy()
     return is_equal.all(axis=1)
 
 
 def _read_table(path: Path, required: Iterable[str]) -> pd.DataFrame:
-    """Read a table. Raises ValueError if a required column is missing or unexpectedly has text."""
+    """Read a table.
+
+    Raises ValueError if a required column is missing, or if it has text instead of numbers.
+    """
     with named_in_errors(path):
         table = load_table(path)
         for column in required:
@@ -176,7 +189,9 @@ def _read_table(path: Path, required: Iterable[str]) -> pd.DataFrame:
 
 
 def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
-    """Return the uncertainty of every number, or NaN if there is no study of exactly this number.
+    """Return the uncertainty of each number by a grid study.
+
+    It is NaN if the study does not have the number, or has another value for it.
 
     path : table of the grid study, which may not exist
     """
@@ -188,14 +203,14 @@ def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
         study = study.astype(float)
         studied_numbers = study["value"].reindex_like(numbers)
         uncertainties = study["uncertainty"].reindex_like(numbers)
-    # A study of an older run does not apply to the number of this run.
+    # If the study has another value of the number, it belongs to an older run and does not apply.
     is_another_number = (numbers - studied_numbers).abs() > TABLE_PRECISION * numbers.abs()
     return uncertainties.mask(is_another_number)
 
 
 @contextmanager
 def named_in_errors(path: Path) -> Iterator[None]:
-    """Turn an error inside the block into an UnreadableFile error, which names the file."""
+    """Turn an error inside the with block into an UnreadableFile error that names the file."""
     try:
         yield
     except UnreadableFile:

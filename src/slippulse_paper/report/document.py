@@ -1,6 +1,7 @@
 """Convert the executed manuscript to one HTML file and to a PDF.
 
-Pandoc writes the HTML, and the Typst source of the PDF. Neither needs a network connection.
+Pandoc converts the Markdown to HTML, and to Typst source, from which Typst makes the PDF. Neither
+program needs a network connection.
 """
 
 import json
@@ -28,12 +29,16 @@ TIMESTAMP = 0
 HTML_FIGURE = re.compile(
     r'(?P<start><figure id="(?P<name>\w+)">\s*)<img\s+src="(?P<path>[^"]+)"(?P<attributes>[^>]*>)'
 )
-# Name and alternative text of a figure in Markdown. Pandoc does not pass the latter on to Typst.
+# Name and alternative text of a figure in Markdown. Pandoc does not write the alternative text into
+# the Typst source.
 ALTERNATIVE_TEXT = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def write_html(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write Markdown as one HTML file; ``manuscript`` is the folder with the bibliography."""
+    """Write Markdown as one HTML file that contains all pictures.
+
+    manuscript : the folder with the metadata and the bibliography
+    """
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
@@ -45,16 +50,20 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
 
 
 def _lower_headings(html: str) -> str:
-    """Return HTML with each heading one level lower, since only the title has level 1."""
+    """Return HTML in which each heading is one level lower, since only the title has level 1."""
     return re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", html)
 
 
 def _make_scrollable(html: str) -> str:
-    """Return HTML in which wide formulas, code and tables scroll sideways, by the keyboard too."""
+    """Return HTML in which wide formulas, code and tables can be scrolled sideways.
+
+    They get a tab index, so that the keyboard can scroll them, too.
+    """
     html = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', html)
     numbers = count(1)
 
     def open_region(table: re.Match) -> str:
+        """Return the tag of a table inside the beginning of a region that scrolls."""
         label = f"Table {next(numbers)}"
         return f'<div class="scroll" tabindex="0" role="region" aria-label="{label}">{table[0]}'
 
@@ -63,9 +72,9 @@ def _make_scrollable(html: str) -> str:
 
 
 def _embedded_figure(figure: re.Match) -> str:
-    """Return a figure of `HTML_FIGURE` with its picture embedded and its size given.
+    """Return a figure of `HTML_FIGURE` with its picture inside the page, and with its size.
 
-    A click on it opens the picture file at its own size.
+    A click on it opens the picture file.
     """
     content = b64encode(Path(figure["path"]).read_bytes()).decode()
     with Image.open(figure["path"]) as picture:
@@ -75,7 +84,10 @@ def _embedded_figure(figure: re.Match) -> str:
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write Markdown as a PDF with vector figures. Raises ValueError with the message of Typst."""
+    """Write Markdown as a PDF with vector figures.
+
+    Raises ValueError with the message of Typst if Typst cannot make the PDF.
+    """
     # In a PDF, a link to another document leads to the PDF of that document.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     options = ["--default-image-extension=pdf"]
@@ -96,11 +108,16 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
         pdf: bytes | None = compiled(source.encode(), root=Path("/"), format="pdf")
     except typst.TypstError as error:
         raise ValueError(f"Typst: {error}") from None
-    write_whole(output, lambda part: part.write_bytes(pdf or b""))
+    write_whole(output, lambda path: path.write_bytes(pdf or b""))
 
 
 def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Sequence[str]) -> str:
-    """Convert the report with pandoc, with the template, the metadata and the bibliography."""
+    """Convert the Markdown of the report with pandoc.
+
+    manuscript : the folder with the metadata and the bibliography
+    to : the format of the result, "html5" or "typst"
+    options : further options of pandoc
+    """
     common = ["--standalone", "--number-sections", "--citeproc"]
     common += [
         f"--template={template}",

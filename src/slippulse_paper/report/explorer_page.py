@@ -1,7 +1,7 @@
 """Write results/explorer.html, a page with sliders that computes a rupture in the browser.
 
-The page gets a table of the front law and the measured runs that it can show beside the exact
-solution. Its scripts compute everything else.
+The page contains a table of front speeds, and measured runs for comparison with the exact solution.
+Its scripts compute everything else.
 """
 
 import json
@@ -30,32 +30,37 @@ SHADE_COUNT = 32
 def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: str) -> str:
     """Return the page as HTML.
 
-    law : the table of `studies.explorer_law`
+    law : the table of the study explorer_law
     measured : tables of measured runs
     colours : the name of a colour map
     """
     shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, SHADE_COUNT))
-    largest = float(law["damping_ratio"].max())
-    runs = chain.from_iterable(simulated_runs(table, largest) for table in measured)
+    # Opacity is the fourth component of a colour.
     red_green_blue = shades[:, :3]
+    largest_ratio = float(law["damping_ratio"].max())
+    runs = chain.from_iterable(simulated_runs(table, largest_ratio) for table in measured)
     data = {
         "law": front_law(law),
-        "largest_ratio": largest,
+        "largest_ratio": largest_ratio,
         "runs": [*runs],
         "colours": np.rint(255.0 * red_green_blue).astype(int).tolist(),
     }
-    # A "<" in the data could end the script element that contains them.
+    # The data are written into a script element. A "<" in them could end it.
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
-    return page("explorer.html", data=Markup(text), largest_ratio=largest)
+    return page("explorer.html", data=Markup(text), largest_ratio=largest_ratio)
 
 
 def front_law(law: pd.DataFrame) -> dict:
-    """Return the logit of the pre-stress for each release rule, as rows of a grid.
+    """Return the front law as grids from which the page interpolates.
 
-    The rows of a grid belong to damping ratios b = scale sinh(i step), and its columns to
-    ln(v - 1) = first + j step. The entries `ratio` and `excess` have these constants.
+    The front law relates the pre-stress tau, the damping ratio b and the front speed v. The result
+    has one grid of ln(tau/(1 - tau)) for each release rule. Row i of a grid belongs to the damping
+    ratio b = scale sinh(i step), and column j to the speed ln(v - 1) = first + j step. The entries
+    "ratio" and "excess" of the result have the constants of rows and columns.
+
+    law : the table of the study explorer_law
     """
-    # The browser does not compute this law itself, since that takes the Wiener-Hopf factor.
+    # The browser does not compute this law itself, because that needs the Wiener-Hopf method.
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     last_ratio = float(ratios[-1])
     first_excess, last_excess = float(excesses[0]), float(excesses[-1])
@@ -74,10 +79,12 @@ def front_law(law: pd.DataFrame) -> dict:
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
-    """Return `SETTING_COLUMNS` and `MEASURED_COLUMNS` of each run that the page can compute.
+    """Return the settings and measured numbers of the runs that the page can compute, too.
 
     These are runs with the displacement held, Coulomb friction, and a Gaussian on equal positive
-    levels.
+    levels. Each has one list, with the values of `SETTING_COLUMNS` and `MEASURED_COLUMNS`.
+
+    largest_ratio : the largest damping ratio of the page
     """
     is_shown = (table["left"] > 0.0) & (table["damping_ratio"] <= largest_ratio)
     is_shown &= table["boundary"] == "displacement"
@@ -85,6 +92,7 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     for run in table[is_shown].to_dict("records"):
         if not _is_plain(run):
             continue
+        # Only a steady pulse has a slip that the page can compare.
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
         settings = [run[name] for name in SETTING_COLUMNS]

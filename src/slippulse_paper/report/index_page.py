@@ -18,7 +18,15 @@ from ..claims.ledger import Ledger
 from ..text.prose import fill
 from .claims_page import SIGNS
 from .html import markup_of, page
-from .texts import answer, judged_lines, parameters, read_captions, read_errata, statement_rows
+from .texts import (
+    Caption,
+    answer,
+    judged_lines,
+    parameters,
+    read_captions,
+    read_errata,
+    statement_rows,
+)
 
 # Width of a figure on the page divided by the width of its file, both in pixels.
 FIGURE_SCALE = 0.4
@@ -33,29 +41,17 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     """
     provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
-    config = provenance["config"]
-    names = {
-        "claim": ledger,
-        "found": ledger.found,
-        "config": config,
-        "misprints": read_errata(texts["errata"]),
-        "runs": partial(parameters, config),
-    }
+    names = _names_in_texts(provenance["config"], ledger, read_errata(texts["errata"]))
     filled = partial(fill, names=names)
-    captions = read_captions(texts["captions"], filled)
     summary = read_text(texts["summary"])
     rows = statement_rows(summary, ledger, filled)
     shown = {key: filled(summary[key]) for key in ("question", "accuracy")}
     shown["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
     words = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
-    figures = {}
-    for name in chain.from_iterable(galleries.values()):
-        if name in captions:
-            figures[name] = captions[name]
-        else:
-            # A user-defined sweep has the general caption, and its name as the title.
-            title = name.removeprefix("sweep_")
-            figures[name] = captions["user_defined_sweep"]._replace(title=title)
+    captions = read_captions(texts["captions"], filled)
+    figure_names = chain.from_iterable(galleries.values())
+    figures = {name: _caption_of(name, captions) for name in figure_names}
+    # All texts in Markdown are converted to HTML by one call.
     markdown = [*shown.values(), *chain.from_iterable(words)]
     for row in rows:
         markdown += [row.statement, row.number]
@@ -79,11 +75,36 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     )
 
 
+def _names_in_texts(config: Mapping, ledger: Ledger, misprints: list) -> dict[str, object]:
+    """Return the values and functions that the expressions in the texts may use, by name."""
+    return {
+        "claim": ledger,
+        "found": ledger.found,
+        "config": config,
+        "misprints": misprints,
+        "runs": partial(parameters, config),
+    }
+
+
+def _caption_of(figure: str, captions: Mapping[str, Caption]) -> Caption:
+    """Return the caption of a figure.
+
+    A user-defined sweep has no caption of its own. It gets a general one, with its name as title.
+    """
+    if figure in captions:
+        return captions[figure]
+    return captions["user_defined_sweep"]._replace(title=figure.removeprefix("sweep_"))
+
+
 def _shown_size(path: Path) -> tuple[int, int]:
-    """Return width and height of a figure in pixels of the page, which then loads without jumps."""
+    """Return the width and height of a figure on the page, in pixels of the page.
+
+    The page contains these sizes, so that nothing moves while the figures load.
+    """
     with Image.open(path) as picture:
         return round(FIGURE_SCALE * picture.width), round(FIGURE_SCALE * picture.height)
 
 
 def _read_json(path: Path) -> Any:
+    """Return the content of a JSON file."""
     return json.loads(path.read_text(encoding="utf-8"))

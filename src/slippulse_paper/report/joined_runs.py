@@ -1,7 +1,7 @@
 """Join the runs of two tables by their parameters.
 
-`compare` uses this to find, for each measured run of one results folder, the same run in another
-folder. The runs may have another order, another lattice, or one altered parameter.
+`compare` uses this to find, for each measured run of the new results, the same run of the old
+results. The old runs may have another order, other lattices, or altered parameters.
 """
 
 from collections.abc import Iterable, Mapping
@@ -22,10 +22,10 @@ RUN_COLUMNS = [
 ]
 # Parameters that tables of older versions do not have.
 NEWER_RUN_COLUMNS = ["peak", "steps_and_bumps", "friction"]
-# Numerical parameters. If a table has the same run on several lattices, runs with equal lattices
-# are joined.
+# Numerical parameters. If the tables have a run on several lattices, those on equal lattices are
+# joined.
 LATTICE_COLUMNS = ["scheme", "dx", "order", "max_step"]
-# These parameters follow from others, so that the description of an alteration omits them.
+# These parameters follow from others. If the others are altered as well, only those are named.
 DERIVED_COLUMNS = ["beta", "duration"]
 # Number of parameters that describe a run if all runs have the same parameters.
 DEFAULT_PARAMETER_COUNT = 4
@@ -35,7 +35,8 @@ DEFAULT_PARAMETER_COUNT = 4
 class JoinedRuns:
     """Pairs of runs of a new and an old table, and the runs without a counterpart.
 
-    A table of pairs has the columns ``new`` and ``old``, which contain row labels of both tables.
+    A table of pairs has the columns ``new`` and ``old``, which contain row labels of the new and of
+    the old table.
     """
 
     same_runs: pd.DataFrame
@@ -48,23 +49,28 @@ class JoinedRuns:
 
 
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
-    """Join the same runs, and then the runs that differ only in altered parameters."""
+    """Join the runs that are the same, and then runs that differ only in altered parameters.
+
+    Of the same runs, those on equal lattices are joined first.
+    """
     parameters = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS])
     lattice = columns_in_both(new, old, LATTICE_COLUMNS)
 
     on_equal_lattices = pair_rows(new, old, [*parameters, *lattice])
-    new_rest = new.drop(on_equal_lattices["new"])
-    old_rest = old.drop(on_equal_lattices["old"])
+    unpaired_new = new.drop(on_equal_lattices["new"])
+    unpaired_old = old.drop(on_equal_lattices["old"])
 
-    on_other_lattices = pair_rows(new_rest, old_rest, parameters)
-    new_rest = new_rest.drop(on_other_lattices["new"])
-    old_rest = old_rest.drop(on_other_lattices["old"])
+    on_other_lattices = pair_rows(unpaired_new, unpaired_old, parameters)
+    unpaired_new = unpaired_new.drop(on_other_lattices["new"])
+    unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
-    changed = [name for name in parameters if not new_rest[name].isin(old_rest[name]).any()]
+    # A parameter has changed if none of its values occurs in both tables.
+    is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
+    changed = [name for name in parameters if not is_kept[name]]
     altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
-    if is_one_alteration(new_rest, old_rest, altered_parameters):
-        unchanged = [name for name in parameters if name not in changed]
-        altered_runs = pair_rows(new_rest, old_rest, unchanged)
+    if is_one_alteration(unpaired_new, unpaired_old, altered_parameters):
+        unchanged = [name for name in parameters if is_kept[name]]
+        altered_runs = pair_rows(unpaired_new, unpaired_old, unchanged)
     else:
         altered_runs = pd.DataFrame({"new": [], "old": []}, dtype=int)
 
@@ -73,8 +79,8 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
         same_runs=same_runs.sort_values("new", kind="stable"),
         altered_runs=altered_runs,
         altered_parameters=altered_parameters,
-        only_new=new_rest.index.difference(altered_runs["new"]),
-        only_old=old_rest.index.difference(altered_runs["old"]),
+        only_new=unpaired_new.index.difference(altered_runs["new"]),
+        only_old=unpaired_old.index.difference(altered_runs["old"]),
     )
 
 
@@ -84,9 +90,10 @@ def columns_in_both(new: pd.DataFrame, old: pd.DataFrame, names: Iterable[str]) 
 
 
 def is_one_alteration(new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]) -> bool:
-    """Return True if each parameter has one value in the new runs and one in the old runs.
+    """Return True if each parameter has one value in all new runs and one in all old runs.
 
-    With several values it would be unclear which altered runs belong together.
+    If a parameter had several values, it would be unclear which runs belong together. Returns False
+    if there are no parameters.
     """
     if not parameters:
         return False
@@ -96,9 +103,10 @@ def is_one_alteration(new: pd.DataFrame, old: pd.DataFrame, parameters: list[str
 
 
 def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Return the labels of rows that have equal values in some columns, as columns new and old.
+    """Pair the rows of two tables that have equal values in some columns.
 
-    Several equal rows of one table are paired in their order.
+    Returns the labels of the paired rows in the columns new and old. Several equal rows of one
+    table are paired in their order.
     """
     new_keys = _row_keys(new, columns).assign(new=new.index)
     old_keys = _row_keys(old, columns).assign(old=old.index)
@@ -106,7 +114,10 @@ def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.Da
 
 
 def _row_keys(table: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Return the columns as text, and the number of equal rows above each row."""
+    """Return some columns as text, and for each row the number of equal rows above it.
+
+    Together they identify a row.
+    """
     # Numbers are compared as text, since the files of both tables have nine digits.
     keys = table[columns].astype(str)
     return keys.assign(occurrence=keys.groupby(columns).cumcount())
@@ -124,7 +135,7 @@ def describe_run(run: Mapping, names: Iterable[str]) -> str:
 
 
 def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
-    """Return the parameters of a new run as text, with those that the old run has differently.
+    """Return the parameters of a new run as text, and in brackets the differing old values.
 
     An example is "left 0.5, gamma 0.3 (old: gamma 0.65)".
     """
@@ -135,7 +146,7 @@ def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
 
 
 def varying_parameters(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
-    """Return the parameters that have several values in two tables, and so describe a run."""
+    """Return the parameters that have several values in two tables and can describe a run."""
     names = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS, "dx"])
     value_counts = pd.concat([new[names], old[names]]).nunique(dropna=False)
     varying = [name for name in names if value_counts[name] > 1]

@@ -1,7 +1,8 @@
 """Execute the manuscript: run its code cells, fill in its prose, and number its figures.
 
-`names_for` defines what cells and prose may use, and `execute` returns the finished Markdown, which
-`document` converts to HTML and PDF.
+The prose has expressions in double braces. `names_for` returns the values and functions that code
+cells and expressions may use. `execute` returns the finished Markdown, which the module `document`
+converts to HTML and PDF.
 """
 
 import re
@@ -28,28 +29,29 @@ from .texts import Caption, answer, judged_lines, parameters, read_captions, rea
 DOCUMENTS = ("replication", "supplement")
 # The letters before the numbers of figures: none in the report, and S in the supplement.
 NUMBER_LETTERS = ("", "S")
-# Tag of a cell that defines the names in a notebook opened by hand. It is skipped here.
+# Tag of a cell that defines these names if the manuscript is opened as a notebook. Such a cell is
+# not run here.
 BY_HAND = "by-hand"
 # The name of a figure of the paper, with its number.
 PAPER_FIGURE = re.compile(r"fig(\d+)_")
-# The call that includes a figure in the text.
+# The call in a code cell that shows a figure.
 FIGURE_CALL = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
-# Width of a page of the journal and of the report, in inches.
+# Width of the text on a page of the journal and of the report, in inches.
 PAGE_WIDTH = 7.0
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """Everything that a report is written from: contents of files, tables by name, figures."""
+    """Everything from which the report and its supplement are written."""
 
     config: Mapping
-    shipped: Mapping
-    claims: Sequence[Mapping]
-    findings: Sequence[Mapping]
+    shipped: Mapping  # the shipped configuration, without overlay
+    claims: Sequence[Mapping]  # content of claims.json
+    findings: Sequence[Mapping]  # content of findings.json
     tables: Mapping[str, pd.DataFrame]
-    figures: Sequence[str]
+    figures: Sequence[str]  # names of the figures that were drawn
     figures_folder: Path
-    manuscript: Path
+    manuscript: Path  # folder with the texts
     citation: Mapping
 
 
@@ -61,25 +63,29 @@ class FigureNumber(NamedTuple):
 
 
 class Gallery:
-    """The figures with their numbers, which follow the order in which the texts show them.
+    """The figures of all documents, numbered in the order in which the texts show them.
 
-    Figures that no text shows are appended to the last document. ``current`` is the document that
-    is being written.
+    Figures that no text shows are appended to the last document.
     """
 
     def __init__(self, inputs: Inputs, texts: Mapping, captions: Mapping, current: str) -> None:
+        """Number the figures.
+
+        texts : the text of each document, by its name
+        captions : the caption of each figure, by its name
+        current : name of the document that is being written
+        """
         self.captions, self.current = captions, current
         self.folder = inputs.figures_folder
-        names_by_document = {
-            document: FIGURE_CALL.findall(text) for document, text in texts.items()
-        }
+        names_by_document = {name: FIGURE_CALL.findall(text) for name, text in texts.items()}
         shown = {*chain.from_iterable(names_by_document.values())}
         self.further_names = [name for name in inputs.figures if name not in shown]
-        last_document = [*texts][-1]
+        *_, last_document = texts
         names_by_document[last_document] += self.further_names
         self.numbers: dict[str, FigureNumber] = {}
-        for letter, document in zip(NUMBER_LETTERS, texts, strict=True):
-            names = names_by_document[document]
+        for letter, (document, names) in zip(
+            NUMBER_LETTERS, names_by_document.items(), strict=True
+        ):
             drawn = [name for name in names if name in inputs.figures]
             for i, name in enumerate(drawn, start=1):
                 self.numbers[name] = FigureNumber(document, f"{letter}{i}")
@@ -98,7 +104,10 @@ class Gallery:
         return f"![{text}]({path}){{#{name} width={self._width(name):.0f}% alt='{alt}'}}"
 
     def _label(self, name: str) -> str:
-        """Return "Figure" and the number, with the number in the paper if that is another one."""
+        """Return the number of a figure as text, such as "Figure 3 (paper, figure 2)".
+
+        The number in the paper is left out if the paper has no such figure, or if it is the same.
+        """
         label = f"Figure {self.numbers[name].number}"
         in_paper = PAPER_FIGURE.match(name)
         if in_paper is None:
@@ -117,13 +126,16 @@ class Gallery:
         return min(100.0, 100.0 * inches / PAGE_WIDTH)
 
     def further(self) -> str:
-        """Return all figures that no text shows, as Markdown."""
+        """Return the figures that no text shows, with their captions, as Markdown."""
         return "\n\n".join(self.figure(name) for name in self.further_names)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """Return a link to a figure between two texts, or no text if the figure was not drawn.
+        """Return a reference to a figure, such as " (figure 3)", with a link to the figure.
 
-        The word "figure" or "figures" at the end of ``before`` becomes a part of the link.
+        If the figure was not drawn, there is no text at all.
+
+        before, after : texts around the number; the word "figure" or "figures" at the end of
+            ``before`` becomes a part of the link
         """
         if name not in self.numbers:
             return ""
@@ -132,6 +144,7 @@ class Gallery:
             if before.endswith(ending):
                 start, word = before.removesuffix(ending), ending
         document, number = self.numbers[name]
+        # A link within the current document has no file name.
         file = "" if document == self.current else f"{document}.html"
         return f"{start}[{word}{number}]({file}#{name}){after}"
 
@@ -139,56 +152,28 @@ class Gallery:
 def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
     """Return the values and functions that cells and prose of a document may use, by name.
 
-    ``show`` puts Markdown into the document.
+    show : function that puts Markdown into the document
+    document : name of the document
     """
-    config, folder = inputs.config, inputs.manuscript
+    folder = inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
-    statements = read_text(folder / "statements.yaml")["statements"]
-    altered = changes(inputs.shipped, config)
+    altered = changes(inputs.shipped, inputs.config)
     misprints = read_errata(folder / "errata.yaml")
-
-    def cite(id: str, text: str) -> str:
-        """Return a text that links to a claim or a finding, where its tables are."""
-        return f"[{text}](../claims.html#{id})"
-
-    def deviation_of(id: str) -> str:
-        """Return the deviation of a claim as a percentage, with a link to the claim."""
-        return cite(id, percent(ledger(id).deviation))
-
-    def measured_of(id: str) -> str:
-        """Return the measured number of a claim, with a link to the claim."""
-        return cite(id, ledger(id).measured_text())
-
-    names: dict[str, object] = {
-        "config": config,
-        "citation": inputs.citation,
-        "tables": inputs.tables,
-        "show": show,
-        "claim": ledger,
-        "found": ledger.found,
-        "cite": cite,
-        "off": deviation_of,
-        "measured": measured_of,
-        "runs": partial(parameters, config),
-        "entries": read_text(folder / "claims.yaml"),
-        "statements": statements,
-        "sentences": coverage(statements),
-        "misprints": misprints,
-        "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
-    }
-    # This dictionary grows while cells run, so that errata can use names that cells define.
+    names = _names_of_data(inputs, ledger, altered) | {"show": show, "misprints": misprints}
+    # Cells add the names that they define to this dictionary. The errata may use them, because they
+    # are filled in later.
     filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
     gallery = Gallery(inputs, texts, captions, document)
     summary = read_text(folder / "summary.yaml")
     lines = judged_lines(summary, ledger, filled)
-    shipped = read_text(folder / "shipped_verdicts.yaml") or {}
+    shipped_verdicts = read_text(folder / "shipped_verdicts.yaml") or {}
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),
         "see": gallery.see,
-        "alteration_note": lambda: alteration_note(altered, ledger, shipped),
+        "alteration_note": lambda: alteration_note(altered, ledger, shipped_verdicts),
         "question": summary["question"],
         "answer": answer(lines),
         "symbols": summary["symbols"],
@@ -199,10 +184,49 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     return names
 
 
-def execute(source: Path, inputs: Inputs) -> str:
-    """Return the Markdown of a file with its code run and its prose filled.
+def _names_of_data(inputs: Inputs, ledger: Ledger, altered: Sequence[Mapping]) -> dict[str, object]:
+    """Return the names for configuration, tables, claims and statements, and for quoting claims.
 
-    A ValueError quotes the cell that fails.
+    altered : values of the configuration that differ from the shipped ones
+    """
+    folder = inputs.manuscript
+    statements = read_text(folder / "statements.yaml")["statements"]
+
+    def cite(id: str, text: str) -> str:
+        """Return a text with a link to a claim or a finding on the page of claims."""
+        return f"[{text}](../claims.html#{id})"
+
+    def deviation_of(id: str) -> str:
+        """Return the deviation of a claim as a percentage, with a link to the claim."""
+        return cite(id, percent(ledger(id).deviation))
+
+    def measured_of(id: str) -> str:
+        """Return the measured number of a claim, with a link to the claim."""
+        return cite(id, ledger(id).measured_text())
+
+    return {
+        "config": inputs.config,
+        "citation": inputs.citation,
+        "tables": inputs.tables,
+        "claim": ledger,
+        "found": ledger.found,
+        "cite": cite,
+        "off": deviation_of,
+        "measured": measured_of,
+        "runs": partial(parameters, inputs.config),
+        "entries": read_text(folder / "claims.yaml"),
+        "statements": statements,
+        "sentences": coverage(statements),
+        "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
+    }
+
+
+def execute(source: Path, inputs: Inputs) -> str:
+    """Run the code cells of a document, fill in its prose, and return the finished Markdown.
+
+    Raises ValueError, which quotes the cell, if a cell fails.
+
+    source : path of the document
     """
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)

@@ -1,4 +1,7 @@
-"""Write the tables of the report as Markdown: claims, sentences of the paper, errata, accuracy."""
+"""Write the tables of the report as Markdown: claims, sentences of the paper, errata, accuracy.
+
+Most functions return one table. The manuscript calls them.
+"""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -12,10 +15,11 @@ from ..claims.rules import WITHOUT_RESERVATION, WORST_FIRST
 from ..text.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
 
-# In lines of this length, pandoc reads the dashes of a pipe table as relative column widths.
+# The line of dashes below the head of a table has about this length. Pandoc takes the numbers of
+# dashes in long lines as relative widths of the columns.
 LINE_LENGTH = 200
 DASH = "\N{EM DASH}"
-# Rows of the table of grid studies: simulation, column, name in the table.
+# Rows of the table of grid studies: simulation, measured column, and name in the table.
 STUDIED_QUANTITIES = (
     ("steady_displacement", "front_speed_right", "front speed"),
     ("steady_displacement", "pulse_slip", "final slip"),
@@ -34,18 +38,19 @@ LAYER_PARTS = {
     "crack": "stress held",
     "barrier": "stress held, barrier on the left",
 }
-# Markers around a long table: WIDE and CLOSE put it on landscape pages, SMALL and CLOSE set it in
-# small type over several pages. FLUSH places all earlier figures before the text that follows.
+# Blocks of HTML and Typst around a long table. Between WIDE and CLOSE, it is on landscape pages.
+# Between SMALL and CLOSE, it is in small type and may extend over several pages.
 OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n`````'.format
 WIDE, SMALL = map(OPEN, ("sideways", "small"))
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
+# All figures before FLUSH are placed before the text after it.
 FLUSH = "`````{=typst}\n#place.flush()\n`````"
-# Figures after BELOW go to the bottom of a page, so that none interrupts the table before it.
+# Figures after BELOW are at the bottom of a page, so that none of them interrupts a table.
 BELOW = "`````{=typst}\n#show figure.where(kind: image): set figure(placement: bottom)\n`````"
 
 
 class _Column(NamedTuple):
-    """Head of a column: its title, its alignment (l or r) and its relative width."""
+    """The head of a column: its title, its alignment ("l" or "r") and its relative width."""
 
     title: str
     alignment: str
@@ -53,7 +58,7 @@ class _Column(NamedTuple):
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Read the head from a text such as "claim l34"."""
+        """Return the head that is described by a text such as "claim l34"."""
         title, _, layout = text.strip().rpartition(" ")
         return cls(title, alignment=layout[0], width=int(layout[1:]))
 
@@ -65,13 +70,14 @@ def table(head: str, rows: Iterable[Sequence[object]]) -> str:
     """
     columns = [_Column.read(text) for text in head.split("|")]
     total_width = sum(column.width for column in columns)
-    rules = []
+    titles = [column.title for column in columns]
+    # Below the titles, dashes give the widths, and a colon on one side gives the alignment.
+    dashes_and_colons = []
     for column in columns:
         dashes = "-" * max(3, round(LINE_LENGTH * column.width / total_width))
-        rules.append(f":{dashes}" if column.alignment == "l" else f"{dashes}:")
-    titles = [column.title for column in columns]
+        dashes_and_colons.append(f":{dashes}" if column.alignment == "l" else f"{dashes}:")
     lines = []
-    for row in (titles, rules, *rows):
+    for row in (titles, dashes_and_colons, *rows):
         # A cell of several lines becomes one line.
         cells = [" ".join(str(cell).split()) for cell in row]
         lines.append(f"| {' | '.join(cells)} |")
@@ -89,7 +95,10 @@ def code(names: Iterable[str]) -> str:
 
 
 def verdicts(lines: Iterable[Line]) -> str:
-    """Return the lines of the answer as a table, in which each verdict links to its claim."""
+    """Return the table of the answer: topics of the paper, linked verdicts, and what was found.
+
+    lines : from `texts.judged_lines`
+    """
     rows = []
     for line in lines:
         links = []
@@ -101,15 +110,18 @@ def verdicts(lines: Iterable[Line]) -> str:
 
 
 def failures(ledger: Ledger) -> str:
-    """Return a table of all claims that are not simply reproduced, worst first, with the reason."""
-    order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
-    failed = [claim for claim in order if claim.verdict not in WITHOUT_RESERVATION]
+    """Return a table of the claims whose verdict needs a reason, with this reason.
+
+    The worst verdicts come first. Claims that are reproduced without reservation are left out.
+    """
+    worst_first = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
+    failed = [claim for claim in worst_first if claim.verdict not in WITHOUT_RESERVATION]
     rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
     return table("claim l34 | verdict l13 | why l53", rows)
 
 
 def whole_ledger(ledger: Ledger) -> str:
-    """Return a table of all claims: place in the paper, numbers, tolerance, verdict and note."""
+    """Return a table of all claims: place in the paper, numbers, tolerance, verdict, evidence."""
     rows = []
     for claim in ledger:
         row = (
@@ -126,9 +138,9 @@ def whole_ledger(ledger: Ledger) -> str:
 
 
 def tolerances(ledger: Ledger) -> str:
-    """Return a table of tolerances with their reasons.
+    """Return a table of the tolerances of claims, with the reason for each tolerance.
 
-    Claims of the same kind with the same tolerance and reason share a row.
+    Claims share a row if they have the same kind, the same tolerance and the same reason.
     """
     ids_by_cells: dict[tuple[str, str, str], list[str]] = {}
     for claim in ledger:
@@ -143,7 +155,11 @@ def tolerances(ledger: Ledger) -> str:
 
 
 def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
-    """Return a table of statements that tests check, with their places in the paper and tests."""
+    """Return a table of the statements of the paper that tests check, with place and test.
+
+    entries : claims that tests check, by their id
+    sentences : the sentences of the paper, which name the claims
+    """
     places = places_of(entries, sentences)
     rows = []
     for id, entry in entries.items():
@@ -153,7 +169,10 @@ def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
-    """Return a table of numbers read off the published figure, with reading errors, beside ours."""
+    """Return a table that compares numbers read off the published space-time figure with ours.
+
+    readings : the part ``published`` of the configuration
+    """
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
     ours = left_panel | right_panel
@@ -172,27 +191,31 @@ def found_list(ledger: Ledger) -> str:
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
-    """Return a table of how many sentences are tested, and how many are not for which reason."""
+    """Return a table of how many sentences are tested, and how many are not for each reason."""
     titles = REASONS | {"all": "all"}
     rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
     return table("sentences l60 | how many r15", rows)
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Return a table of the tested sentences, with place in the paper, claims and checks."""
+    """Return a table of the tested sentences, with their place in the paper and their claims."""
     paragraph = re.compile(r", paragraph (\d+), sentence (\d+)")
     rows = []
     for sentence in sentences:
         claims = claims_of(entries, sentence)
         if claims:
-            # The column is narrow, so that paragraph and sentence are shortened to numbers.
+            # The column is narrow. Of "paragraph 2, sentence 3" it has "¶ 2, 3".
             position = paragraph.sub(r", ¶ \1, \2", sentence["place"])
             rows.append((position, sentence["paraphrase"], code(claims)))
     return table("section l22 | what it says l45 | claims l33", rows)
 
 
 def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
-    """Return a table of the errata, with expressions evaluated by ``fill``."""
+    """Return a table of the errata.
+
+    entries : the errata from `texts.read_errata`
+    fill : function that evaluates the expressions in a text
+    """
     rows = []
     for entry in entries:
         rows.append([fill(entry[key]) for key in ERRATUM])
@@ -201,7 +224,10 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Return a table of observed order and relative uncertainty from the grid studies."""
+    """Return a table of the observed order and the relative uncertainty of measured numbers.
+
+    tables : tables by name; those of grid studies have names such as "uncertainties/NAME"
+    """
     rows = []
     for simulation, quantity, name in STUDIED_QUANTITIES:
         study = tables[f"uncertainties/{simulation}"]
@@ -220,7 +246,7 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
 def sticking(examples: pd.DataFrame) -> str:
     """Return a table of release time, stick time and slip of an exact rupture at some positions.
 
-    Returns no text if the study has no exact rupture.
+    Returns an empty text if the study has no exact rupture.
     """
     columns = ["release_time", "stick_time", "final_slip"]
     examples = examples[examples["quantity"].isin(columns)]
@@ -236,32 +262,45 @@ def sticking(examples: pd.DataFrame) -> str:
 def layer_runs(study: pd.DataFrame) -> str:
     """Return a table of the runs of the two-dimensional layer, by part and level of pre-stress.
 
-    The strength falls over the slip d_c. The length G d_c/Delta tau, with the drop of strength
-    Delta tau, is gamma d_c in units of H. It is given in cells of the finest grid of each run.
+    The strength falls by Delta tau over the slip d_c. The zone behind the tip in which it falls has
+    a length of the order of G d_c/Delta tau, which is gamma d_c in units of the height H. The table
+    has this length in cells of the finest grid of each run.
+
+    study : the table of the study layer
     """
     rows = []
     for part, title in LAYER_PARTS.items():
         runs = study[study["part"] == part].sort_values("cells", kind="stable")
         finest = runs.drop_duplicates(["gamma", "tau0", "weakening", "before"], keep="last")
         for tau0, group in finest.groupby("tau0"):
-            length = group["gamma"] * group["weakening"] * group["cells"]
-            energies = _listed_numbers(group["fracture_energy"].dropna()) or DASH
-            low, high = (number(end, 2) for end in (length.min(), length.max()))
-            row = (title, setting(tau0), _listed_numbers(group["gamma"]), energies)
-            lengths = low if low == high else f"{low} to {high}"
-            rows.append((*row, lengths, _listed_numbers(group["cells"]), len(group)))
+            # The column cells has the number of cells over the height of the layer.
+            lengths = group["gamma"] * group["weakening"] * group["cells"]
+            shortest, longest = number(lengths.min(), 2), number(lengths.max(), 2)
+            row = (
+                title,
+                setting(tau0),
+                _listed_numbers(group["gamma"]),
+                _listed_numbers(group["fracture_energy"].dropna()) or DASH,
+                shortest if shortest == longest else f"{shortest} to {longest}",
+                _listed_numbers(group["cells"]),
+                len(group),
+            )
+            rows.append(row)
     head = r"top l28 | $\tau_0$ r8 | $\gamma$ l22 | $G_\mathrm{c}/G_0$ l28"
     head += r" | $\gamma d_\mathrm{c}/\Delta x$ r16 | $H/\Delta x$ r10 | runs r6"
     return table(head, rows)
 
 
 def _listed_numbers(values: pd.Series) -> str:
-    """Return the distinct values in ascending order, to three digits."""
+    """Return the distinct values as a text, in ascending order and with three digits."""
     return ", ".join(setting(float(f"{value:.3g}")) for value in sorted(values.unique()))
 
 
 def edges(study: pd.DataFrame) -> str:
-    """Return a table of extreme cases: the compared quantity, its error, tolerance and outcome."""
+    """Return a table of extreme cases: the compared quantity, its error, tolerance and outcome.
+
+    study : the table of the study extremes
+    """
     rows = []
     for row in study.to_dict("records"):
         outcome = str(row["verdict"])
@@ -278,9 +317,10 @@ def edges(study: pd.DataFrame) -> str:
 
 
 def stability_limits(study: pd.DataFrame) -> str:
-    """Return a table of derived largest steps, with the measured ones in brackets.
+    """Return a table of the largest stable time steps of each scheme and order.
 
-    The rows are schemes and orders, and the columns damping ratios.
+    There is one column for each damping ratio. A cell has the derived step. In brackets are two
+    measured steps, divided by the derived one: for a chain of sliding blocks, and for a rupture.
     """
     ratios = sorted(study["damping_ratio"].unique())
     rows = []
@@ -296,9 +336,12 @@ def stability_limits(study: pd.DataFrame) -> str:
 
 
 def _measured_limit(row: Mapping, name: str) -> str:
-    """Return a measured limit divided by the derived one.
+    """Return a measured largest step divided by the derived one, as text.
 
-    A sign marks a limit that lies outside the interval of the bisection.
+    The step was found by bisection. If it lies outside the interval of the bisection, the text
+    begins with < or >.
+
+    name : how the names of its columns begin
     """
     sign = {"within": "", "below": "<", "above": ">"}[row[f"{name}_limit"]]
     return f"{sign}{number(row[f'{name}_ratio'], 3)}"
@@ -307,7 +350,10 @@ def _measured_limit(row: Mapping, name: str) -> str:
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
     """Return a quotation that lists differences from the shipped configuration and verdicts.
 
-    Returns no text if there are none.
+    Returns an empty text if there are none.
+
+    altered : values of the configuration that differ from the shipped ones
+    verdicts : the shipped verdict of each claim
     """
     altered_values = []
     for change in altered:

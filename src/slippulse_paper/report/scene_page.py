@@ -1,4 +1,4 @@
-"""Write the page of one scene: its figure, its numbers beside theory, and its parameters."""
+"""Write the page of one scene: its figure, its numbers compared with theory, its parameters."""
 
 import base64
 import math
@@ -35,11 +35,13 @@ def scene_page(
     note: str,
     layer: Layer | None = None,
 ) -> str:
-    """Return the page as HTML, with the figure embedded.
+    """Return the page as HTML, which contains the figure.
 
+    png : path of the figure
+    numbers : table from `main_numbers.scene_numbers` or `main_numbers.numbers_in_si`
     attributes : parameters of the run, in units of the model
     note : which values of the configuration were altered; empty if none
-    layer : the layer in SI units, in which the page then shows all numbers
+    layer : if given, the page shows all numbers in SI units
     """
     shown = _parameters(attributes, layer)
     return page(
@@ -58,7 +60,7 @@ def scene_page(
 
 
 def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
-    """Return the shown parameters of the run, in SI units if there is a layer."""
+    """Return the parameters of the run that the page shows, in SI units if there is a layer."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         shown["steps_and_bumps"] = _profile_text(attributes, layer)
@@ -135,13 +137,16 @@ def _layer_rows(layer: Layer) -> dict[str, str]:
 
 
 def _scale_rows(layer: Layer) -> dict[str, str]:
-    """Return the units of the model in SI units."""
+    """Return the units in which the model measures length, time and so on, in SI units."""
     scales = layer.scales._asdict()
     return {name.replace("_", " "): _with_unit(value, name) for name, value in scales.items()}
 
 
 def _number_cells(row) -> dict[str, str]:
-    """Return the cells of the table row of one measured number."""
+    """Return the cells of one row of the table of measured numbers, by the name of their column.
+
+    row : a row of the table of numbers; the columns promised, kept, unit and paper may be missing
+    """
     promised = getattr(row, "promised", math.nan)
     promise = "not covered"
     if math.isfinite(promised):

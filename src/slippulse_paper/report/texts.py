@@ -1,7 +1,8 @@
-"""The texts in manuscript/*.yaml: captions, errata, and the answer with its verdicts.
+"""Read the texts in manuscript/*.yaml: captions, errata, and the answer with its verdicts.
 
-The texts are templates. Each reader fills in the numbers of one run, and `judged_lines` and
-`statement_rows` look up the verdicts of the claims that a text names.
+The texts are templates, which contain expressions. The functions that read them take a function
+``fill``, which replaces expressions by numbers. `judged_lines` and `statement_rows` also look up
+the verdicts of the claims that a text names.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -16,22 +17,22 @@ from ..claims.ledger import Entry, Ledger
 from ..claims.rules import WORST_FIRST
 from ..text.numerals import setting
 
-# The parts of an erratum. `alters` names what the error changes in the paper.
+# The keys of an erratum. The text of `alters` names what the misprint changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
 BOUNDARY_SYMBOLS = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}
-# A list of more values than this is shortened to its smallest and largest value.
+# If there are more values than this, only the smallest and the largest are named.
 MAX_LISTED_VALUES = 3
 
 
 class VerdictWords(NamedTuple):
-    """The words for a verdict in the answer, after one subject and after several."""
+    """The words for a verdict in a sentence with one subject, and with several subjects."""
 
     verdict: str
     singular: str
     plural: str
 
 
-# Each group of verdicts gets one sentence of the answer.
+# The answer has one sentence for each of these groups of verdicts.
 SENTENCES = (
     (
         VerdictWords(
@@ -51,7 +52,7 @@ SENTENCES = (
 
 
 class Caption(NamedTuple):
-    """The texts of a figure: title and alternative text are plain, the others Markdown."""
+    """The texts of a figure. Title and alternative text are plain; the others are Markdown."""
 
     title: str
     alt: str
@@ -60,7 +61,7 @@ class Caption(NamedTuple):
 
 
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
-    """Read the captions of all figures by name, and evaluate their expressions with ``fill``.
+    """Return the captions of all figures by name, with their expressions evaluated by ``fill``.
 
     Raises ValueError if a caption lacks a text or has an unknown key.
     """
@@ -73,7 +74,10 @@ def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[st
 
 
 def read_errata(path: str | Path) -> list[dict[str, str]]:
-    """Read the errata, each a mapping with the keys `ERRATUM`; ValueError if one is incomplete."""
+    """Return the errata, each of which is a mapping with the keys `ERRATUM`.
+
+    Raises ValueError if an erratum lacks a text or has an unknown key.
+    """
     entries = read_text(path)
     for i, entry in enumerate(entries, start=1):
         _check_keys(f"{path}: entry {i}", entry, ERRATUM)
@@ -81,7 +85,10 @@ def read_errata(path: str | Path) -> list[dict[str, str]]:
 
 
 def _check_keys(label: str, entry: Mapping, keys: Collection[str]) -> None:
-    """Raise ValueError if an entry lacks a text for one of the keys, or has an unknown key."""
+    """Raise ValueError if an entry lacks a text for one of the keys, or has an unknown key.
+
+    label : words for the entry at the beginning of the error message
+    """
     for key in [*entry, *keys]:
         if key not in keys:
             raise ValueError(f"{label}: {key}: unknown key; allowed: {', '.join(keys)}")
@@ -98,7 +105,9 @@ def listed(words: Sequence[str]) -> str:
 def parameters(config: Mapping, name: str) -> str:
     """Return the parameters of a simulation in Markdown, such as "$\\Gamma=1$, $W$ = 1 and 2".
 
-    Raises ValueError for a simulation that the configuration does not have.
+    Raises ValueError if the configuration does not have the simulation.
+
+    name : name of the simulation
     """
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
@@ -106,6 +115,7 @@ def parameters(config: Mapping, name: str) -> str:
     left = _profile_values(simulation, "left")
     right = _profile_values(simulation, "right")
     boundary = BOUNDARY_SYMBOLS[simulation["boundary"]]
+    # The values of each parameter by its symbol. A parameter without values is left out below.
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
     values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
     if right == ["same"]:
@@ -117,14 +127,17 @@ def parameters(config: Mapping, name: str) -> str:
     values[r"$\beta$"] = simulation.get("beta")
     if not values[r"$\beta$"]:
         values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
-    parts = [f"{symbol} = {_values_text(given)}" for symbol, given in values.items() if given]
-    return ", ".join([boundary, *parts])
+    texts = [f"{symbol} = {_values_text(given)}" for symbol, given in values.items() if given]
+    return ", ".join([boundary, *texts])
 
 
 def _profile_values(simulation: Mapping, key: str) -> list:
-    """Return the distinct values of one key of the pre-stress over the profiles of a simulation."""
+    """Return the distinct values that the profiles of a simulation have for a key.
+
+    key : a key of the pre-stress, such as "left"
+    """
     values: list = []
-    # A simulation without profiles has the keys of a profile itself.
+    # A simulation without the key "profiles" is itself the only profile.
     for profile in simulation.get("profiles") or [simulation]:
         given = profile.get(key, [])
         values += given if isinstance(given, list) else [given]
@@ -132,25 +145,27 @@ def _profile_values(simulation: Mapping, key: str) -> list:
 
 
 def _values_text(values: Sequence[float]) -> str:
-    """Write a few values as a list, and more of them as "smallest to largest"."""
+    """Return values as text: a few of them as a list, and more as "smallest to largest"."""
     if len(values) > MAX_LISTED_VALUES:
         return f"{setting(min(values))} to {setting(max(values))}"
     return listed([setting(value) for value in sorted(values)])
 
 
 class StatementRow(NamedTuple):
-    """A row of the table on the index: a statement of the paper and what decides it."""
+    """A row of the table on the index page: a statement of the paper, and what decides it."""
 
     statement: str
-    # The claim with the worst verdict.
-    claim: Entry
-    number: str
+    claim: Entry  # the claim with the worst verdict, of those that test the statement
+    number: str  # the number that decides it, with a few words
 
 
 def statement_rows(
     summary: Mapping, ledger: Ledger, fill: Callable[[str], str]
 ) -> list[StatementRow]:
-    """Return the rows of the index in the order of the summary, with expressions evaluated."""
+    """Return the rows of the table on the index page, with their expressions evaluated.
+
+    summary : content of manuscript/summary.yaml
+    """
     rows = []
     for row in summary["statements"]:
         claim = worst_claim(ledger, row["claims"])
@@ -165,52 +180,68 @@ def worst_claim(ledger: Ledger, ids: Collection[str]) -> Entry:
 
 
 class Line(NamedTuple):
-    """A line under `verdict` in manuscript/summary.yaml, with the verdicts of its claims."""
+    """An entry of the list `verdict` in manuscript/summary.yaml, with the verdicts of its claims.
+
+    topic : heading of the line
+    named : the topic as a part of a sentence
+    text : what was found
+    claim : the claim with the worst verdict, of those that count
+    clause : a clause of the answer for this verdict; if it is empty, the answer uses `named`
+    verdicts : from `_claims_by_verdict`
+    """
 
     topic: str
-    # The topic as a sentence names it.
     named: str
     text: str
-    # The claim with the worst verdict among those that count.
     claim: Entry
-    # The clause of the answer for that verdict; empty if `named` serves.
     clause: str
-    # One claim for each verdict, with the subjects that have this verdict in brackets. The subjects
-    # are empty if all claims have the same verdict.
     verdicts: Sequence[tuple[Entry, str]]
 
 
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
-    """Return the lines of the summary in their order, with expressions evaluated by ``fill``."""
+    """Return the lines of the summary, with their verdicts, and with expressions evaluated.
+
+    summary : content of manuscript/summary.yaml
+    """
     lines = []
     for entry in summary["verdict"]:
         worst = worst_claim(ledger, entry["claims"])
-        clause = fill(entry.get("said", {}).get(worst.verdict, ""))
+        clause_by_verdict = entry.get("said", {})
         subjects = entry["claims"] | entry.get("beside", {})
-        verdicts = _claims_by_verdict(ledger, subjects)
-        text = fill(entry["text"])
-        lines.append(Line(entry["topic"], entry["named"], text, worst, clause, verdicts))
+        line = Line(
+            topic=entry["topic"],
+            named=entry["named"],
+            text=fill(entry["text"]),
+            claim=worst,
+            clause=fill(clause_by_verdict.get(worst.verdict, "")),
+            verdicts=_claims_by_verdict(ledger, subjects),
+        )
+        lines.append(line)
     return lines
 
 
 def _claims_by_verdict(ledger: Ledger, subjects: Mapping[str, str]) -> list[tuple[Entry, str]]:
-    """Return, for each verdict, its first claim and the subjects of all claims that have it.
+    """Return, for each verdict, the first claim that has it, and the subjects of all such claims.
+
+    The subjects are a text in brackets. It is empty if all claims have the same verdict.
 
     subjects : what each claim is about, by the id of the claim
     """
     ids_by_verdict: dict[str, list[str]] = {}
     for id in subjects:
         ids_by_verdict.setdefault(ledger(id).verdict, []).append(id)
-    several = len(ids_by_verdict) > 1
+    has_several_verdicts = len(ids_by_verdict) > 1
     verdicts = []
     for ids in ids_by_verdict.values():
-        words = listed([*dict.fromkeys(subjects[id] for id in ids)])
-        verdicts.append((ledger(ids[0]), f"({words})" if several else ""))
+        # Several claims may have the same subject.
+        subject_list = listed([*dict.fromkeys(subjects[id] for id in ids)])
+        text = f"({subject_list})" if has_several_verdicts else ""
+        verdicts.append((ledger(ids[0]), text))
     return verdicts
 
 
 def _opening(line: Line) -> str:
-    """Return the first sentence of the answer: yes, no or not decided."""
+    """Return the first sentence of the answer, which begins with yes, no or not decided."""
     verdict = line.claim.verdict
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
@@ -222,21 +253,33 @@ def _opening(line: Line) -> str:
 def answer(lines: Sequence[Line]) -> str:
     """Return the answer to the question of the summary as Markdown.
 
-    Its first sentence reports the verdict on the first line. One sentence for each group of
-    verdicts in `SENTENCES` names the other lines that are not simply reproduced.
+    The first sentence has the verdict on the first line. The other lines are named only if they are
+    not simply reproduced, in one sentence for each group of verdicts in `SENTENCES`.
     """
-    first, *rest = lines
-    sentences = [_opening(first)]
+    first_line, *other_lines = lines
+    sentences = [_opening(first_line)]
     for group in SENTENCES:
         clauses = []
         for words in group:
-            judged = [line for line in rest if line.claim.verdict == words.verdict]
-            clauses += [line.clause for line in judged if line.clause]
-            subjects = [line.named for line in judged if not line.clause]
-            if subjects:
-                predicate = words.plural if len(subjects) > 1 else words.singular
-                clauses.append(f"{listed(subjects)} {predicate}")
+            judged = [line for line in other_lines if line.claim.verdict == words.verdict]
+            clauses += _clauses(judged, words)
         if clauses:
             sentence = ", and ".join(clauses)
             sentences.append(f"{sentence[0].upper()}{sentence[1:]}.")
     return " ".join(sentences)
+
+
+def _clauses(lines: Sequence[Line], words: VerdictWords) -> list[str]:
+    """Return the clauses that report one verdict of some lines.
+
+    Lines with a clause of their own come first. The others share one clause, such as "the width and
+    the slip are different".
+
+    words : the words for the verdict
+    """
+    clauses = [line.clause for line in lines if line.clause]
+    subjects = [line.named for line in lines if not line.clause]
+    if subjects:
+        predicate = words.plural if len(subjects) > 1 else words.singular
+        clauses.append(f"{listed(subjects)} {predicate}")
+    return clauses

@@ -23,6 +23,7 @@ from slippulse.theory.pulse import steady_pulse
 from slippulse.theory.rupture import Rupture
 
 from ..configuration.expand import expand
+from ..configuration.profiles import ExpandedProfiles
 from .rough_prestress import CELL_MIDDLES, ROUGH_KEYS, START, fate_of_pulse, prestress_integral
 from .rough_theory import balance_position
 from .survival_statistics import Fate, death_rate
@@ -73,7 +74,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def ensembles_of(sweep: Mapping[str, Any]) -> Iterator[list[Profile]]:
     """Yield the profiles of each ensemble of a sweep, which differ only in the seed."""
     ensembles: dict[tuple, list[Profile]] = {}
-    for profile in sweep["profiles"]:
+    for profile in ExpandedProfiles(sweep["profiles"]):
         key = tuple(profile["rough"][name] for name in ROUGH_KEYS)
         ensembles.setdefault(key, []).append(profile)
     yield from ensembles.values()

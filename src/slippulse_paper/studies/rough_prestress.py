@@ -6,7 +6,7 @@ the rate of fatal barriers. Under a stress boundary, only the right pulse runs o
 integral of the pre-stress behind it has fallen to 0, like a random walk (`rough_theory`).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +19,7 @@ from slippulse.theory.closed_pulse import SteadyPulse
 from slippulse.theory.front_speeds import front_speed
 from slippulse.theory.pulse import steady_pulse
 
-from ..configuration.profiles import prestress_of
+from ..configuration.profiles import ExpandedProfiles, prestress_of
 from .rough_theory import (
     balance_position,
     barrier_rate,
@@ -83,7 +83,8 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
     """
     ensembles: list[Ensemble] = []
     for name in NEEDS["data"]:
-        ensembles += ensembles_of(data[name], settings["sweeps"][name]["profiles"])
+        profiles = ExpandedProfiles(settings["sweeps"][name]["profiles"])
+        ensembles += ensembles_of(data[name], profiles)
     by_boundary: dict[str, list[Ensemble]] = {"displacement": [], "stress": []}
     for ensemble in ensembles:
         by_boundary[ensemble.parameters["boundary"]].append(ensemble)
@@ -102,7 +103,7 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
     return pd.concat(parts, ignore_index=True)
 
 
-def ensembles_of(data: xr.Dataset, profiles: list[dict]) -> Iterator[Ensemble]:
+def ensembles_of(data: xr.Dataset, profiles: Iterable[dict]) -> Iterator[Ensemble]:
     """Yield the ensembles of a sweep; ``profiles`` has the pre-stress profile of each run."""
     ensembles: dict[tuple, Ensemble] = {}
     for run, profile in zip(runs_in(data), profiles, strict=True):

@@ -1,1 +1,1 @@
-"""Parts that several figures share: functions that make rows of tables and that draw them."""
+"""Functions that several figures share: some make rows of a table, and others draw them."""

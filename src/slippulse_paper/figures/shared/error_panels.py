@@ -1,4 +1,4 @@
-"""Panels of the error of a quantity against the cost, for every scheme and order."""
+"""Panels that show the error of a quantity as a function of the cost of a run."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -9,31 +9,41 @@ from matplotlib.axes import Axes
 
 from slippulse.plotting.style import BLACK, BLUE, ORANGE, SMALL_TEXT, TEXT_OUTLINE, Look
 
-# Quantities with their title and the boundary condition, the one with the largest errors first.
+# Title and boundary condition of each quantity, in the order of falling errors.
 QUANTITIES = {
     "share_time": ("the 95 % time", r"$\Gamma = 0$"),
     "transition_time": (r"$T_\text{trans}$", r"$\Gamma = 1$"),
     "peak_velocity": ("peak velocity", r"$\Gamma = 1$"),
     "front_speed": ("front speed", r"$\Gamma = 1$"),
 }
-ORDER_MAP, FIRST_COLOUR, LAST_COLOUR = "viridis", 0.9, 0.0
-NAME: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
+# Orders are drawn in the colours between these two points of the colour map.
+ORDER_MAP = "viridis"
+FIRST_COLOUR, LAST_COLOUR = 0.9, 0.0
+# Look of a text beside a marker or a line.
+BESIDE: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
 
 
 def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) -> pd.DataFrame:
-    """Return one row for each quantity and setting that a figure draws, by role.
+    """Return one row for each quantity and setting that a figure draws.
 
-    textbook, preset, exact : the textbook scheme, the presets, and the exact solution
-    frontier : for each scheme and order, the settings whose error is smaller than that of all
-        cheaper ones
+    The column role is one of these:
 
-    cost : name of the cost in the result
+    textbook : a setting of the textbook scheme
+    preset : a setting that is a preset
+    exact : the exact solution
+    frontier : a setting whose error is smaller than that of all cheaper settings with the same
+        scheme and order
+
+    Parameters
+    ----------
+    trade : errors and costs of all settings, from the study accuracy_cost
+    cost : name of the column with the cost in the result, such as "work"
     column_of : function that returns the column of ``trade`` with the cost for a quantity
     """
+    settings = trade[["scheme", "order", "step", "dx", "preset"]]
     parts = []
     for name in QUANTITIES:
-        kept = trade[["scheme", "order", "step", "dx", "preset"]]
-        rows = kept.assign(quantity=name, error=trade[name], **{cost: trade[column_of(name)]})
+        rows = settings.assign(quantity=name, error=trade[name], **{cost: trade[column_of(name)]})
         rows = rows.sort_values(cost, kind="stable")
         roles = {
             "textbook": rows[rows["scheme"] == "fixed_step"],
@@ -41,28 +51,42 @@ def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) 
             "exact": rows[rows["scheme"] == "continuum"],
         }
         lattices = rows[rows["scheme"] != "continuum"].dropna(subset="error")
-        # The rows are in the order of their cost, so the smallest error of all cheaper settings is
-        # the running minimum of the row before.
-        running_minimum = lattices.groupby(["scheme", "order"])["error"].transform("cummin")
-        by_order = running_minimum.groupby([lattices["scheme"], lattices["order"]])
-        smallest_of_cheaper = by_order.shift(fill_value=np.inf)
-        roles["frontier"] = lattices[lattices["error"] < smallest_of_cheaper]
+        roles["frontier"] = lattices[lattices["error"] < _smallest_error_of_cheaper(lattices)]
         parts += [part.assign(role=role) for role, part in roles.items()]
     return pd.concat(parts, ignore_index=True)
 
 
+def _smallest_error_of_cheaper(rows: pd.DataFrame) -> pd.Series:
+    """Return for each row the smallest error of all cheaper rows with its scheme and order.
+
+    It is infinite for the cheapest row.
+
+    rows : settings in the order of their cost
+    """
+    order_columns = ["scheme", "order"]
+    # The smallest error up to and including a row.
+    smallest_so_far = rows.groupby(order_columns)["error"].transform("cummin")
+    by_order = smallest_so_far.groupby([rows[name] for name in order_columns])
+    return by_order.shift(fill_value=np.inf)
+
+
 def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_label: str) -> None:
-    """Draw one panel for each quantity, with logarithmic axes."""
+    """Draw one panel for each quantity: its error as a function of the cost.
+
+    table : the rows of `error_rows`
+    cost : name of the column with the cost
+    axis_label : label of the horizontal axis
+    """
     for axes, (quantity, (title, boundary)) in zip(panels, QUANTITIES.items(), strict=True):
         rows = table[table["quantity"] == quantity]
         _draw_frontiers(axes, rows, cost)
         textbook, presets = (rows[rows["role"] == role] for role in ("textbook", "preset"))
-        look: Look = {"color": BLACK, "linestyle": "none"}
-        axes.plot(textbook[cost], textbook["error"], marker="x", label="textbook scheme", **look)
-        look["color"] = ORANGE
-        axes.plot(presets[cost], presets["error"], marker="o", label="presets", **look)
+        look: Look = {"color": BLACK, "label": "textbook scheme"}
+        axes.plot(textbook[cost], textbook["error"], "x", **look)
+        look = {"color": ORANGE, "label": "presets"}
+        axes.plot(presets[cost], presets["error"], "o", **look)
         for preset in presets.to_dict("records"):
-            axes.annotate(preset["preset"], (preset[cost], preset["error"]), (4, 5), **NAME)
+            axes.annotate(preset["preset"], (preset[cost], preset["error"]), (4, 5), **BESIDE)
         lattices = rows[rows["role"] != "exact"]
         axes.set(xscale="log", yscale="log", xlabel=axis_label)
         axes.set(ylabel=f"relative error of {title}", title=boundary)
@@ -74,13 +98,14 @@ def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_lab
 
 
 def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
-    """Draw the smallest error that a cost can buy, for each order and the textbook scheme."""
+    """Draw the smallest error at a cost, for each order and for the textbook scheme, as steps."""
     frontier, end = rows[rows["role"] == "frontier"], rows[cost].max()
     orders = sorted(frontier.loc[frontier["scheme"] == "localised", "order"].unique())
     shades = np.linspace(FIRST_COLOUR, LAST_COLOUR, len(orders))
     colours = dict(zip(orders, matplotlib.colormaps[ORDER_MAP](shades), strict=True))
     for (scheme, order), part in frontier.groupby(["scheme", "order"]):
-        # A larger cost need not have a larger error.
+        # The last step extends to the largest cost, since a larger cost need not have a larger
+        # error.
         part = pd.concat([part, part.tail(1).assign(**{cost: end})])
         look: Look = {"color": BLACK, "linewidth": 0.6}
         if scheme == "localised":
@@ -89,9 +114,12 @@ def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
 
 
 def _draw_exact(axes: Axes, exact: Mapping, cost: str) -> None:
-    """Mark the cost of the exact solution. Its error, far below the panel, stands at the line."""
+    """Draw a vertical line at the cost of the exact solution, and write its error beside the line.
+
+    The error is too small for the panel.
+    """
     axes.axvline(exact[cost], color=BLUE, linewidth=0.9, label="exact solution")
     digit, exponent = f"{exact['error']:.0e}".split("e")
     text = rf"error ${digit} \times 10^{{{int(exponent)}}}$"
-    look: Look = {"color": BLUE, "fontsize": SMALL_TEXT, "ha": "right"}
-    axes.annotate(text, (exact[cost], axes.get_ylim()[0]), (-3, 4), **look, **NAME)
+    look = BESIDE | {"color": BLUE, "fontsize": SMALL_TEXT, "ha": "right"}
+    axes.annotate(text, (exact[cost], axes.get_ylim()[0]), (-3, 4), **look)

@@ -10,8 +10,8 @@ from slippulse.data.readable_units import readable_unit
 from slippulse.model.layer_units import Layer
 from slippulse.model.si_quantities import QUANTITIES
 
-# Labels of measured columns: those of both boundary conditions, those of pulses with the
-# displacement held, and all of them by boundary condition.
+# Labels of measured columns: those under both boundary conditions, those of pulses with the
+# displacement held, and all those under each boundary condition.
 COMMON_LABELS = {
     "front_speed_left": "front speed, left",
     "front_speed_right": "front speed, right",
@@ -29,9 +29,7 @@ LABELS = {
     "stress": COMMON_LABELS
     | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
 }
-
-
-# How the names of predictions begin, for the front and for the pulse of each side.
+# Beginnings of the names of predictions by steady theory: for the front and the pulse of each side.
 PREDICTION_PREFIXES = {
     "left": ("exact_front_speed_left", "exact_left_pulse"),
     "right": ("exact_front_speed_right", "exact_pulse"),
@@ -45,9 +43,12 @@ def with_symbols(label: str) -> str:
 
 
 def main_numbers(run: pd.Series) -> pd.DataFrame:
-    """Return the main measured numbers of a run: quantity, label, value and theory.
+    """Return the main measured numbers of a run, one in each row.
 
-    Theory is NaN if the quantity has none.
+    The columns are the name of the measured column (quantity), its label, its value, and its value
+    by exact theory (NaN if there is none).
+
+    run : measured and predicted numbers of the run
     """
     run = at_constant_levels(run)
     rows = []
@@ -60,10 +61,10 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
 
 
 def at_constant_levels(run: pd.Series) -> pd.Series:
-    """Return the numbers of a run, without steady theory for a front in varying pre-stress.
+    """Return the numbers of a run, with NaN for steady theory where it does not apply.
 
-    The theory assumes the levels at the ends of a pre-stress table. It does not apply to a front
-    that has not reached a constant level.
+    For a table of pre-stress, the theory assumes the constant levels at its ends. It does not apply
+    to a front that has not reached a constant level.
     """
     run = run.copy()
     for side, prefixes in PREDICTION_PREFIXES.items():
@@ -76,13 +77,13 @@ def at_constant_levels(run: pd.Series) -> pd.Series:
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
-    """Return `main_numbers` of a scene with the columns of its grid study.
+    """Return `main_numbers` of a scene, with the uncertainty of each number.
 
-    These are the uncertainty, and the columns promised and kept if the scene has a promised
-    accuracy.
+    If the scene has a promised accuracy, the result also has the columns promised and kept of
+    `slippulse.measurement.promise`.
 
     run : measured and predicted numbers
-    study : one row for each quantity of the grid study
+    study : the grid study of the scene, with one row for each quantity
     """
     numbers = main_numbers(run)
     quantity = numbers["quantity"]
@@ -91,11 +92,12 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
         numbers.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
     if run.get("pulse_state") == "stopped":
         numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
-    # The balance of the pre-stress, which defines this transition, leaves bumps out.
+    # Under a stress boundary, the balance position defines the transition. It is computed without
+    # the bumps of the pre-stress, so the transition of a scene with bumps is left out.
     has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
     if has_bumps and run["boundary"] == "stress":
         numbers = numbers[~quantity.str.startswith("transition")]
-    # The transition is the first stick, which is not repeated.
+    # The time of the first stick is left out if it is already in the table as the transition time.
     if (quantity == "transition_time").any():
         numbers = numbers[quantity != "first_stick_time"]
     promise_columns = [name for name in ("promised", "kept") if name in study]
@@ -104,14 +106,20 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
 
 
 def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:
-    """Convert the numbers of a scene to SI units, with a suitable prefix in the column unit.
+    """Return the numbers of a scene in SI units, with two more columns.
 
-    The column paper has the number by the paper's printed formula. For the peak slip velocity, the
-    printed formula with dimensions is half of the printed formula without (section IV A). ``run``
-    is the row of measured and predicted numbers.
+    unit : the unit of the number, with a suitable prefix
+    paper : the number by the formula that the paper prints with dimensions
+
+    Parameters
+    ----------
+    numbers : table from `scene_numbers`
+    run : measured and predicted numbers
     """
     paper = [run.get(f"paper_{quantity}", math.nan) for quantity in numbers["quantity"]]
     converted = numbers.assign(unit="", paper=np.array(paper, dtype=float))
+    # For the peak slip velocity, the formula with dimensions (section IV A) gives half of the value
+    # of the formula without dimensions.
     converted.loc[converted["quantity"] == "pulse_peak_velocity", "paper"] *= 0.5
     for index, row in converted.iterrows():
         quantity = QUANTITIES[str(row["quantity"])]

@@ -1,4 +1,4 @@
-"""Tabulate and draw simulated and exact pulses in the frame that moves with them."""
+"""Tabulate and draw simulated and exact pulses, as functions of the distance from their peak."""
 
 from typing import NamedTuple
 
@@ -25,7 +25,7 @@ from slippulse.plotting.style import (
     entry,
 )
 
-# Axis labels of the fields, in the units of each boundary condition.
+# Axis labels of the fields, with the units that are used under each boundary condition.
 FIELDS = {
     "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\text{max}$"},
     "slip_velocity": {
@@ -38,14 +38,14 @@ FIELDS = {
     },
 }
 DISTANCE_LABELS = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
-# The column that sets the line style of a run; its level sets the colour.
+# The column that decides the line style of a run. The level of the pre-stress decides its colour.
 STYLED_COLUMN = {"displacement": "damping_ratio", "stress": "width"}
 LINE_STYLES = ("-", "--", ":", "-.")
-# How many levels of pre-stress are drawn.
+# Number of drawn levels of the pre-stress.
 LEVEL_COUNT = {"displacement": 2, "stress": 3}
-# Points of a simulated curve, and visible decimals of its values.
+# Largest number of points of a simulated curve, and number of decimals of its values.
 CURVE_POINTS, VISIBLE_DECIMALS = 300, 4
-# How far a simulated pulse is drawn beyond its front and beyond its tail, in pulse widths.
+# A simulated pulse is drawn beyond its front and beyond its tail by these fractions of its width.
 MARGIN_AHEAD, MARGIN_BEHIND = 0.08, 0.25
 SIMULATION_LOOK: Look = {"linewidth": 2.6, "alpha": 0.3}
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
@@ -54,10 +54,9 @@ PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return simulated and exact pulses of each sweep at a few levels of pre-stress.
 
-    Positions are relative to the largest slip velocity. Under a displacement boundary, the units
-    are those of the paper's pulse. Under a stress boundary they are the width of the Gaussian, the
-    final slip and largest velocity of the exact pulse far from the nucleation, and that velocity
-    divided by the width, since the exact acceleration has no bound.
+    The column role is "run" (one row for each run, with its parameters), "simulation" or "exact"
+    (the points of a curve). Positions x are relative to the peak of the slip velocity.
+    `frame_of_pulse` describes the units.
     """
     window = settings["measure"]["front_window"]
     # The exact profile of each run.
@@ -69,8 +68,8 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         boundary = str(runs["boundary"].iloc[0])
         drawn_levels = spread_values(runs["left"], LEVEL_COUNT[boundary])
         runs = runs[runs["left"].isin(drawn_levels)]
-        # A pulse that is not steady counts as flagged. Under a stress boundary there is no such
-        # state.
+        # A pulse that is not steady counts as flagged. Under a stress boundary, pulses have no such
+        # state ("none").
         is_steady = runs["pulse_state"].isin(["steady", "none"])
         flags = runs["run_flags"].where(is_steady, runs["pulse_state"])
         rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
@@ -78,9 +77,9 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             exact = profiles.get_group((name, index)).assign(role="exact")
             frame = frame_of_pulse(boundary, numbers, exact)
             simulated = simulated_profile(point(sweep, int(index)), window, frame)
-            both = pd.concat([simulated.assign(role="simulation"), exact])
-            curves = (both[["x", *FIELDS]] / frame.units).round(VISIBLE_DECIMALS)
-            curves.insert(0, "role", both["role"])
+            points = pd.concat([simulated.assign(role="simulation"), exact])
+            curves = (points[["x", *FIELDS]] / frame.units).round(VISIBLE_DECIMALS)
+            curves.insert(0, "role", points["role"])
             rows.append(curves.assign(run=index))
         parts.append(pd.concat(rows).assign(panel=boundary))
     return pd.concat(parts, ignore_index=True)
@@ -89,7 +88,7 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 class PulseFrame(NamedTuple):
     """The range in which a simulated pulse is drawn, and the units of its curves.
 
-    begin, end : range of distances from the front, which are negative behind it
+    begin, end : first and last drawn distance from the front; distances are negative behind it
     units : units of x and of each of FIELDS
     """
 
@@ -99,7 +98,13 @@ class PulseFrame(NamedTuple):
 
 
 def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> PulseFrame:
-    """Return the frame of one pulse; `pulse_table` describes the units.
+    """Return the drawn range and the units of one pulse.
+
+    Under a displacement boundary, the units are width, slip, peak velocity and acceleration of the
+    pulse by the paper's formulas. Under a stress boundary, the unit of length is the width of the
+    Gaussian. The units of slip and velocity are the largest values of the exact pulse far from the
+    nucleation. The exact acceleration has no largest value, so its unit is that of velocity divided
+    by that of length.
 
     numbers : measured and predicted numbers of the run
     exact : profile of the exact pulse
@@ -119,15 +124,18 @@ def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> Pu
 def simulated_profile(run: xr.Dataset, window: float, frame: PulseFrame) -> pd.DataFrame:
     """Return the right pulse at the end of a run: the columns of FIELDS as functions of x.
 
-    The largest slip velocity is at x = 0.
+    x is the position relative to the peak of the slip velocity.
+
+    window : the last fraction of the front's path, from which its speed is measured
     """
     pulse = leading_pulse(run, window)
-    # xi is the distance from the front.
+    # xi is the position relative to the front.
     profile = pd.DataFrame(comoving(run, pulse))
-    inside = profile[profile["xi"].between(frame.begin, frame.end)]
-    stride = int(np.ceil(len(inside) / CURVE_POINTS))
-    drawn = inside.iloc[::stride]
-    return drawn.assign(x=drawn["xi"] - (pulse.peak_distance - pulse.front))
+    in_frame = profile[profile["xi"].between(frame.begin, frame.end)]
+    stride = int(np.ceil(len(in_frame) / CURVE_POINTS))
+    drawn = in_frame.iloc[::stride]
+    peak_xi = pulse.peak_distance - pulse.front
+    return drawn.assign(x=drawn["xi"] - peak_xi)
 
 
 def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
@@ -142,7 +150,8 @@ def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
     """Draw a field of the pulses of one boundary condition.
 
-    Simulations are pale, and grey if the run is flagged. Exact pulses are thin lines.
+    Simulations are wide pale lines, which are grey if the run is flagged. Exact pulses are thin
+    lines.
     """
     for run in styled_runs(table).itertuples():
         rows = table[table["run"] == run.run]
@@ -188,9 +197,10 @@ def handles(table: pd.DataFrame) -> list[Line2D]:
 
 
 def title(table: pd.DataFrame) -> str:
-    """Return a title with the boundary condition, and with gamma or b.
+    """Return a title with the boundary condition, and with all values of gamma or b.
 
-    These are the parameters that neither colour nor line style shows.
+    Gamma is named under a displacement boundary, and b under a stress boundary, because neither
+    colour nor line style shows it there.
     """
     has_springs = table["panel"].iloc[0] == "displacement"
     column = "gamma" if has_springs else "damping_ratio"
@@ -199,9 +209,11 @@ def title(table: pd.DataFrame) -> str:
 
 
 def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length: float) -> None:
-    """Draw the pre-stress of runs in an inset, each in the colour of its column colour.
+    """Draw the pre-stress of some runs in an inset.
 
-    ``half_length`` is that of the axis, in widths of the widest Gaussian.
+    runs : the runs, with their colours in the column colour
+    half_length : the inset shows the positions from -half_length to half_length, in widths of the
+        widest Gaussian
     """
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     # Tables of pre-stress without a Gaussian have no width.

@@ -1,6 +1,6 @@
-"""Draw T_trans and L_trans of every run as functions of the paper's formulas.
+"""Draw measured T_trans and L_trans of runs as functions of those by the paper's formulas.
 
-Insets have the ratio of both, with exact theory as lines.
+In insets, the ratio of measured and predicted values is drawn, with exact theory as lines.
 """
 
 from typing import Any
@@ -28,31 +28,36 @@ from slippulse.plotting.style import (
 from ...text.numerals import setting
 
 QUANTITIES = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
-# The column that varies in addition to the level, by boundary condition.
+# The parameter that varies in addition to the level of the pre-stress, for each boundary condition.
 SECOND_COLUMN = {"displacement": "gamma", "stress": "width"}
 # An inset draws lines of this many levels, or values of gamma or W.
 LINE_COUNT = 3
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row per run of all sweeps, with its transition length and time.
+    """Return one row for each run of all sweeps, with its transition length and time.
 
-    Both are measured (columns length and time), with uncertainties (uncertainty_length), by the
-    paper's formula (paper_length), and exact (exact_length).
+    The columns length and time have the measured values. With a prefix, they have the numerical
+    uncertainty (uncertainty_length), the value by the paper's formula (paper_length), and the exact
+    value (exact_length).
     """
-    # The other tables are uncertainties/NAME.
+    # The tables of grid studies have names such as "uncertainties/NAME".
     sweeps = [name for name in tables if "/" not in name]
     runs = pd.concat([with_uncertainties(tables, name) for name in sweeps], ignore_index=True)
-    kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx"]
-    kept.append("run_flags")
+    columns = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx"]
+    columns.append("run_flags")
     for quantity in QUANTITIES:
         for prefix in ("", "paper_", "exact_", "uncertainty_"):
-            kept.append(f"{prefix}transition_{quantity}")
-    return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
+            columns.append(f"{prefix}transition_{quantity}")
+    return runs[columns].rename(columns=lambda column: column.replace("transition_", ""))
 
 
 def with_uncertainties(tables: dict[str, pd.DataFrame], name: str) -> pd.DataFrame:
-    """Return the runs of a sweep with the numerical uncertainty of both quantities."""
+    """Return the runs of a sweep, with the numerical uncertainty of transition length and time.
+
+    tables : measured tables by name, and grid studies as "uncertainties/NAME"
+    name : name of the sweep
+    """
     grid_study = tables[f"uncertainties/{name}"].set_index(["quantity", "point"])
     runs = tables[name].copy()
     for quantity in QUANTITIES:
@@ -62,9 +67,10 @@ def with_uncertainties(tables: dict[str, pd.DataFrame], name: str) -> pd.DataFra
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
-    """Draw the measured length or time as a function of the predicted one.
+    """Draw the measured length or time as a function of that by the paper's formula.
 
-    colours : one colour for each run, as c (face) and edgecolors
+    quantity : "length" or "time"
+    colours : one colour for each run: of the face of its marker (c), and of its rim (edgecolors)
     """
     predicted, measured = runs[f"paper_{quantity}"], runs[quantity]
     symbol = QUANTITIES[quantity]
@@ -88,7 +94,10 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
 def ratio_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, x_column: str, line_column: str
 ) -> Axes:
-    """Add an inset with the plot of `draw_ratio`, labels and a legend to a panel, and return it."""
+    """Add an inset with the plot of `draw_ratio` and a legend to a panel, and return its axes.
+
+    box : place of the inset in the panel
+    """
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
     draw_ratio(inset, runs, quantity, x_column, line_column)
@@ -106,8 +115,9 @@ def draw_ratio(
 
     Runs are markers with error bars, and exact theory is drawn as lines.
 
+    quantity : "length" or "time"
     x_column : column on the horizontal axis
-    line_column : column whose values have a line and a colour each
+    line_column : there is one line, with its own colour, for each value of this column
     """
     axes.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
     for value, group in runs.groupby(line_column):
@@ -123,7 +133,7 @@ def draw_ratio(
 
 
 def _error_bars(axes: Axes, x: pd.Series, y: pd.Series, error: pd.Series) -> None:
-    """Draw bars of the numerical uncertainty, which a marker may hide."""
+    """Draw bars of the numerical uncertainty. A marker may hide a short bar."""
     look: Look = {"fmt": "none", "ecolor": BLACK, "elinewidth": 0.7, "capsize": 1.5, "zorder": 2}
     axes.errorbar(x, y, error, **look)
 
@@ -131,7 +141,10 @@ def _error_bars(axes: Axes, x: pd.Series, y: pd.Series, error: pd.Series) -> Non
 def _scatter(
     axes: Axes, runs: pd.DataFrame, x: pd.Series, y: pd.Series, colours: Look, **sizes: Any
 ) -> None:
-    """Draw one marker for each run: in its colours, or open and grey if the run is flagged."""
+    """Draw one marker for each run: in its colours, or open and grey if the run is flagged.
+
+    sizes : size and line width of the markers
+    """
     look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "white", "zorder": 3} | sizes
     is_flagged = runs["run_flags"].notna()
     grey: Look = {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
@@ -142,18 +155,20 @@ def _scatter(
 
 
 def damping_figure(table: pd.DataFrame) -> Figure:
-    """Draw figure 10 or 11: the collapse in the colours of the damping ratio b.
+    """Draw figure 10 or 11: measured and predicted transitions, in the colours of damping ratios.
 
-    Insets have the ratio of measured and predicted values as a function of b, at one value of the
-    second column and a few levels.
+    Insets show the ratio of measured and predicted values as a function of the damping ratio b, for
+    a few levels of the pre-stress.
     """
     boundary = table["boundary"].iloc[0]
-    level, second = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
+    # The columns of the level (tau_0 or left) and of the second varying parameter (gamma or width).
+    level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
     ratios = np.sort(table["damping_ratio"].unique())
-    table = table.assign(**{level: table["left"]}).sort_values("damping_ratio")
-    middle = spread_values(table[second], LINE_COUNT)[1]
+    table = table.assign(**{level_column: table["left"]}).sort_values("damping_ratio")
+    # The insets show a few levels, at a middle value of the second parameter.
+    middle = spread_values(table[second_column], LINE_COUNT)[1]
     drawn_levels = spread_values(table["left"], LINE_COUNT)
-    few = table[(table[second] == middle) & table["left"].isin(drawn_levels)]
+    few_runs = table[(table[second_column] == middle) & table["left"].isin(drawn_levels)]
     colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
     spacing = table["dx"] / table["width"]
     title = style.conditions(boundary == "displacement")
@@ -163,8 +178,9 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, table, quantity, colours)
         axes.set_title(title, loc="center")
-        # The runs lie above equality, so that the corner below it is free.
-        inset = ratio_inset(axes, (0.52, 0.12, 0.26, 0.29), few, quantity, "damping_ratio", level)
+        # The runs lie above the line of equality, so that the lower right corner is free.
+        box = (0.52, 0.12, 0.26, 0.29)
+        inset = ratio_inset(axes, box, few_runs, quantity, "damping_ratio", level_column)
         # The scale is linear near 0, because there are runs without damping.
         inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         style.few_ticks(inset.xaxis, ticks)
@@ -172,7 +188,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
-    name = f"exact, ${SYMBOLS[second]}$ = {middle:g} (insets)"
-    handles.append(entry(name, color=BLACK, linewidth=0.8))
+    label = f"exact, ${SYMBOLS[second_column]}$ = {middle:g} (insets)"
+    handles.append(entry(label, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure

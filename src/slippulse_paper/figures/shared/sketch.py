@@ -14,7 +14,7 @@ MUTED_GREY = "0.25"
 
 
 def arrow(axes: Axes, start: Point, end: Point, colour: str, **look: Any) -> None:
-    """Draw an arrow that touches both points."""
+    """Draw an arrow from start to end, which touches both points."""
     head: Look = {"arrowstyle": "-|>", "mutation_scale": 7.0, "shrinkA": 0.0, "shrinkB": 0.0}
     axes.add_patch(FancyArrowPatch(start, end, color=colour, linewidth=1.0, **head | look))
 
