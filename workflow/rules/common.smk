@@ -240,36 +240,40 @@ def note_of(needs, *keys):
 
 @cache
 def sweep_of(name):
-    """Return a resolved simulation."""
+    """Return the resolved simulation with a name."""
     return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY)
 
 
 @cache
 def bound_of(name):
-    """Return the upper bound on the cost of each chunk of a simulation."""
+    """Return the upper bound on the cost of one chunk of a simulation, or of all its runs."""
     return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
 
 
-# Snakemake evaluates the params of all waiting jobs whenever a job has ended.
+# The results are cached, because Snakemake evaluates the params of all waiting jobs whenever a job
+# has ended.
 @cache
 def settings_of(job):
-    """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8."""
+    """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8.
+
+    Each rule takes from them those that its results depend on.
+    """
     name, _, chunk = job.partition("/")
     whole_sweep = sweep_of(name)
     sweep = {**whole_sweep, "chunk": chunk_numbers(chunk)} if chunk else whole_sweep
     scheme = sweep["scheme"]
-    # Under a displacement boundary no number depends on the fraction.
+    # If the displacement is held, no number depends on the fraction of |x_minus|.
     fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
-        # If an accuracy is requested, `promised` adds the spacing of each run.
+        # If an accuracy is required, `promised` adds the spacing of each run.
         "sweep": promised(sweep),
         "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
         "measure": {**config["measure"], "fraction": fraction},
         "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
-        # The bound is a function, since most rules do not use it and it takes time.
+        # This is a function, since most rules do not need the bound, which takes time.
         "bound": lambda: bound_of(name),
     }
 
@@ -412,7 +416,7 @@ def joined_settings(wildcards):
 
 
 def joined_megabytes(wildcards, input):
-    """Return the memory that is needed to join the files of chunks, in MB."""
+    """Return the memory in MB that a job needs to join the files of chunks."""
     kind, name = JOINED[wildcards.joined]
     if kind == "data":
         return 1000 + 3 * input.size_mb

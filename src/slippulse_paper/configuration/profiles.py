@@ -1,8 +1,8 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file, whose points are read into the configuration, or have a rough background
-with lists of parameters, which is expanded into one profile for each combination. Each expanded
-profile is then a `Prestress`.
+A profile may name a file. Its points are then read into the configuration. A profile may also have
+a rough background with lists of parameters. It is then expanded into one profile for each
+combination of the parameters. Each expanded profile is converted to a `Prestress`.
 """
 
 import json
@@ -24,7 +24,7 @@ from .problems import ConfigError
 
 # Keys of a profile that give it a table of pre-stress instead of levels.
 TABLES = frozenset({"points", "file", "rough"})
-# Keys of a rough background that may be lists; the last one may be a range, too.
+# Keys of a rough background that may be lists. The seed may also be a range.
 ROUGH_LISTS = ("level", "deviation", "correlation_length", "hurst", "seed")
 
 
@@ -98,12 +98,12 @@ def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]
 
 
 def rough_lists(background: Mapping[str, Any]) -> dict[str, Sequence]:
-    """Return the values of each key of a rough background that may be a list."""
+    """Return a list of values for each key of a rough background that may be a list."""
     return {name: _values_of(background[name]) for name in ROUGH_LISTS}
 
 
 def _values_of(given: Any) -> Sequence:
-    """Return the values of a key: all whole numbers of a range, or the entries of a list."""
+    """Return the values of a key, which is a range of whole numbers, a list or a single value."""
     if isinstance(given, Mapping):
         return range(given["from"], given["to"] + 1)
     return given if isinstance(given, list) else [given]
@@ -112,8 +112,8 @@ def _values_of(given: Any) -> Sequence:
 class ExpandedProfiles(Collection[dict[str, Any]]):
     """The profiles of runs: one for each combination of the lists of a rough background.
 
-    The last list, that of the seeds, varies fastest. The profiles are made when they are needed,
-    because there may be many.
+    Neighbouring profiles differ in the seed, which is the last list. The profiles are made when
+    they are needed, because there may be many.
     """
 
     def __init__(self, profiles: Sequence[Mapping[str, Any]]) -> None:
@@ -126,6 +126,7 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
         for profile in self._profiles:
             for values in product(*_lists_of(profile)):
                 run_profile = dict(profile)
+                # There are no values without a rough background.
                 if values:
                     values_by_name = zip(ROUGH_LISTS, values, strict=True)
                     run_profile["rough"] = {**profile["rough"], **dict(values_by_name)}
@@ -136,7 +137,7 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
 
 
 def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
-    """Return the lists of the rough background of a profile; none if it has no such background."""
+    """Return the lists of the rough background of a profile, or no lists if it has none."""
     return [*rough_lists(profile["rough"]).values()] if "rough" in profile else []
 
 
@@ -150,7 +151,10 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 # The profile of each run is needed several times while the workflow is planned.
 @lru_cache(maxsize=512)
 def _prestress_of_table(text: str) -> Prestress:
-    """Return the pre-stress of a profile with a table, given as JSON, which can be cached."""
+    """Return the pre-stress of a profile with a table, from the profile as JSON.
+
+    The cache needs an argument that cannot be altered, which a dictionary is not.
+    """
     profile = json.loads(text)
     x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
     gaussians = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
@@ -160,13 +164,14 @@ def _prestress_of_table(text: str) -> Prestress:
 def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
     """Return the number of each expanded profile, from 1, and its seed (NaN if it has none).
 
-    Rough profiles that differ only in the seed have the same number.
+    Neighbouring rough profiles that differ only in the seed have the same number.
     """
     labels: list[dict[str, float]] = []
     number, previous_shape = 0, None
     for profile in profiles:
         background = dict(profile.get("rough", {}))
         seed = background.pop("seed", math.nan)
+        # The profile without its seed.
         shape = {**profile, "rough": background}
         if "rough" not in profile or shape != previous_shape:
             number += 1
@@ -176,7 +181,7 @@ def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
 
 
 def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return profiles without the seeds between the first and the last one."""
+    """Return profiles in which each list or range of seeds has only its first and last seed."""
     ends = []
     for profile in profiles:
         background = profile.get("rough")

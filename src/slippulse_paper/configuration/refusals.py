@@ -46,7 +46,10 @@ def _key_text(part: str | int) -> str:
 
 
 def problem_line(problem: Mapping, config: Mapping) -> str:
-    """Return one error of pydantic about a configuration as a line."""
+    """Return the line of the refusal for one error of pydantic.
+
+    ``config`` is the configuration that is refused.
+    """
     kind, path = problem["type"], problem["loc"]
     entry = _last_known_entry(path, config)
     # A value of several allowed forms is refused as a whole. Pydantic adds the form to the path.

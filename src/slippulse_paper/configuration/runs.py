@@ -100,8 +100,8 @@ def _combinations(simulation: Mapping, axes: Mapping[str, Collection]) -> Iterat
     chunk = simulation.get("chunk")
     runs_in_chunk = None
     if chunk is not None:
-        number, chunks = chunk
-        runs_in_chunk = set(runs_of(number, chunks, run_count(simulation)))
+        chunk_number, chunk_count = chunk
+        runs_in_chunk = set(runs_of(chunk_number, chunk_count, run_count(simulation)))
     for run, combination in enumerate(product(*axes.values())):
         if runs_in_chunk is None or run in runs_in_chunk:
             yield dict(zip(axes, combination, strict=True))
@@ -140,7 +140,7 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
     right, replacement = simulation["right"], simulation.get("beyond")
     steps: list[tuple] = [()]
     if replacement is not None:
-        # Each level is a step of the pre-stress at the position where it begins.
+        # The pre-stress of each run has one step to one of the new levels.
         steps = [((replacement["position"], level),) for level in replacement["levels"]]
     return {
         "left": simulation["left"],

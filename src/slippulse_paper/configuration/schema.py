@@ -185,7 +185,10 @@ class Rough(Block):
     )
 
     def check(self) -> None:
-        """Raise ValueError if there is no such background, at any of the levels."""
+        """Raise ValueError if there is no rough background with one of the levels.
+
+        Only the first value of each other list is checked.
+        """
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
         for level in lists["level"]:
