@@ -86,7 +86,7 @@ def state_of(path: str | Path) -> FileState:
 def is_unchanged(path: str | Path, state: FileState) -> bool:
     """Return True if a file still has its recorded content.
 
-    The file is read only if its time differs from the recorded one.
+    The file is read only if it has the recorded size but another time.
     """
     info = os.stat(path)
     if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):

@@ -49,8 +49,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 def timed(trade: pd.DataFrame) -> pd.DataFrame:
     """Return a table with the errors of the study and the processor seconds of one simulation.
 
-    The errors of the crack's 95 % time have the seconds of the crack. All other errors have the
-    seconds of a pulse, averaged over the damping ratios.
+    This simulation is the crack for the error of the crack's 95 % time. For all other errors it is
+    a pulse, and the seconds are averaged over the damping ratios.
     """
     settings = [
         Setting(row.scheme, int(row.order), row.step, row.dx)
