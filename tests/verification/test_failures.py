@@ -29,8 +29,12 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
     """In the published scene with -beta, modes grow at rates up to 2 beta/dx^2 = 20."""
     scene = displacement(0.25, 10.8, 0.01, gamma=0.55, beta=1e-3, scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
-        solve_on_lattice(scene, progress=at_most(40), damping_sign=-1, kind=LATTICES[scheme])
-    assert solve_on_lattice(scene, kind=LATTICES[scheme]).numbers["end_time"] == scene.duration
+        solve_on_lattice(
+            scene, progress=at_most(40), damping_sign=-1, lattice_type=LATTICES[scheme]
+        )
+    assert (
+        solve_on_lattice(scene, lattice_type=LATTICES[scheme]).numbers["end_time"] == scene.duration
+    )
 
 
 @pytest.mark.parametrize("row", [0, 1])

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable
 from pathlib import Path
 
-# Environment variable that holds the digest of a job's configuration.
+# Environment variable in which the workflow passes the digest of its configuration to a job.
 CONFIGURATION_VARIABLE = "SLIPPULSE_CONFIGURATION"
 # A file has a hidden name with this part until it is complete. No other file has such a name.
 UNFINISHED_MARK = ".slippulse-unfinished-"
@@ -40,5 +40,5 @@ def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
 
 
 def write_text(text: str, path: str | Path) -> None:
-    """Write a text file in UTF-8."""
-    write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+    """Write a text file in UTF-8, which is either complete or absent."""
+    write_whole(path, lambda unfinished: unfinished.write_text(text, encoding="utf-8"))

@@ -1,6 +1,6 @@
 """An xarray index that selects the runs of a sweep by any of their parameters.
 
-The indexes of xarray itself have one coordinate each. With several of them along one dimension, a
+An index of xarray itself has one coordinate. If several of them lie along one dimension, a
 selection cannot combine them, and before xarray 2025 arithmetic was not possible.
 """
 
@@ -17,16 +17,16 @@ from ..model.scene import ATTRIBUTES
 
 # `independent_parameters` tries the parameters in this order.
 PARAMETER_ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES]
-# Relative difference up to which two numbers are the same parameter: beta/dx is computed by a
-# division, so that equal ratios can differ by rounding.
+# Two values of a parameter are taken as equal up to this relative difference. The ratio beta/dx is
+# computed by a division, so that equal ratios can differ by rounding.
 EQUALITY_TOLERANCE = 1e-9
 
 
 class ParameterIndex(xr.Index):
-    """Index along ``point`` that holds the values of all parameters.
+    """Index along the dimension ``point`` that holds the values of all parameters of the runs.
 
-    A selection can use any number of parameters. A pandas table of the sweep has the parameters
-    that differ between the runs as its index.
+    A selection can use any number of parameters. If the sweep is converted to a pandas table, the
+    index of the table consists of the parameters that differ between the runs.
     """
 
     def __init__(self, values: Mapping[Hashable, np.ndarray]) -> None:
@@ -36,7 +36,7 @@ class ParameterIndex(xr.Index):
     def from_variables(
         cls, variables: Mapping[Any, xr.Variable], *, options: Mapping[str, Any]
     ) -> Self:
-        """Make the index of variables over ``point``."""
+        """Make the index from the variables of the parameters, which lie along ``point``."""
         return cls({name: variable.values for name, variable in variables.items()})
 
     @classmethod
@@ -46,28 +46,39 @@ class ParameterIndex(xr.Index):
         dim: Hashable,
         positions: Any = None,
     ) -> Self:
-        """Join indexes of the same parameters, at positions if they are given."""
+        """Join indexes of the same parameters.
+
+        positions : for each index, the numbers of its runs in the result; by default the runs
+            follow one another
+        """
         joined = {}
         for name in indexes[0].values:
             joined[name] = np.concatenate([index.values[name] for index in indexes])
         if positions is None:
             return cls(joined)
-        order = np.argsort(np.concatenate([np.asarray(part) for part in positions]))
+        order = np.argsort(np.concatenate([np.asarray(numbers) for numbers in positions]))
         return cls({name: values[order] for name, values in joined.items()})
 
     def create_variables(
         self, variables: Mapping[Any, xr.Variable] | None = None
     ) -> dict[Hashable, xr.Variable]:
         """Return the coordinates, with the attributes that they had."""
-        attrs = {name: variable.attrs for name, variable in (variables or {}).items()}
-        return {n: xr.Variable("point", v, attrs.get(n)) for n, v in self.values.items()}
+        attributes = {name: variable.attrs for name, variable in (variables or {}).items()}
+        coordinates = {}
+        for name, values in self.values.items():
+            coordinates[name] = xr.Variable("point", values, attributes.get(name))
+        return coordinates
 
     def rename(self, name_dict: Mapping[Any, Hashable], dims_dict: Mapping[Any, Hashable]) -> Self:
         """Return the index with other names of parameters."""
-        return type(self)({name_dict.get(name, name): v for name, v in self.values.items()})
+        renamed = {name_dict.get(name, name): values for name, values in self.values.items()}
+        return type(self)(renamed)
 
     def to_pandas_index(self) -> pd.Index:
-        """Return the parameters that name the runs, or their numbers if none differs."""
+        """Return an index of the parameters that distinguish the runs.
+
+        If no parameter differs, it has the numbers of the runs.
+        """
         names = independent_parameters(self.values) or ["point"]
         if len(names) == 1:
             return pd.Index(self.values[names[0]], name=names[0])
@@ -78,8 +89,10 @@ class ParameterIndex(xr.Index):
         if not isinstance(other, ParameterIndex) or self.values.keys() != other.values.keys():
             return False
         for name, values in self.values.items():
-            number = values.dtype.kind == "f" and other.values[name].dtype.kind == "f"
-            if not np.array_equal(values, other.values[name], equal_nan=number):
+            other_values = other.values[name]
+            # Only numbers can be NaN, and numpy refuses to look for NaN in texts.
+            are_numbers = values.dtype.kind == "f" and other_values.dtype.kind == "f"
+            if not np.array_equal(values, other_values, equal_nan=are_numbers):
                 return False
         return True
 
@@ -100,16 +113,23 @@ class ParameterIndex(xr.Index):
         return type(self)({name: values[rows] for name, values in self.values.items()})
 
     def sel(self, labels: dict[Any, Any], method: Any = None, tolerance: Any = None):
-        """Select the runs at values of parameters: one value, several, or a slice."""
-        chosen = np.ones(len(next(iter(self.values.values()))), dtype=bool)
+        """Select the runs at values of parameters: one value, several, or a slice.
+
+        Raises KeyError if no run matches.
+
+        labels : the values by the name of the parameter
+        method : "nearest" selects the nearest number that occurs
+        """
+        number_of_runs = len(next(iter(self.values.values())))
+        is_selected = np.ones(number_of_runs, dtype=bool)
         for name, label in labels.items():
-            chosen &= self._matches(name, label, method == "nearest")
-        if not chosen.any():
+            is_selected &= self._matches(name, label, method == "nearest")
+        if not is_selected.any():
             requested = [f"{name} = {short_repr(label)}" for name, label in labels.items()]
             present = {name: np.unique(self.values[name]).tolist() for name in labels}
             allowed = f"the runs have {short_repr(present)}"
             raise KeyError(f"{', '.join(requested)}: no such run; {allowed}")
-        return IndexSelResult({"point": np.flatnonzero(chosen)})
+        return IndexSelResult({"point": np.flatnonzero(is_selected)})
 
     def _matches(self, name: Hashable, label: Any, nearest: bool) -> np.ndarray:
         """Return a mask of the runs that a label selects by their values of one parameter.
@@ -140,22 +160,29 @@ class ParameterIndex(xr.Index):
 def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
     """Return the parameters that differ between the runs and are not determined by others.
 
-    A parameter is kept if it distinguishes runs that the parameters before it do not.
+    A parameter is kept if it distinguishes runs that the parameters kept before it do not.
+
+    values : for each parameter, its values in all runs
     """
     candidates = [name for name in dict.fromkeys(PARAMETER_ORDER) if name in values]
-    names: list[str] = []
+    kept_names: list[str] = []
+    # Number of different combinations of the kept parameters.
     count = 1
     for name in candidates:
-        count_with_name = len(combinations(values, [*names, name]))
+        count_with_name = len(combinations(values, [*kept_names, name]))
         if count_with_name > count:
-            names, count = [*names, name], count_with_name
-    return names
+            kept_names.append(name)
+            count = count_with_name
+    return kept_names
 
 
 def combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
     """Return the different combinations of some parameters that occur among the runs.
 
-    Each row is one combination; each value is given by its number among the sorted values.
+    Each row is one combination. In place of a value it has the number of the value in the sorted
+    list of all values of the parameter.
+
+    values : for each parameter, its values in all runs
     """
-    codes = [np.unique(values[name], return_inverse=True)[1] for name in names]
-    return np.unique(np.stack(codes, axis=-1), axis=0)
+    value_numbers = [np.unique(values[name], return_inverse=True)[1] for name in names]
+    return np.unique(np.stack(value_numbers, axis=-1), axis=0)

@@ -21,9 +21,9 @@ DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
 
 
 class Recorded(dict[str, np.ndarray]):
-    """The arrays of a run by name, and its single numbers as ``attrs``.
+    """The arrays of one run by name, and its single numbers as ``attrs``.
 
-    It can be used like a Dataset, and is much faster to build.
+    It can be read like a Dataset, and is much faster to build.
     """
 
     def __init__(self, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:
@@ -36,58 +36,84 @@ class Recorded(dict[str, np.ndarray]):
         return xr.Dataset(variables, attrs=self.attrs)
 
 
+# One run in either form.
 AnyRun = Recorded | xr.Dataset
 
 
 def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
-    """Yield the runs of a sweep, or raise ValueError if its numbers of blocks do not fit."""
+    """Yield the runs of a sweep.
+
+    Raises ValueError if the numbers of blocks of the runs do not fit the arrays.
+    """
     sweep = over_points(sweep)
-    run_numbers = _arrays_along(sweep, "point")
+    numbers = _arrays_along(sweep, "point")
+    numbers.pop("point", None)
     block_arrays = _arrays_along(sweep, "block")
-    samples = {str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep}
-    sizes = run_numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    starts = run_numbers.pop("row_start", None)
-    run_numbers.pop("point", None)
+    sample_arrays = {
+        str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
+    }
+    sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    recorded_starts = numbers.pop("row_start", None)
     number_of_blocks = block_arrays.get("x", sizes[:0]).size
-    if starts is None:
-        starts = np.cumsum(sizes) - sizes
-        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
-    else:
-        # The runs may be a selection, whose blocks are only some of all blocks.
-        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
-    allowed = "numbers of blocks whose sum is the length of x"
-    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
+    starts = _starts_of_runs(sizes, recorded_starts, number_of_blocks)
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(sizes.size):
         blocks = slice(starts[index], starts[index] + sizes[index])
         arrays = {name: values[blocks] for name, values in block_arrays.items()}
-        arrays |= {name: values[index] for name, values in samples.items()}
+        arrays |= {name: values[index] for name, values in sample_arrays.items()}
         # A file may have its texts as Python objects, which have no method `item`.
-        attrs = {name: np.asarray(values[index]).item() for name, values in run_numbers.items()}
+        attrs = {name: np.asarray(values[index]).item() for name, values in numbers.items()}
         yield Recorded(arrays, attrs | versions)
+
+
+def _starts_of_runs(
+    sizes: np.ndarray, recorded_starts: np.ndarray | None, number_of_blocks: int
+) -> np.ndarray:
+    """Return the number of the first block of each run.
+
+    Raises ValueError if the blocks of the runs do not fit the arrays.
+
+    sizes : number of blocks of each run
+    recorded_starts : the result, if the sweep contains it; otherwise the runs follow one another
+    number_of_blocks : length of the arrays
+    """
+    if recorded_starts is None:
+        starts = np.cumsum(sizes) - sizes
+        is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+    else:
+        # The runs may be a selection, whose blocks are only some of all blocks.
+        starts = recorded_starts
+        is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
+    allowed = "numbers of blocks whose sum is the length of x"
+    check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
+    return starts
 
 
 def over_points(sweep: xr.Dataset) -> xr.Dataset:
     """Convert a grid of runs, or a single selected run, to a sweep along the dimension "point"."""
+    # These variables have one value for each run. Their dimensions are those of the runs.
     names = [name for name in ("row_start", "run_flags") if name in sweep.variables]
-    axes = sweep[names[0]].dims if names else ("point",)
-    if axes == ("point",):
+    run_dimensions = sweep[names[0]].dims if names else ("point",)
+    if run_dimensions == ("point",):
         return sweep
-    sweep = sweep.stack(point=axes).reset_index("point") if axes else sweep
-    variables, size = {}, sweep.sizes.get("point", 1)
+    if run_dimensions:
+        sweep = sweep.stack(point=run_dimensions).reset_index("point")
+    # A single selected run has no dimension of runs.
+    number_of_runs = sweep.sizes.get("point", 1)
+    variables = {}
     for name, variable in sweep.variables.items():
         if "point" in variable.dims:
             variables[name] = variable.transpose("point", ...)
         elif "block" in variable.dims:
             variables[name] = variable
         else:
-            # The variable has one value, which holds for every selected run.
-            variables[name] = variable.set_dims({"point": size} | variable.sizes)
+            # The variable has one value, which holds for every run.
+            variables[name] = variable.set_dims({"point": number_of_runs} | variable.sizes)
     return xr.Dataset(variables, attrs=sweep.attrs)
 
 
 def _arrays_along(sweep: xr.Dataset, dimension: str) -> dict[str, np.ndarray]:
-    """Return the variables that have only this dimension, as arrays by name."""
+    """Return the variables that have one given dimension and no other, as arrays by name."""
     arrays = {}
     for name, variable in sweep.variables.items():
         if variable.dims == (dimension,):

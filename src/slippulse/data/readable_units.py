@@ -7,6 +7,7 @@ import numpy as np
 
 from ..model.si_quantities import UNITS
 
+# Prefix of a unit for each exponent of ten.
 PREFIXES = {
     -12: "p",
     -9: "n",
@@ -22,6 +23,9 @@ TEXTS = {unit: unit for unit in UNITS.values()}
 TEXTS |= {"m s-1": "m/s", "m s-2": "m/s\N{SUPERSCRIPT TWO}", "J m-1": "J/m"}
 TEXTS["m2 s-1"] = "m\N{SUPERSCRIPT TWO}/s"
 WITHOUT_PREFIX = ("m2 s-1",)
+# A number that is smaller than a power of ten by at most this relative amount counts as equal to
+# it.
+ROUNDING_TOLERANCE = 1e-12
 
 
 class ReadableUnit(NamedTuple):
@@ -34,16 +38,16 @@ class ReadableUnit(NamedTuple):
 def readable_unit(quantity: str, numbers: object) -> ReadableUnit:
     """Return the unit in which the largest of some numbers is between 1 and 1000.
 
-    numbers : in SI units
-
     The unit has no prefix if all numbers are 0, or if they would need a prefix that is not listed.
+
+    numbers : numbers of a quantity in SI units
     """
-    unit, values = UNITS[quantity], np.abs(np.asarray(numbers, dtype=float))
-    largest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
+    unit, magnitudes = UNITS[quantity], np.abs(np.asarray(numbers, dtype=float))
+    largest = float(np.max(magnitudes, initial=0.0, where=np.isfinite(magnitudes)))
     if unit in WITHOUT_PREFIX or largest == 0.0:
         return ReadableUnit(TEXTS[unit], 1.0)
-    # A round number such as 1e-3 must not fall below 1 mm by rounding.
-    power = 3 * math.floor(math.log10(largest * (1.0 + 1e-12)) / 3.0)
-    if power not in PREFIXES:
+    # The exponent of ten is a multiple of 3. Rounding must not turn 1 mm into 1000 micrometres.
+    exponent = 3 * math.floor(math.log10(largest * (1.0 + ROUNDING_TOLERANCE)) / 3.0)
+    if exponent not in PREFIXES:
         return ReadableUnit(TEXTS[unit], 1.0)
-    return ReadableUnit(PREFIXES[power] + TEXTS[unit], 10.0**power)
+    return ReadableUnit(PREFIXES[exponent] + TEXTS[unit], 10.0**exponent)

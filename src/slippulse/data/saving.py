@@ -4,6 +4,7 @@ The files are written with h5py, in the layout of netCDF-4, and contain no time 
 data therefore give files with equal bytes.
 """
 
+from collections.abc import Hashable
 from pathlib import Path
 
 import h5py
@@ -34,15 +35,29 @@ def _write(dataset: xr.Dataset, path: Path) -> None:
             values = variable.values.astype(h5py.string_dtype()) if is_text else variable.values
             stored[name] = file.create_dataset(name, data=values)
             stored[name].attrs.update(variable.attrs)
-        # netCDF-4 stores each dimension as an HDF5 dimension scale: its coordinate variable, or,
-        # without one, an empty array whose scale has the text below as its name.
-        for number, (name, size) in enumerate(dataset.sizes.items()):
-            if name not in stored:
-                stored[name] = file.create_dataset(name, shape=size, dtype="f4")
-            no_variable = f"This is a netCDF dimension but not a netCDF variable.{size:10d}"
-            stored[name].make_scale(name if name in dataset.variables else no_variable)
-            stored[name].attrs["_Netcdf4Dimid"] = np.int32(number)
-        for name, variable in dataset.variables.items():
-            dimensions = () if name in dataset.sizes else variable.dims
-            for axis, dimension in enumerate(dimensions):
+        _store_dimensions(file, stored, dataset)
+
+
+def _store_dimensions(
+    file: h5py.File, stored: dict[Hashable, h5py.Dataset], dataset: xr.Dataset
+) -> None:
+    """Store the dimensions of a Dataset, and attach them to its variables.
+
+    netCDF-4 stores each dimension as an HDF5 dimension scale. This is the coordinate variable of
+    the dimension. If there is none, it is an empty array, and its scale has a name that says so.
+
+    stored : the variables in the file by name
+    """
+    for number, (name, size) in enumerate(dataset.sizes.items()):
+        if name in dataset.variables:
+            scale_name = name
+        else:
+            stored[name] = file.create_dataset(name, shape=size, dtype="f4")
+            scale_name = f"This is a netCDF dimension but not a netCDF variable.{size:10d}"
+        stored[name].make_scale(scale_name)
+        stored[name].attrs["_Netcdf4Dimid"] = np.int32(number)
+    for name, variable in dataset.variables.items():
+        # A coordinate variable is the scale of its own dimension.
+        if name not in dataset.sizes:
+            for axis, dimension in enumerate(variable.dims):
                 stored[name].dims[axis].attach_scale(stored[dimension])

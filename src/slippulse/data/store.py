@@ -15,6 +15,8 @@ from .files import UnreadableFile
 
 # Attributes that HDF5 and netCDF-4 use internally. They are not part of a Dataset.
 INTERNAL_ATTRIBUTES = {"CLASS", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
+# A dimension without a coordinate variable is stored as a scale whose name begins like this.
+BARE_DIMENSION = b"This is a netCDF dimension"
 
 
 def load_dataset(path: str | Path) -> xr.Dataset:
@@ -24,33 +26,51 @@ def load_dataset(path: str | Path) -> xr.Dataset:
         with open(path, "rb") as source, h5py.File(source) as file:
             items = {name: h5py.h5d.open(file.id, name.encode()) for name in file}
             attributes = {name: _attributes(item) for name, item in items.items()}
-            # Each dimension scale has a REFERENCE_LIST of the variables and axes that it belongs
-            # to. A variable that is in no such list is a coordinate: its dimension is its own name.
-            dimensions = {item: [name] * item.rank for name, item in items.items()}
-            for name, attrs in attributes.items():
-                for reference, axis in attrs.pop("REFERENCE_LIST", ()):
-                    dimensions[h5py.h5r.dereference(reference, file.id)][axis] = name
+            dimensions = _take_dimensions(file, items, attributes)
             variables = {}
             for name, item in items.items():
-                # A dimension without a coordinate variable is marked by a scale with this name.
-                if not attributes[name].pop("NAME", b"").startswith(b"This is a netCDF dimension"):
+                scale_name = attributes[name].pop("NAME", b"")
+                if not scale_name.startswith(BARE_DIMENSION):
                     values = _values(item, h5py.h5s.ALL, h5py.h5s.ALL)
-                    variables[name] = dimensions[item], values, attributes[name]
+                    variables[name] = dimensions[name], values, attributes[name]
             return xr.Dataset(variables, attrs=file.attrs)
     except (OSError, ValueError, LookupError, RuntimeError) as error:
         raise UnreadableFile(path, error) from error
 
 
+def _take_dimensions(
+    file: h5py.File, items: dict[str, h5py.h5d.DatasetID], attributes: dict[str, dict[str, Any]]
+) -> dict[str, list[str]]:
+    """Return the names of the dimensions of each variable, from the attributes of all of them.
+
+    Each dimension is stored with the attribute REFERENCE_LIST, which lists the variables and axes
+    that it belongs to, and which is removed here. A variable that is in no such list is a
+    coordinate: its dimension has its own name.
+    """
+    dimensions = {item: [name] * item.rank for name, item in items.items()}
+    for name, attributes_of_item in attributes.items():
+        for reference, axis in attributes_of_item.pop("REFERENCE_LIST", ()):
+            referring_item = h5py.h5r.dereference(reference, file.id)
+            dimensions[referring_item][axis] = name
+    return {name: dimensions[item] for name, item in items.items()}
+
+
 def _attributes(item: h5py.h5d.DatasetID) -> dict[str, Any]:
     """Return the attributes of a variable, as builtin Python types."""
-    opened = [h5py.h5a.open(item, index=number) for number in range(h5py.h5a.get_num_attrs(item))]
-    named = {attribute.name.decode(): attribute for attribute in opened}
-    names = [name for name in named if name not in INTERNAL_ATTRIBUTES]
-    return {name: _values(named[name]).tolist() for name in names}
+    attributes = {}
+    for number in range(h5py.h5a.get_num_attrs(item)):
+        attribute = h5py.h5a.open(item, index=number)
+        name = attribute.name.decode()
+        if name not in INTERNAL_ATTRIBUTES:
+            attributes[name] = _values(attribute).tolist()
+    return attributes
 
 
 def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceID) -> np.ndarray:
-    """Return the values of a variable or an attribute, with bytes decoded to text."""
+    """Return the values of a variable or an attribute, with bytes decoded to text.
+
+    spaces : for a variable, the parts of the memory and of the file, each of which is all of it
+    """
     values = np.empty(item.shape, item.dtype)
     item.read(*spaces, values)
     if values.dtype.kind == "O":

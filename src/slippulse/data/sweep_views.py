@@ -22,19 +22,20 @@ ALLOWED_SWEEP = "a Dataset that run_sweep or open_sweep returned"
 
 
 def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
-    """Return a sweep with its parameters as coordinates along ``point``.
+    """Return a sweep with its parameters as coordinates along the dimension ``point``.
 
-    It also has the coordinate ``row_start``, the number of the first block of each run. With it and
-    ``row_size``, the blocks of a run can be found in a selection of runs, too.
+    The result also has the coordinate ``row_start``, the number of the first block of each run. It
+    is needed to find the blocks of a run after a selection of runs.
     """
     attributes = {"units": "1", "long_name": VARIABLES["point"]}
     sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), attributes))
     parameters = [name for name in ATTRIBUTES if name in sweep]
     coordinates = list(parameters)
     if "row_size" in sweep:
-        size = sweep["row_size"].values
+        sizes = sweep["row_size"].values
+        starts = np.cumsum(sizes) - sizes
         attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
-        sweep = sweep.assign_coords(row_start=("point", np.cumsum(size) - size, attributes))
+        sweep = sweep.assign_coords(row_start=("point", starts, attributes))
         coordinates.append("row_size")
     # One index over all parameters takes the place of the index that xarray makes of `point`.
     sweep = sweep.drop_indexes("point").set_coords(coordinates)
@@ -90,7 +91,8 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
         A sweep of `sweep`, `run_sweep` or `open_sweep`, or a selection of its runs.
     over : sequence of str, optional
         Parameters that become axes. By default these are the parameters of which `sweep` was given
-        lists, or else all parameters that differ between the runs and do not follow from others.
+        lists. If it was given none, they are all parameters that differ between the runs and do
+        not follow from others.
 
     Returns
     -------
@@ -111,36 +113,47 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     True
     """
     check_that(is_sweep(sweep), "sweep", sweep, ALLOWED_SWEEP)
-    named = [over] if isinstance(over, str) else over
-    axes = _axes_of(sweep) if named is None else list(named)
-    known = bool(axes) and all(name in sweep.coords for name in axes)
-    check_that(known, "over", axes, "parameters of the sweep, at least one")
+    names = [over] if isinstance(over, str) else over
+    axes = _default_axes(sweep) if names is None else list(names)
+    are_parameters = bool(axes) and all(name in sweep.coords for name in axes)
+    check_that(are_parameters, "over", axes, "parameters of the sweep, at least one")
     _check_product(sweep, axes)
-    bare = sweep.drop_indexes([name for name in sweep.xindexes if "point" in sweep[name].dims])
-    bare = _with_constants(bare.drop_vars("point", errors="ignore"), axes)
+    # The axes take the place of the dimension `point` and of its index.
+    indexed_names = [name for name in sweep.xindexes if "point" in sweep[name].dims]
+    without_index = sweep.drop_indexes(indexed_names).drop_vars("point", errors="ignore")
+    runs = _with_constants(without_index, axes)
     if len(axes) == 1:
-        return bare.swap_dims(point=axes[0]).sortby(axes[0])
-    return bare.set_index(point=axes).unstack("point")
+        return runs.swap_dims(point=axes[0]).sortby(axes[0])
+    return runs.set_index(point=axes).unstack("point")
 
 
-def _axes_of(sweep: xr.Dataset) -> list[str]:
-    """Return the parameters that were listed, or else those that differ between the runs."""
-    listed = [name for name in sweep.attrs.get(AXES_ATTRIBUTE, "").split() if name in sweep.coords]
-    return listed or independent_parameters({n: sweep[n].values for n in sweep.coords})
+def _default_axes(sweep: xr.Dataset) -> list[str]:
+    """Return the parameters of which `sweep` was given lists.
+
+    If there are none, return the parameters that differ between the runs.
+    """
+    listed_names = sweep.attrs.get(AXES_ATTRIBUTE, "").split()
+    axes = [name for name in listed_names if name in sweep.coords]
+    if axes:
+        return axes
+    return independent_parameters({name: sweep[name].values for name in sweep.coords})
 
 
 def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
-    """Raise ValueError unless there is exactly one run for each combination of parameters."""
+    """Raise ValueError unless there is exactly one run for each combination of the axes' values."""
     values = {name: sweep[name].values for name in axes}
-    product = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
+    needed = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
     runs = sweep.sizes["point"]
-    is_complete = len(combinations(values, axes)) == product == runs
-    allowed = f"{product}, one for each combination of {', '.join(axes)}"
+    is_complete = len(combinations(values, axes)) == needed == runs
+    allowed = f"{needed}, one for each combination of {', '.join(axes)}"
     check_that(is_complete, "number of runs", runs, allowed)
 
 
 def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
-    """Return a sweep in which each parameter that all runs share is a single value."""
+    """Return a sweep in which each parameter that all runs share is a single value.
+
+    axes : parameters that keep their values along ``point``
+    """
     parameters = [name for name in ATTRIBUTES if name in sweep.coords and name not in axes]
-    constant = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
-    return sweep.assign_coords({name: sweep[name].variable[0] for name in constant})
+    shared = [name for name in parameters if len(np.unique(sweep[name].values)) == 1]
+    return sweep.assign_coords({name: sweep[name].variable[0] for name in shared})

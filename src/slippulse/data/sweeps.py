@@ -35,13 +35,13 @@ def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) ->
     """Return a sweep with additional numbers for each run.
 
     labels : the numbers by name, one mapping for each run; if empty, the sweep is returned as it is
-    record : the groups that the sweep has recorded
+    record : the groups that the sweep has recorded, see `combine`
     """
     if not labels:
         return data
-    runs = [*runs_in(data)]
-    for run, label in zip(runs, labels, strict=True):
-        run.attrs |= label
+    runs = list(runs_in(data))
+    for run, labels_of_run in zip(runs, labels, strict=True):
+        run.attrs |= labels_of_run
     return combine(runs, record)
 
 
@@ -57,9 +57,12 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
             values = [run.attrs[name] for run in runs]
             # An array of fixed-width texts would need the memory of the longest text for every run.
             dtype = object if isinstance(values[0], str) else None
-            variables[name] = "point", np.array(values, dtype=dtype)
-    fields = [*FRONT_VARIABLES] if "fronts" in record else []
-    fields += FIELD_VARIABLES if "fields" in record else []
+            variables[name] = ("point", np.array(values, dtype=dtype))
+    fields: list[str] = []
+    if "fronts" in record:
+        fields += FRONT_VARIABLES
+    if "fields" in record:
+        fields += FIELD_VARIABLES
     if fields:
         # This is how the CF conventions describe a contiguous ragged array of profiles.
         attributes["featureType"] = "profile"
@@ -75,7 +78,8 @@ def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[st
     sizes = np.array([run["x"].size for run in runs])
     variables: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
     for name in ("x", "prestress", *fields):
-        variables[name] = "block", np.concatenate([run[name] for run in runs])
+        values = np.concatenate([run[name] for run in runs])
+        variables[name] = ("block", values)
     return variables
 
 
@@ -84,5 +88,6 @@ def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
     variables: dict[str, tuple] = {}
     for name, dimensions in DIMENSIONS.items():
         axes = [dimension.removeprefix("sample_") for dimension in dimensions]
-        variables[name] = ("point", *axes), np.stack([run[name] for run in runs])
+        values = np.stack([run[name] for run in runs])
+        variables[name] = (("point", *axes), values)
     return variables

@@ -1,8 +1,8 @@
 """Upper bounds on the computing time and the memory of a run.
 
-A front is at most as fast as the highest level of the pre-stress drives it, and the blocks that it
-has passed slide at most until the end of the run. The number of block updates is therefore at most
-the number of time steps times the number of blocks that the fronts can reach. The shipped sweeps
+A front is at most as fast as the highest level of the pre-stress drives it. The blocks that it has
+passed slide at most until the end of the run. The number of block updates is therefore at most the
+number of time steps times the number of blocks that the fronts can reach. The shipped sweeps
 need at most 0.43 of this estimate. Undamped blocks that slip many times may need up to twice the
 estimate.
 """
@@ -23,13 +23,16 @@ JOB_LIMITS = {"runs": 20_000, "block_updates": 4e13, "bytes": 4e9}
 # All jobs of a sweep together may need at most this number of times the limits of one job.
 SWEEP_LIMIT_IN_JOBS = 50
 OPTION_TO_ALLOW = "--config allow_large=true"
-# Bytes of a block: its recorded numbers, and the arrays of the solver for each order of the Taylor
-# step and for sixteen other quantities.
-RECORDED_BYTES_PER_BLOCK, SOLVER_BYTES_PER_BLOCK = 56.0, 16.0
+# Bytes of a block: its recorded numbers, and each of its numbers in the solver. The solver has one
+# number for each order of the Taylor step and sixteen others.
+RECORDED_BYTES_PER_BLOCK, SOLVER_BYTES_PER_NUMBER = 56.0, 16.0
+OTHER_SOLVER_NUMBERS = 16
+# Bytes of a sample: the slip and the slip velocity.
+BYTES_PER_SAMPLE = 16.0
 # Bytes of a point of a table: two numbers, and their text in a data file.
 BYTES_PER_TABLE_POINT = 400.0
-# The time to start a run, and the time to solve one block of the exact solution, as numbers of
-# block updates that take equally long.
+# Two times, as the numbers of block updates that take equally long: the time to start a run, and
+# the time to solve one block of the exact solution.
 UPDATES_PER_START, UPDATES_PER_EXACT_BLOCK = 1e5, 3e4
 # Where a table reaches 1 the front speed is taken at this level, since it is infinite at 1.
 MAX_LEVEL = 1.0 - 1e-9
@@ -37,8 +40,12 @@ MAX_LEVEL = 1.0 - 1e-9
 GAUSSIAN_END_IN_WIDTHS = 5.0
 # Factor by which the bound on a front speed is larger than simple estimates of it.
 SPEED_MARGIN = 1.3
-# A step ends early after this number of events.
+# A step ends early after this number of events. A block usually has two events in a run, a release
+# and a stick.
 MAX_EVENTS_PER_STEP = 64
+EVENTS_PER_BLOCK = 2.0
+# Number of blocks at rest beyond each front.
+MARGIN_BLOCKS = 16.0
 # Seconds for one block update at the highest order on a slow machine.
 SECONDS_PER_UPDATE = 2e-8
 # Number of block updates above which a second thread makes a job faster.
@@ -67,15 +74,17 @@ class Bound(NamedTuple):
     def exceeded(
         self, chunks: int = 1, remedy: str = f"use more chunks or {OPTION_TO_ALLOW}"
     ) -> str:
-        """Describe the first limit that is exceeded; an empty string if there is none.
+        """Describe the first limit that is exceeded; return an empty string if there is none.
 
-        The bound is that of one of several equal jobs (``chunks``). Each job has a limit, and so
-        have all jobs in total.
+        This bound is that of one job, and ``chunks`` equal jobs make the sweep. Each job has the
+        limits JOB_LIMITS. If there are many jobs, their limits are lower, so that all jobs together
+        stay within SWEEP_LIMIT_IN_JOBS times the limits of one.
         """
-        fraction = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
+        fraction_of_limits = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
         where = f" in each of {chunks} chunks" if chunks > 1 else ""
         for name, limit in JOB_LIMITS.items():
-            value, allowed = getattr(self, name), fraction * limit
+            value, allowed = getattr(self, name), fraction_of_limits * limit
+            # Written with ``not`` so that a value of NaN exceeds the limit.
             if not value <= allowed:
                 cost = f"up to {value:.3g} {name.replace('_', ' ')}{where}"
                 return f"cost: {cost}; allowed: {allowed:.3g}; {remedy}"
@@ -83,9 +92,9 @@ class Bound(NamedTuple):
 
     @property
     def threads(self) -> int:
-        """Number of threads for the job: 2 if it is long, else 1.
+        """Number of threads for the job: 2 if it is long, otherwise 1.
 
-        Several short jobs run at the same time instead, each in one thread.
+        Short jobs do not need a second thread, because several of them run at the same time.
         """
         return 2 if self.block_updates > UPDATES_FOR_TWO_THREADS else 1
 
@@ -106,36 +115,45 @@ def bound_front_reach(
 ) -> float:
     """Return the largest distance from x = 0 that a front can reach, on either side.
 
-    The fronts begin at the distance ``start`` from x = 0. ``speeds_at`` returns the front speeds at
-    an array of pre-stress levels. Within an interval of the background the speed is taken at its
-    higher end.
+    Within an interval of the background, the front has the speed of the higher one of the two
+    levels at its ends.
+
+    start : distance from x = 0 at which both fronts begin at t = 0
+    duration : time for which the fronts run
+    speeds_at : function that returns the front speeds at an array of pre-stress levels
     """
-    intervals = profile.interval_table
-    speeds = speeds_at(intervals[:, 2:].max(axis=1))
-    right = _distance(intervals[:, 1], speeds, start, duration)
-    left = _distance(-intervals[::-1, 0], speeds[::-1], start, duration)
-    return max(left, right)
+    left_ends, right_ends, left_levels, right_levels = profile.interval_table.T
+    speeds = speeds_at(np.maximum(left_levels, right_levels))
+    on_right = _distance_reached(right_ends, speeds, start, duration)
+    # The mirror image: the left front crosses the intervals in the reverse order.
+    on_left = _distance_reached(-left_ends[::-1], speeds[::-1], start, duration)
+    return max(on_right, on_left)
 
 
-def _distance(ends: np.ndarray, speeds: np.ndarray, start: float, duration: float) -> float:
-    """Return the distance that a front reaches which crosses intervals at given speeds.
+def _distance_reached(ends: np.ndarray, speeds: np.ndarray, start: float, duration: float) -> float:
+    """Return the distance from x = 0 that a front reaches, with one speed in each interval.
 
-    ``ends`` are the far ends of the intervals, in the order in which the front crosses them. The
-    last one is infinite. The front begins at the distance ``start`` and runs for ``duration``.
+    ends : distances of the far ends of the intervals, in the order in which the front crosses them;
+        the last one is infinite
+    speeds : front speed in each interval
+    start : distance at which the front begins at t = 0
+    duration : time for which it runs
     """
-    ahead = ends > start
-    ends, speeds = ends[ahead], speeds[ahead]
+    is_ahead = ends > start
+    ends, speeds = ends[is_ahead], speeds[is_ahead]
     # The times at which the front reaches the ends.
-    times = np.cumsum(np.diff(ends, prepend=start) / speeds)
-    last = int(np.searchsorted(times, duration))
-    entry, entry_time = (ends[last - 1], times[last - 1]) if last else (start, 0.0)
+    arrival_times = np.cumsum(np.diff(ends, prepend=start) / speeds)
+    # The interval in which the front is at the end of the run.
+    last = int(np.searchsorted(arrival_times, duration))
+    entry, entry_time = (ends[last - 1], arrival_times[last - 1]) if last else (start, 0.0)
     return float(entry + (duration - entry_time) * speeds[last])
 
 
 def _bound_scene_reach(scene: Scene) -> float:
     """Return an upper bound on the distance from x = 0 that a front reaches on either side.
 
-    Within the Gaussians, fronts are taken to be infinitely fast.
+    The fronts begin at t = 0 beyond all Gaussians of the pre-stress, as if they crossed them in no
+    time.
     """
     profile = scene.prestress
     end_of_bumps = max(
@@ -150,10 +168,12 @@ def _bound_scene_reach(scene: Scene) -> float:
 
         They are larger than the exact speed at any damping and under both release rules.
         """
+        # Without a table there are few levels, and the highest one bounds the speed everywhere.
         level = np.clip(levels if profile.points else np.max(levels), 0.0, MAX_LEVEL)
         # Without damping, the front speed is 1/sqrt(1 - tau^2).
         speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
         if scene.release == "total":
+            # Under this release rule, strong damping makes fronts faster without limit.
             speed = speed + SPEED_MARGIN * scene.damping_ratio * level / (1.0 - level)
         return np.broadcast_to(speed, levels.shape)
 
@@ -163,17 +183,23 @@ def _bound_scene_reach(scene: Scene) -> float:
 def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
     """Return an upper bound on the cost of one run."""
     reach = _bound_scene_reach(scene)
-    blocks = (1.0 if scene.symmetric else 2.0) * (reach / scene.dx + 16.0)
-    steps = scene.duration / (scene.max_step * scene.dx) + 2.0 * blocks / MAX_EVENTS_PER_STEP
-    is_lattice = scene.scheme != "continuum"
-    updates = steps * blocks if is_lattice else UPDATES_PER_EXACT_BLOCK * blocks
+    sides = 1.0 if scene.symmetric else 2.0
+    blocks = sides * (reach / scene.dx + MARGIN_BLOCKS)
+    if scene.scheme == "continuum":
+        updates = UPDATES_PER_EXACT_BLOCK * blocks
+    else:
+        # Steps of full length, and steps that end early because of their events.
+        steps = scene.duration / (scene.max_step * scene.dx)
+        steps += EVENTS_PER_BLOCK * blocks / MAX_EVENTS_PER_STEP
+        updates = steps * blocks
     sample_bytes = 0.0
     if samples is not None:
-        sample_bytes = 16.0 * samples.times.size * samples.positions.size
+        sample_bytes = BYTES_PER_SAMPLE * samples.times.size * samples.positions.size
     table_bytes = BYTES_PER_TABLE_POINT * len(scene.prestress.points)
+    solver_numbers = scene.order + OTHER_SOLVER_NUMBERS
     return Bound(
         runs=1,
         block_updates=UPDATES_PER_START + updates,
         data_bytes=RECORDED_BYTES_PER_BLOCK * blocks + (sample_bytes + table_bytes),
-        solver_bytes=SOLVER_BYTES_PER_BLOCK * (scene.order + 16) * blocks,
+        solver_bytes=SOLVER_BYTES_PER_NUMBER * solver_numbers * blocks,
     )

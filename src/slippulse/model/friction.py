@@ -29,13 +29,19 @@ def friction(law: str, **parameters: float) -> Friction:
     ----------
     law : {"coulomb", "linear_rate", "bounded_rate", "rate_weakening", "slip_weakening", \
 "exponential_weakening"}
-        In this order, the friction is: 0 (the law of the paper); alpha v; F v/(v + v_0);
-        -min(a v, F); max(0, 1 - slip/d_c); exp(-slip/d_c). The scale is that
-        of the pre-stress: 0 is kinetic and 1 is static friction.
+        Name of the law. At slip velocity v, and with the slip since the release, friction is
+
+        - "coulomb": 0, as in the paper;
+        - "linear_rate": alpha v;
+        - "bounded_rate": limit v/(v + v_0);
+        - "rate_weakening": the negative of slope v, but not below -limit;
+        - "slip_weakening": 1 - slip/d_c, but not below 0;
+        - "exponential_weakening": exp(-slip/d_c).
+
+        The scale is that of the pre-stress: 0 is kinetic and 1 is static friction.
     **parameters : float
-        "linear_rate" has alpha. "bounded_rate" has limit (F) and v_0. "rate_weakening" has
-        slope (a) and limit (F). "slip_weakening" and "exponential_weakening" have d_c, in units of
-        U, and nucleation, in units of H: friction is 0 within this distance from x = 0.
+        The parameters in the formula of the law, by name. The last two laws have d_c, in units of
+        U, and also ``nucleation``, in units of H: friction is 0 within this distance from x = 0.
 
     Returns
     -------
@@ -60,7 +66,8 @@ def friction(law: str, **parameters: float) -> Friction:
     check_choice("law", law, LAW_NAMES)
     law_class = LAWS[LAW_NAMES.index(law)]
     needed = [field.name for field in fields(law_class)]
-    for name in {*needed} ^ {*parameters}:
+    missing_or_unknown = set(needed).symmetric_difference(parameters)
+    for name in missing_or_unknown:
         value = short_repr(parameters[name]) if name in parameters else "missing"
         allowed = f"law {law!r} with {', '.join(needed) or 'nothing'}"
         raise ValueError(f"{name}: {value}; allowed: {allowed}")

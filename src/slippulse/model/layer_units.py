@@ -1,14 +1,13 @@
-"""An elastic layer in SI units, and conversions between SI units and the units of the model.
+"""An elastic layer in SI units: conversion of scenes, samples and runs to the model and back.
 
-`Layer` has the material parameters. It computes the units of the model, builds scenes and samples
-from numbers in SI units, and converts runs and measured numbers to SI units and back.
+`Layer` builds scenes and samples from numbers in SI units, and converts runs and measured numbers
+to SI units and back. Its base class `LayerMaterial` has its parameters and converts single numbers.
 """
 
 import json
 import math
-import sys
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, asdict, dataclass
+from dataclasses import dataclass
 from numbers import Real
 from os import PathLike
 from pathlib import Path
@@ -16,24 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import as_numbers, check_choice, check_number, check_that, first_true, short_repr
+from .checks import as_numbers, check_number, check_that, first_true, short_repr
+from .layer_material import LayerMaterial
 from .prestress import Prestress
 from .samples import Samples
 from .scene import Scene
 from .si_quantities import QUANTITIES, UNITS, VARIABLES, converted_numbers, converted_run
 from .si_stress_file import read_in_si
 
-# Boundary condition of a scene for each condition at the top of a layer.
-BOUNDARY_OF_TOP = {"held": "displacement", "stress": "stress"}
-# Allowed ranges, in the form that `check_number` takes.
-NUMBER_RANGES: dict[str, dict[str, Any]] = {
-    "thickness": {"above": 0.0},
-    "shear_modulus": {"above": 0.0},
-    "density": {"above": 0.0},
-    "static_friction": {"above": 0.0},
-    "kinetic_friction": {"at_least": 0.0},
-    "normal_stress": {"above": 0.0},
-}
 # Parameters of a scene that follow from the layer and from numbers in SI units. `Layer.scene`
 # refuses them as arguments.
 DERIVED_PARAMETERS = ("boundary", "gamma", "friction_ratio", "prestress", "duration", "dx")
@@ -41,37 +30,28 @@ DERIVED_PARAMETERS = ("boundary", "gamma", "friction_ratio", "prestress", "durat
 GAMMA_TOLERANCE = 1e-9
 
 
-class Scales(NamedTuple):
-    """The units of the model, in SI units.
+class _Gaussian(NamedTuple):
+    """Non-dimensional width and peak of the Gaussian at x = 0; the width is None without one."""
 
-    A non-dimensional number multiplied by the scale of its quantity is in SI units.
-    """
-
-    length: float
-    time: float
-    speed: float
-    slip: float
-    slip_velocity: float
-    slip_acceleration: float
-    stress: float
-    damping: float
-    energy: float
+    width: float | None
+    peak: float
 
 
 @dataclass(frozen=True)
-class Layer:
+class Layer(LayerMaterial):
     """A thin elastic layer on a frictional interface, in SI units.
 
-    With c^2 = (lambda + 2G)/rho and the strength drop D = (mu_s - mu_k) sigma_n the units of the
-    model are H (length), H/c (time) and D (stress, counted from the kinetic friction mu_k sigma_n).
-    The unit of slip depends on the condition at the top of the layer:
+    The units of the model are the thickness H of the layer (length), H/c (time) and D (stress).
+    Here c is the wave speed, c^2 = (lambda + 2G)/rho, and D is the strength drop,
+    D = (mu_s - mu_k) sigma_n. Non-dimensional stress is 0 at the kinetic friction mu_k sigma_n.
+    The unit U of slip depends on the condition at the top of the layer:
 
-    - "held": the top does not move and displacement falls linearly from the interface to it, so
-      that its mean is half the slip u. The mean equation of motion
-      rho H u''/2 = H (lambda + 2G)/2 d2u/dx2 - G u/H + tau - friction has half the inertia of the
-      layer, and the unit of slip is U = 2 H D/(lambda + 2G).
-    - "stress": the stress on top is fixed and the layer slips as a whole: all of its inertia counts
-      and U = H D/(lambda + 2G).
+    - "held": The top does not move. Displacement falls linearly from the slip u at the interface to
+      0 at the top, so that its mean is u/2. The mean equation of motion is therefore
+      rho H u''/2 = H (lambda + 2G)/2 d2u/dx2 - G u/H + tau - friction, with half the inertia of the
+      layer. The unit of slip is U = 2 H D/(lambda + 2G).
+    - "stress": The stress on top is fixed, and the layer slips as a whole. All of its inertia
+      counts, and U = H D/(lambda + 2G).
 
     Slip velocity has the unit U c/H and slip acceleration U c^2/H^2. Source: section II A and
     appendices A and B of the paper.
@@ -79,7 +59,7 @@ class Layer:
     Parameters
     ----------
     thickness : float, m
-        Thickness H of the layer, > 0: from the interface to where displacement or stress is given.
+        Thickness H of the layer, > 0, from the interface to the top.
     shear_modulus : float, Pa
         Shear modulus G, > 0.
     density : float, kg/m3
@@ -109,161 +89,6 @@ class Layer:
     '2415 m/s, 8.28 us'
     """
 
-    thickness: float
-    shear_modulus: float
-    _: KW_ONLY
-    density: float
-    static_friction: float
-    kinetic_friction: float
-    normal_stress: float
-    lame_parameter: float | None = None
-    poisson_ratio: float | None = None
-    top: str = "held"
-
-    def __post_init__(self) -> None:
-        for name, bounds in NUMBER_RANGES.items():
-            check_number(name, getattr(self, name), **bounds)
-            object.__setattr__(self, name, float(getattr(self, name)))
-        allowed = f"a number above kinetic_friction = {self.kinetic_friction:g}"
-        higher = self.static_friction > self.kinetic_friction
-        check_that(higher, "static_friction", self.static_friction, allowed)
-        check_choice("top", self.top, tuple(BOUNDARY_OF_TOP))
-        self._check_second_modulus()
-        try:
-            usable = all(math.isfinite(scale) and scale > 0.0 for scale in self.scales)
-        except ArithmeticError:
-            usable = False
-        check_that(usable, "layer", self.mapping(), "numbers near those of a material")
-
-    def _check_second_modulus(self) -> None:
-        """Raise ValueError unless exactly one of the two moduli is given, within its range."""
-        given = {"lame_parameter": self.lame_parameter, "poisson_ratio": self.poisson_ratio}
-        names = [name for name, value in given.items() if value is not None]
-        if len(names) != 1:
-            text = " and ".join(names) or "missing"
-            raise ValueError(f"lame_parameter, poisson_ratio: {text}; allowed: one of the two")
-        if self.poisson_ratio is None:
-            # The bulk modulus is positive, which is a Poisson's ratio above -1.
-            check_number(
-                "lame_parameter", self.lame_parameter, above=-2.0 / 3.0 * self.shear_modulus
-            )
-        else:
-            check_number("poisson_ratio", self.poisson_ratio, above=-1.0, below=0.5)
-        object.__setattr__(self, names[0], float(getattr(self, names[0])))
-
-    @property
-    def boundary(self) -> str:
-        """Boundary condition of the scenes of this layer: "displacement" or "stress"."""
-        return BOUNDARY_OF_TOP[self.top]
-
-    @property
-    def longitudinal_modulus(self) -> float:
-        """Modulus lambda + 2G of uniaxial strain (Pa)."""
-        if self.lame_parameter is not None:
-            return self.lame_parameter + 2.0 * self.shear_modulus
-        poisson_ratio = self.poisson_ratio or 0.0
-        return 2.0 * self.shear_modulus * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
-
-    @property
-    def gamma(self) -> float:
-        """Elasticity ratio 2G/(lambda + 2G), between 0 and 1.5."""
-        return 2.0 * self.shear_modulus / self.longitudinal_modulus
-
-    @property
-    def wave_speed(self) -> float:
-        """Speed c = sqrt((lambda + 2G)/rho) of waves along the layer (m/s)."""
-        return math.sqrt(self.longitudinal_modulus / self.density)
-
-    @property
-    def strength_drop(self) -> float:
-        """Difference (mu_s - mu_k) sigma_n of static and kinetic friction (Pa)."""
-        return (self.static_friction - self.kinetic_friction) * self.normal_stress
-
-    @property
-    def static_strength(self) -> float:
-        """Static friction mu_s sigma_n, at which the interface is released (Pa)."""
-        return self.static_friction * self.normal_stress
-
-    @property
-    def kinetic_strength(self) -> float:
-        """Kinetic friction mu_k sigma_n, where non-dimensional stress is 0 (Pa)."""
-        return self.kinetic_friction * self.normal_stress
-
-    @property
-    def friction_ratio(self) -> float:
-        """Ratio mu_k/(mu_s - mu_k), on which the stress for backward slip depends."""
-        return self.kinetic_friction / (self.static_friction - self.kinetic_friction)
-
-    @property
-    def scales(self) -> Scales:
-        """Units of the model in SI units; energy is per metre of interface width."""
-        factor = 2.0 if self.top == "held" else 1.0
-        time, speed = self.thickness / self.wave_speed, self.wave_speed
-        slip = factor * self.thickness * self.strength_drop / self.longitudinal_modulus
-        return Scales(
-            length=self.thickness,
-            time=time,
-            speed=speed,
-            slip=slip,
-            slip_velocity=slip / time,
-            slip_acceleration=slip / time**2,
-            stress=self.strength_drop,
-            damping=self.thickness * speed,
-            energy=self.strength_drop * slip * self.thickness,
-        )
-
-    @property
-    def units_in_words(self) -> str:
-        """Text with the units of the model, for messages about non-dimensional numbers."""
-        length, time = f"{self.scales.length:.4g} m", f"{self.scales.time:.4g} s"
-        stresses = f"{self.kinetic_strength:.6g} and 1 at {self.static_strength:.6g} Pa"
-        return f"in units of the layer: {length}, {time}; stress is 0 at {stresses}"
-
-    def convert_to_si(self, values: Any, quantity: str) -> Any:
-        """Convert non-dimensional numbers to SI units.
-
-        Parameters
-        ----------
-        values : float or array
-        quantity : str
-            A name of `Scales`, or "stress_difference". A "stress" is counted from the kinetic
-            friction if it is non-dimensional, and from 0 if it is in pascal.
-
-        Returns
-        -------
-        float or array
-        """
-        if quantity == "stress":
-            return self.kinetic_strength + self.strength_drop * values
-        return values * self._scale(quantity)
-
-    def convert_from_si(self, values: Any, quantity: str) -> Any:
-        """Convert numbers in SI units to non-dimensional ones; the inverse of `convert_to_si`.
-
-        Static friction becomes exactly 1.
-
-        Parameters
-        ----------
-        values : float or array
-        quantity : str
-
-        Returns
-        -------
-        float or array
-        """
-        if quantity != "stress":
-            return values / self._scale(quantity)
-        tau = (values - self.kinetic_strength) / self.strength_drop
-        # Rounding must not move static friction below 1, since blocks are released at 1.
-        rounding = 8.0 * sys.float_info.epsilon * (1.0 + self.friction_ratio)
-        tau = np.where(np.abs(tau - 1.0) <= rounding, 1.0, tau)
-        return tau if np.ndim(values) else float(tau)
-
-    def _scale(self, quantity: str) -> float:
-        """Return the unit of a quantity in SI units."""
-        check_choice("quantity", quantity, tuple(UNITS))
-        return getattr(self.scales, "stress" if quantity == "stress_difference" else quantity)
-
     def scene(
         self,
         prestress_in_pascal: Any,
@@ -280,21 +105,23 @@ class Layer:
         Parameters
         ----------
         prestress_in_pascal : float, pair of sequences, or path
-            Shear stress along the interface: one value everywhere; positions (m) and stresses (Pa),
-            linear between them and constant beyond; or a file with such a table (see
-            `Prestress.from_file`). Two values at one position are a jump.
+            Shear stress along the interface, in one of three forms. A number is the same stress
+            everywhere. A pair has positions (m) and stresses (Pa), between which the stress is
+            linear; beyond them it is constant, and two values at one position are a jump. A path
+            leads to a file with such a table (see `Prestress.from_file`).
         duration_in_seconds : float
+            Time to simulate.
         dx_in_metres : float
             Spacing of the blocks.
         width_in_metres : float, optional
             Standard deviation of a Gaussian at x = 0 that raises the stress there to its peak.
             Without it, rupture starts where the table reaches static friction.
         peak_in_pascal : float, optional
-            Stress at x = 0 with a width; by default static friction.
+            Stress at x = 0, if there is a Gaussian; by default static friction.
         damping_ratio : float, optional
-            beta/dx, in place of ``beta``.
+            beta/dx, which can be given in place of ``beta``.
         **parameters
-            Other parameters of `Scene`, non-dimensional as there: beta, release, scheme, max_step,
+            Other parameters of `Scene`, in the units of the model: beta, release, scheme, max_step,
             order, half_lattice, resolved_blocks, friction.
 
         Returns
@@ -304,8 +131,8 @@ class Layer:
         Raises
         ------
         ValueError
-            If a value is not allowed, if nothing would move or everything at once, or if some
-            stress would make the interface slide backwards; in one line, in SI units.
+            If a value is not allowed, if no block or every block would be released at once, or if
+            the interface would slide backwards somewhere. The message is one line in SI units.
 
         Examples
         --------
@@ -329,6 +156,7 @@ class Layer:
             check_that(beta is None, "beta", beta, "none, since damping_ratio is given")
             check_number("damping_ratio", damping_ratio, at_least=0.0)
             parameters["beta"] = damping_ratio * dx
+        # Errors of the scene are about non-dimensional numbers. The units are added to the message.
         try:
             return Scene(
                 boundary=self.boundary,
@@ -360,6 +188,29 @@ class Layer:
         -------
         Prestress
         """
+        given, key = prestress_in_pascal, "prestress_in_pascal"
+        width, peak = self._gaussian_from_si(width_in_metres, peak_in_pascal)
+        if isinstance(given, Real) and not isinstance(given, bool):
+            (level,) = self.table_from_pascal(key, [given]).tolist()
+            return Prestress(left=level, right=level, width=width, peak=peak)
+        if isinstance(given, str | PathLike):
+            # Messages about the table begin with the path of its file.
+            key = str(given)
+            positions, stresses = read_in_si(Path(given))
+        else:
+            positions, stresses = _columns(given)
+        tau = self.table_from_pascal(key, stresses)
+        # Errors of the profile are about non-dimensional numbers. The units are added to them.
+        try:
+            x = self.convert_from_si(positions, "length")
+            return Prestress.through(x, tau, width=width, peak=peak)
+        except ValueError as error:
+            raise ValueError(f"{error} ({self.units_in_words})") from None
+
+    def _gaussian_from_si(
+        self, width_in_metres: float | None, peak_in_pascal: float | None
+    ) -> _Gaussian:
+        """Convert width and peak of the Gaussian at x = 0. The default peak is 1."""
         width, peak = None, 1.0
         if width_in_metres is not None:
             check_number("width_in_metres", width_in_metres, above=0.0)
@@ -368,20 +219,7 @@ class Layer:
             allowed = "none without width_in_metres, since there is then no Gaussian"
             check_that(width is not None, "peak_in_pascal", peak_in_pascal, allowed)
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
-        if isinstance(prestress_in_pascal, Real) and not isinstance(prestress_in_pascal, bool):
-            (level,) = self.table_from_pascal("prestress_in_pascal", [prestress_in_pascal]).tolist()
-            return Prestress(left=level, right=level, width=width, peak=peak)
-        if isinstance(prestress_in_pascal, str | PathLike):
-            key, table = str(prestress_in_pascal), read_in_si(Path(prestress_in_pascal))
-        else:
-            key, table = "prestress_in_pascal", _columns(prestress_in_pascal)
-        x, stress = table
-        tau = self.table_from_pascal(key, stress)
-        try:
-            x = self.convert_from_si(x, "length")
-            return Prestress.through(x, tau, width=width, peak=peak)
-        except ValueError as error:
-            raise ValueError(f"{error} ({self.units_in_words})") from None
+        return _Gaussian(width, peak)
 
     def stress_from_pascal(self, key: str, stress: Any) -> np.ndarray:
         """Convert stresses (Pa) to non-dimensional ones.
@@ -398,22 +236,24 @@ class Layer:
         -------
         array
         """
-        stress, lowest = as_numbers(key, stress), -self.static_strength
-        if stress.min(initial=math.inf) <= lowest:
+        stresses, limit = as_numbers(key, stress), -self.static_strength
+        if stresses.min(initial=math.inf) <= limit:
             reason = "since otherwise the interface slides backwards"
-            allowed = f"> {lowest:g} Pa, which is minus static friction, {reason}"
-            raise ValueError(f"{key}: {stress.min():.6g} Pa; allowed: {allowed}")
-        return np.asarray(self.convert_from_si(stress, "stress"))
+            allowed = f"> {limit:g} Pa, which is minus static friction, {reason}"
+            raise ValueError(f"{key}: {stresses.min():.6g} Pa; allowed: {allowed}")
+        return np.asarray(self.convert_from_si(stresses, "stress"))
 
     def level_from_pascal(self, key: str, stress: float) -> float:
         """Convert the stress of a level, or of a peak, to a non-dimensional one.
 
+        A level that reaches static friction is refused. A peak may reach it.
+
         Parameters
         ----------
         key : str
-            Name of the argument, for the message of a refusal. Only a "peak" may reach static
-            friction.
+            Name of the argument, for the message of a refusal. The name of a peak is "peak".
         stress : float
+            In pascal.
 
         Returns
         -------
@@ -428,38 +268,43 @@ class Layer:
     def table_from_pascal(self, key: str, stress: Any) -> np.ndarray:
         """Convert the stresses of a table to non-dimensional ones.
 
-        They are refused if they reach static friction everywhere, or at the first or last point,
-        beyond which the stress is constant.
+        A table is refused if it reaches static friction everywhere, or at its first or last point.
+        The stress beyond these two points is constant, so that infinitely many blocks would be
+        released at once.
 
         Parameters
         ----------
         key : str
             Name of the argument, for the message of a refusal.
         stress : array
+            In pascal.
 
         Returns
         -------
         array
         """
         tau = self.stress_from_pascal(key, stress)
-        below = f"below static friction, {self.static_strength:g} Pa"
-        lowest = self.convert_to_si(float(tau.min()), "stress")
-        everywhere = f"at least {lowest:g} Pa everywhere"
+        allowed = f"below static friction, {self.static_strength:g} Pa"
         if tau.min() >= 1.0:
-            raise ValueError(f"{key}: {everywhere}; allowed: {below} somewhere")
-        for name, row in (("first", 0), ("last", -1)):
-            stress = self.convert_to_si(float(tau[row]), "stress")
-            if tau[row] >= 1.0:
-                raise ValueError(f"{key}: {name} value {stress:.6g} Pa; allowed: {below}")
+            lowest = self.convert_to_si(float(tau.min()), "stress")
+            everywhere = f"at least {lowest:g} Pa everywhere"
+            raise ValueError(f"{key}: {everywhere}; allowed: {allowed} somewhere")
+        for end, value in (("first", float(tau[0])), ("last", float(tau[-1]))):
+            if value >= 1.0:
+                refused = self.convert_to_si(value, "stress")
+                raise ValueError(f"{key}: {end} value {refused:.6g} Pa; allowed: {allowed}")
         return tau
 
     def _check_that_something_moves(self, profile: Prestress, dx: float) -> None:
-        """Raise ValueError if the initial stress reaches static friction at no block."""
+        """Raise ValueError if the initial stress reaches static friction at no block.
+
+        dx : non-dimensional spacing of the blocks, which lie at its multiples
+        """
         # The stress is largest at x = 0 or at a point of the table. It is examined at the blocks
         # next to these positions.
         x = np.array([0.0, *(x for x, _ in profile.points)])
-        blocks = np.concatenate([np.floor(x / dx), np.ceil(x / dx)]) * dx
-        largest = float(profile(blocks).max())
+        positions_of_blocks = np.concatenate([np.floor(x / dx), np.ceil(x / dx)]) * dx
+        largest = float(profile(positions_of_blocks).max())
         if largest < 1.0:
             stress = self.convert_to_si(largest, "stress")
             reached = f"at most {stress:.9g} Pa at a block"
@@ -504,8 +349,8 @@ class Layer:
         Raises
         ------
         ValueError
-            If `run` is not such a Dataset, or its boundary condition or elasticity ratio is not
-            that of the layer.
+            If `run` is not such a Dataset, is in SI units already, or has another boundary
+            condition or elasticity ratio than the layer.
         """
         _check_run(run)
         if "layer" in run.attrs:
@@ -538,10 +383,10 @@ class Layer:
             If `run` is not such a Dataset, or was converted by another layer.
         """
         _check_run(run)
-        recorded = layer_of(run.attrs)
-        if recorded is None:
+        run_layer = layer_of(run.attrs)
+        if run_layer is None:
             raise ValueError("run: without units; allowed: a run that to_si returned")
-        check_that(recorded == self, "layer", recorded, "the layer that converted the run")
+        check_that(run_layer == self, "layer", run_layer, "the layer that converted the run")
         for name in run.variables:
             unit, expected = run[name].attrs.get("units"), UNITS[QUANTITIES[name]]
             check_that(unit == expected, f"run: units of {name}", unit, repr(expected))
@@ -566,39 +411,38 @@ class Layer:
         """
         return converted_numbers(numbers, self.convert_to_si)
 
-    def mapping(self) -> dict[str, Any]:
-        """Return the parameters by name, without the modulus that was not given.
-
-        Returns
-        -------
-        dict
-        """
-        return {name: value for name, value in asdict(self).items() if value is not None}
-
     def _check_same_layer(self, attributes: Mapping) -> None:
         """Raise ValueError if the boundary or the gamma of a run is not that of this layer."""
         boundary, gamma = attributes["boundary"], attributes["gamma"]
         check_that(boundary == self.boundary, "run: boundary", boundary, repr(self.boundary))
+        # Without a held top there are no leaf springs, and gamma of the run is 0.
         expected = self.gamma if self.top == "held" else 0.0
         is_equal = math.isclose(gamma, expected, rel_tol=GAMMA_TOLERANCE)
         check_that(is_equal, "run: gamma", gamma, f"{expected!r}, as in the layer")
 
 
 def layer_of(attributes: Mapping) -> Layer | None:
-    """Return the layer that a run was converted with; None if the run is not in SI units."""
+    """Return the layer that converted a run to SI units; None if the run is not in SI units.
+
+    attributes : the attributes of the run
+    """
     return Layer(**json.loads(attributes["layer"])) if "layer" in attributes else None
 
 
 def _check_run(run: Any) -> None:
     """Raise ValueError unless the argument is the Dataset of one run."""
-    is_run = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
-    is_run = is_run and set(run.variables) <= set(VARIABLES)
+    has_fields = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
+    # The Dataset of a sweep has further variables.
+    is_run = has_fields and set(run.variables) <= set(VARIABLES)
     allowed = "a Dataset that simulate returned; point takes one run out of a sweep"
     check_that(is_run, "run", type(run).__name__, allowed)
 
 
 def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Convert a pair of sequences, positions (m) and stresses (Pa), to arrays."""
+    """Convert a pair of sequences to arrays: positions (m) from left to right, and stresses (Pa).
+
+    Raises ValueError if the pair is not a table of at least two points in this order.
+    """
     try:
         x, stress = given
     except (TypeError, ValueError):
@@ -607,13 +451,13 @@ def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
     positions = as_numbers("prestress_in_pascal positions", x)
     stresses = as_numbers("prestress_in_pascal stresses", stress)
     have_equal_shapes = positions.ndim == 1 and positions.shape == stresses.shape
-    allowed = "two or more positions, and as many stresses"
     are_valid = have_equal_shapes and positions.size >= 2
+    allowed = "two or more positions, and as many stresses"
     check_that(are_valid, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
     before = first_true(np.diff(positions) < 0.0)
     if before is not None:
-        # Rows are counted from 1 in messages.
-        given = f"position {positions[before + 1]:.10g} m in row {before + 2}"
+        # The position in the row after ``before`` is lower. Rows are counted from 1 in messages.
+        wrong = f"position {positions[before + 1]:.10g} m in row {before + 2}"
         allowed = f">= {positions[before]:.10g} m, the position in the row before"
-        raise ValueError(f"prestress_in_pascal: {given}; allowed: {allowed}")
+        raise ValueError(f"prestress_in_pascal: {wrong}; allowed: {allowed}")
     return positions, stresses

@@ -17,27 +17,29 @@ from typing import Any, NamedTuple, Self, TypeAlias
 
 import numpy as np
 
-from .checks import as_positions, check_number, check_that, first_true, refusal, short_repr
+from .checks import as_positions, check_number, check_that, short_repr
+from .prestress_parts import (
+    LEVEL_RANGE,
+    PART_RANGES,
+    check_order,
+    convert_column,
+    convert_part,
+    convert_points,
+)
 from .removed import ExplainsRemovedNames
 
-# Allowed ranges, in the form that `check_number` takes. A side level of 1 would release infinitely
-# many blocks at t = 0.
-LEVEL_RANGE: dict[str, Any] = {"below": 1.0}
+# Allowed ranges, in the form that `check_number` takes.
 NUMBER_RANGES = {"left": LEVEL_RANGE, "right": LEVEL_RANGE, "width": {"above": 0.0}, "peak": {}}
-PART_RANGES: dict[str, dict[str, dict[str, Any]]] = {
-    "steps": {"position": {}, "level": LEVEL_RANGE},
-    "bumps": {"centre": {}, "amplitude": {}, "width": {"above": 0.0}},
-}
 # Centre, amplitude and width of each further Gaussian.
 Bumps: TypeAlias = tuple[tuple[float, float, float], ...]
-# A table of more points would take more memory than the lattice itself.
-MAX_TABLE_POINTS = 100_000
 # The representation of a profile shows at most this number of points.
 MAX_SHOWN_POINTS = 8
-# A value that differs from the threshold 1 by at most this much is set to 1, because the difference
-# is due to rounding. A table has a larger tolerance, since positions between its points are rounded
-# as well.
+# A value that differs from the threshold 1 by at most the first number is set to 1, because the
+# difference is due to rounding. The second number is for tables. It is larger, since positions
+# between the points are rounded as well.
 THRESHOLD_TOLERANCE, TABLE_THRESHOLD_TOLERANCE = 4.0 * sys.float_info.epsilon, 1e-12
+# Beyond this number of widths from its centre, a bump cannot bring the pre-stress to the threshold.
+BUMP_REACH_IN_WIDTHS = 4.0
 
 
 class Interval(NamedTuple):
@@ -62,25 +64,25 @@ class Prestress(ExplainsRemovedNames):
     """Non-dimensional pre-stress tau(x) along the interface.
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background
-    ``level`` is ``left`` for x < 0 and ``right`` for x >= 0, until a step replaces it. With
-    ``points``, it is linear between them instead (see `through`). The rupture nucleates where the
-    profile reaches 1: at x = 0, or wherever a table does. Source: section III of the paper; steps,
-    bumps and points are an addition of this project.
+    ``level`` is ``left`` for x < 0 and ``right`` for x >= 0. Each step replaces it beyond a
+    position. If ``points`` are given, the background is linear between them instead (see
+    `through`). The rupture nucleates where the profile reaches 1, which usually is at x = 0.
+    Source: section III of the paper; steps, bumps and points are an addition of this project.
 
     Parameters
     ----------
     left, right : float, units of the stress drop
         Levels at large distance on either side (tau_{0,l} and tau_{0,r}), < 1.
     width : float, units of H, or None
-        Standard deviation W of the Gaussian, > 0. None if there is no Gaussian at x = 0.
+        Standard deviation W of the Gaussian at x = 0, > 0. None if there is no such Gaussian.
     peak : float, units of the stress drop
-        Value at x = 0. If it is 1, the block there is released at t = 0. If it is less, nothing
-        moves.
+        Value at x = 0, without bumps. If it is 1, the block there is released at t = 0. If it is
+        less, nothing moves.
     steps : sequence of (position, level)
         A step sets the background to its level from its position on, away from x = 0.
     bumps : sequence of (centre, amplitude, width)
-        Gaussians that are added to the profile: a barrier (amplitude < 0), an asperity, or a second
-        nucleation.
+        Gaussians that are added to the profile. A bump can be a barrier (amplitude < 0), an
+        asperity (amplitude > 0), or a second nucleation.
     points : sequence of (x, tau)
         Points, from left to right, between which the background is linear. The first and the last
         tau must equal ``left`` and ``right``. Two points at the same x are a jump.
@@ -112,17 +114,16 @@ class Prestress(ExplainsRemovedNames):
                 continue
             check_number(f"prestress.{name}", getattr(self, name), **bounds)
             object.__setattr__(self, name, float(getattr(self, name)))
-        for name, parts in PART_RANGES.items():
-            rows = _number_tuples(f"prestress.{name}", getattr(self, name), parts)
-            object.__setattr__(self, name, rows)
-        object.__setattr__(self, "points", _points(self.points))
+        for name in PART_RANGES:
+            object.__setattr__(self, name, convert_part(name, getattr(self, name)))
+        object.__setattr__(self, "points", convert_points(self.points))
         positions = [position for position, _ in self.steps]
         are_distinct = 0.0 not in positions and len({*positions}) == len(positions)
         allowed = "different positions, none of them 0 (see left, right)"
         check_that(are_distinct, "prestress.steps", positions, allowed)
-        peak_has_width = self.width is not None or self.peak == 1.0
+        has_peak = self.width is not None or self.peak == 1.0
         allowed = "1 without a width, since there is then no Gaussian"
-        check_that(peak_has_width, "prestress.peak", self.peak, allowed)
+        check_that(has_peak, "prestress.peak", self.peak, allowed)
         if self.points:
             self._check_points()
 
@@ -130,11 +131,12 @@ class Prestress(ExplainsRemovedNames):
         """Raise ValueError if the points are not in order, or do not fit the other arguments."""
         check_that(not self.steps, "prestress.steps", self.steps, "none with points")
         x, tau = self.point_arrays
-        _check_order(x)
-        for name, outermost in (("left", tau[0]), ("right", tau[-1])):
-            allowed = f"{float(outermost)!r}, the outermost value of the points"
+        check_order(x)
+        # The pre-stress is constant beyond the outermost points.
+        for name, outermost_value in (("left", tau[0]), ("right", tau[-1])):
+            allowed = f"{float(outermost_value)!r}, the outermost value of the points"
             level = getattr(self, name)
-            check_that(level == outermost, f"prestress.{name}", level, allowed)
+            check_that(level == outermost_value, f"prestress.{name}", level, allowed)
 
     @classmethod
     def through(
@@ -150,9 +152,9 @@ class Prestress(ExplainsRemovedNames):
         Parameters
         ----------
         x : sequence of float, units of H
-            Positions from left to right, at least two. The same position twice is a jump. The value
-            at the jump itself is the one on the side away from x = 0, or, for a jump at x = 0, the
-            larger one.
+            Positions from left to right, at least two. The same position twice is a jump. At the
+            jump itself, the value on the side away from x = 0 holds. At a jump at x = 0, the larger
+            value holds.
         tau : sequence of float, units of the stress drop
             Value at each position. The first and the last must be < 1.
         width, peak, bumps
@@ -175,7 +177,7 @@ class Prestress(ExplainsRemovedNames):
         >>> float(ramp.level(0.0))
         0.4
         """
-        positions, values = _column("x", x), _column("tau", tau)
+        positions, values = convert_column("x", x), convert_column("tau", tau)
         size = len(positions)
         allowed = f"{size} values, as many as of x"
         check_that(size == len(values), "prestress.points", len(values), allowed)
@@ -204,8 +206,8 @@ class Prestress(ExplainsRemovedNames):
         ----------
         path : str or Path
             A CSV file has the names of its columns in the first row. The second row may have their
-            units: H for positions and S (the stress drop) for values, or 1 or - for both. Rows that
-            begin with # are comments.
+            units. The unit of positions is H and that of values is S (the stress drop); both can
+            also be written as 1 or -. Rows that begin with # are comments.
         x, prestress : str, optional
             Names of the two columns (or netCDF variables). By default, the column of positions is
             named x, position or distance, and the column of values tau, prestress, shear_stress or
@@ -279,7 +281,10 @@ class Prestress(ExplainsRemovedNames):
         return cls.through(x, tau, width=width, peak=peak, bumps=bumps)
 
     def __repr__(self) -> str:
-        """Show the arguments that differ from the defaults; of a long table only its length."""
+        """Return the call that makes this profile, without arguments that have their defaults.
+
+        A long table of points is replaced by its length.
+        """
         shown = []
         for entry in fields(self):
             value = getattr(self, entry.name)
@@ -303,17 +308,21 @@ class Prestress(ExplainsRemovedNames):
     @cached_property
     def nucleation_reach(self) -> float:
         """Distance from x = 0 within which all bumps lie, and all points at which tau can be 1."""
-        reach = max((abs(centre) + 4.0 * width for centre, _, width in self.bumps), default=0.0)
+        distances = [0.0]
+        for centre, _, width in self.bumps:
+            distances.append(abs(centre) + BUMP_REACH_IN_WIDTHS * width)
         # Together with the bumps, a smaller value of the table can reach 1 as well.
-        threshold = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
-        return max([reach, *(abs(x) for x, tau in self.points if tau >= threshold)])
+        lowest_value = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
+        distances += [abs(x) for x, tau in self.points if tau >= lowest_value]
+        return max(distances)
 
     @property
     def symmetric(self) -> bool:
         """True if tau(-x) = tau(x), so that it is enough to simulate half of the lattice."""
+        # The first number of a step is its position, and that of a bump its centre.
         parts = {*self.steps, *self.bumps}
-        mirrored = {(-position, *rest) for position, *rest in parts}
-        return self.left == self.right and parts == mirrored and self._symmetric_table
+        mirrored_parts = {(-position, *others) for position, *others in parts}
+        return self.left == self.right and parts == mirrored_parts and self._symmetric_table
 
     @cached_property
     def _symmetric_table(self) -> bool:
@@ -331,25 +340,27 @@ class Prestress(ExplainsRemovedNames):
         """Return the background at positions x (units of H), without peak and bumps."""
         x = as_positions("x", x)
         if self.points:
-            return self._linear(x)
+            return self._interpolate_table(x)
         level = np.where(x < 0.0, self.left, self.right)
         # From x = 0 outwards, each step replaces the level beyond it, on its own side.
-        for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
+        outwards = sorted(self.steps, key=lambda step: abs(step[0]))
+        for position, step_level in outwards:
             distance = x if position > 0.0 else -x
-            level = np.where(distance >= abs(position), value, level)
+            level = np.where(distance >= abs(position), step_level, level)
         return level
 
-    def _linear(self, x: np.ndarray) -> np.ndarray:
-        """Interpolate the table at positions x.
+    def _interpolate_table(self, x: np.ndarray) -> np.ndarray:
+        """Return the background at positions x by linear interpolation of the table.
 
-        Each side is computed from x = 0 outwards, so that a mirrored table gives mirrored values to
-        the last bit.
+        Each side is interpolated from x = 0 outwards, so that a mirrored table gives mirrored
+        values to the last bit.
         """
         positions, values = self.point_arrays
         right = np.interp(np.maximum(x, 0.0), positions, values)
         left = np.interp(np.maximum(-x, 0.0), -positions[::-1], values[::-1])
         # At a jump at x = 0, the larger of the two values holds.
-        return np.select([x > 0.0, x < 0.0], [right, left], np.maximum(left, right))
+        at_zero = np.maximum(left, right)
+        return np.select([x > 0.0, x < 0.0], [right, left], at_zero)
 
     @cached_property
     def intervals(self) -> tuple[Interval, ...]:
@@ -366,17 +377,18 @@ class Prestress(ExplainsRemovedNames):
                     intervals.append(Interval(left, right, left_value, right_value))
             return tuple(intervals)
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
-        # The level of an interval is that at a position inside it.
+        # Between two jumps the background is constant, so one position within is enough.
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
-        levels = self.level(np.array([jumps[0] - 1.0, *middles, jumps[-1] + 1.0])).tolist()
-        lefts, rights = [-math.inf, *jumps], [*jumps, math.inf]
-        return tuple(map(Interval, lefts, rights, levels, levels))
+        positions_within = [jumps[0] - 1.0, *middles, jumps[-1] + 1.0]
+        levels = self.level(np.array(positions_within)).tolist()
+        left_ends, right_ends = [-math.inf, *jumps], [*jumps, math.inf]
+        return tuple(map(Interval, left_ends, right_ends, levels, levels))
 
     @cached_property
     def interval_table(self) -> np.ndarray:
         """Array with one row for each interval, and the fields of `Interval` as columns.
 
-        It is kept, because building it from a long table takes as long as a run.
+        It is cached, because building it from a long table takes as long as a run.
         """
         return np.array(self.intervals)
 
@@ -384,7 +396,7 @@ class Prestress(ExplainsRemovedNames):
     def parts_as_json(self) -> str:
         """Steps, bumps and points as JSON, for a data file.
 
-        It is kept, because 10,000 points take 10 ms.
+        The text is cached, because 10,000 points take 10 ms.
         """
         parts = {"steps": self.steps, "bumps": self.bumps}
         return json.dumps(parts | {"points": self.points} if self.points else parts)
@@ -396,13 +408,15 @@ class Prestress(ExplainsRemovedNames):
         The sum of mirror images is added to the profile as a whole. A symmetric profile then has
         symmetric values to the last bit.
         """
-        centres_of: dict[tuple[float, float, float], list[float]] = {}
+        centres: dict[tuple[float, float, float], list[float]] = {}
         for centre, amplitude, width in self.bumps:
-            centres_of.setdefault((abs(centre), amplitude, width), []).append(centre)
-        return [
-            EqualBumps(amplitude, width, sorted(centres_of[distance, amplitude, width]))
-            for distance, amplitude, width in sorted(centres_of)
-        ]
+            shape = (abs(centre), amplitude, width)
+            centres.setdefault(shape, []).append(centre)
+        bumps = []
+        for shape in sorted(centres):
+            _, amplitude, width = shape
+            bumps.append(EqualBumps(amplitude, width, sorted(centres[shape])))
+        return bumps
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Return the pre-stress at positions x (units of H).
@@ -412,7 +426,8 @@ class Prestress(ExplainsRemovedNames):
         x = as_positions("x", x)
         tau = self.level(x)
         if self.width is not None:
-            # This form loses no digits near x = 0, where the pre-stress is close to the threshold.
+            # Equal to level + (peak - level) exp(-x^2 / 2 width^2). This form loses no digits near
+            # x = 0, where the pre-stress is close to the threshold.
             tau = self.peak + (tau - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         if not self.bumps and not self.points:
             return tau
@@ -441,17 +456,18 @@ def prestress_from(attributes: Mapping) -> Prestress:
     Raises KeyError if an attribute is missing, and ValueError if its value is not allowed.
     """
     left, right, width, peak = (attributes[name] for name in NUMBER_RANGES)
-    text = attributes["steps_and_bumps"]
+    parts_as_json = attributes["steps_and_bumps"]
     if isinstance(width, float) and math.isnan(width):
         width = None
+    arguments = (parts_as_json, left, right, width, peak)
     # A value that cannot be a key of the cache, such as a list, is refused by `_from_text`.
-    is_hashable = all(isinstance(value, Hashable) for value in (text, left, right, width, peak))
-    read = _cached_from_text if is_hashable else _from_text
-    return read(text, left, right, width, peak)
+    if all(isinstance(value, Hashable) for value in arguments):
+        return _cached_from_text(*arguments)
+    return _from_text(*arguments)
 
 
 def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
-    """Make a pre-stress from four numbers, and from its steps, bumps and points as JSON."""
+    """Make a pre-stress from its four numbers, and from its steps, bumps and points as JSON."""
     try:
         given = {"points": ()} | json.loads(text)
         parts = {name: given[name] for name in (*PART_RANGES, "points")}
@@ -465,62 +481,5 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
     return Prestress(left=left, right=right, width=width, peak=peak, **parts)
 
 
-# Each measurement of a run starts from its pre-stress, which is therefore kept for a few runs.
+# Every measurement of a run needs its pre-stress, which is therefore cached for a few runs.
 _cached_from_text = lru_cache(maxsize=8, typed=True)(_from_text)
-
-
-def _points(rows: Any) -> tuple[tuple[float, float], ...]:
-    """Convert the points of a table to pairs of numbers; an empty tuple if there are none."""
-    try:
-        pairs = [(x, tau) for x, tau in rows]
-    except (TypeError, ValueError):
-        allowed = "a list of [x, tau]"
-        raise ValueError(f"prestress.points: {short_repr(rows)}; allowed: {allowed}") from None
-    if not pairs:
-        return ()
-    x, tau = zip(*pairs, strict=True)
-    return tuple(zip(_column("x", x), _column("tau", tau), strict=True))
-
-
-def _column(name: str, values: Any) -> list[float]:
-    """Convert one column of a table to numbers; ValueError names the first row that fails."""
-    key, listed = f"prestress.points {name}", values
-    try:
-        listed = np.asarray(values).tolist() if hasattr(values, "__array__") else [*values]
-        size = len(listed)
-    except TypeError:
-        size = 0
-    check_that(2 <= size <= MAX_TABLE_POINTS, key, size, f"2 to {MAX_TABLE_POINTS} numbers")
-    # A check of the whole list is much faster than one of each value.
-    if all(type(value) is float for value in listed) and np.all(np.isfinite(listed)):
-        return listed
-    for row, value in enumerate(listed, start=1):
-        check_number(f"{key} in row {row}", value)
-    return [*map(float, listed)]
-
-
-def _check_order(x: np.ndarray) -> None:
-    """Raise ValueError if positions decrease, or if more than two points have the same position."""
-    # Rows are counted from 1 in messages.
-    before = first_true(np.diff(x) < 0.0)
-    if before is not None:
-        allowed = f">= {x[before]:.10g}, the x of the row before"
-        raise refusal(f"prestress.points x in row {before + 2}", float(x[before + 1]), allowed)
-    first_of_three = first_true(x[2:] == x[:-2])
-    if first_of_three is not None:
-        row, position = first_of_three + 3, float(x[first_of_three + 2])
-        allowed = "one x in at most 2 rows, between which the pre-stress jumps"
-        raise refusal(f"prestress.points x in row {row}", position, allowed)
-
-
-def _number_tuples(key: str, rows: Any, parts: Mapping[str, Mapping]) -> tuple[tuple, ...]:
-    """Convert rows of numbers to tuples, and check each column against its range in ``parts``."""
-    allowed = f"a list of [{', '.join(parts)}]"
-    try:
-        named = [dict(zip(parts, row, strict=True)) for row in rows]
-    except (TypeError, ValueError):
-        raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}") from None
-    for row in named:
-        for part, value in row.items():
-            check_number(f"{key} {part}", value, **parts[part])
-    return tuple(tuple(map(float, row.values())) for row in named)

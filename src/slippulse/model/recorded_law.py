@@ -18,6 +18,7 @@ def read_recorded_law(attributes: Mapping[str, Any]) -> dict[str, Any]:
         try:
             law = json.loads(text)
         except (TypeError, ValueError):
+            # The value is no JSON text, so that the check below refuses it.
             law = None
         has_name = isinstance(law, dict) and isinstance(law.get("law"), str)
         check_that(has_name, "friction", text, "a JSON object with a law and its parameters")

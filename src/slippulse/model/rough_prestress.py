@@ -5,10 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .checks import check_number
-from .prestress import MAX_TABLE_POINTS
+from .prestress_parts import MAX_TABLE_POINTS
 
-# Larger values of the field are replaced by this one. A rupture would start wherever the pre-stress
-# is 1.
+# Larger values of the field are replaced by this one, because a rupture would start wherever the
+# pre-stress is 1.
 MAX_PRESTRESS = 0.95
 
 
@@ -80,13 +80,16 @@ def rough(
     check_number("stop", stop, above=start)
     check_number("spacing", spacing, above=0.0, at_most=stop - start)
     check_number("seed", seed, integer=True, at_least=0)
-    check_number("points", (stop - start) / spacing + 1.0, at_most=MAX_TABLE_POINTS)
-    # Rounding can make a whole number of spacings slightly smaller than a whole number.
-    size = int((stop - start) / spacing + 1e-9) + 1
+    spacings = (stop - start) / spacing
+    check_number("points", spacings + 1.0, at_most=MAX_TABLE_POINTS)
+    # A whole number of spacings can be slightly too small by rounding.
+    size = int(spacings + 1e-9) + 1
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal(2 * size)
     wave_number = 2.0 * np.pi * np.fft.fftfreq(2 * size, spacing)
     amplitude = (1.0 + (wave_number * correlation_length) ** 2) ** (-0.5 * (hurst + 0.5))
+    # The noise has variance 1, so the variance of the field is the mean square of the amplitudes.
     amplitude *= deviation / np.sqrt(np.mean(amplitude**2))
     field = np.fft.ifft(np.fft.fft(noise) * amplitude).real[:size]
+    # Rounding removes the last digits, in which multiples of the spacing are not exact.
     x = np.round(start + spacing * np.arange(size), 12)
     return Background(x, np.minimum(level + field, MAX_PRESTRESS))

@@ -1,4 +1,4 @@
-"""The physical parameters of one run, which are all that theory needs to know of it."""
+"""The physical parameters of one run. The theory needs to know no others."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -25,6 +25,7 @@ class Run(NamedTuple):
         return self.beta / self.dx
 
     def parameters(self) -> dict[str, Any]:
-        """Return the parameters by their names in `Scene`."""
+        """Return all parameters, including the extra terms, by their names in `Scene`."""
         values = self._asdict()
-        return values | values.pop("extra_terms")
+        extra_terms = values.pop("extra_terms")
+        return values | extra_terms

@@ -6,8 +6,8 @@ import numpy as np
 
 from .checks import as_numbers
 
-# Groups of results that a sweep may record: release and stick times ("fronts"), slip and its time
-# derivatives at the end ("fields"), and slip and slip velocity during the run ("samples").
+# Groups of results that a sweep may record. "fronts" are release and stick times, "fields" are slip
+# and its time derivatives at the end, and "samples" are slip and slip velocity during the run.
 RECORD_GROUPS = ("fronts", "fields", "samples")
 
 

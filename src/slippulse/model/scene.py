@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 from .checks import check_choice, check_kind, check_number, check_that, refusal, short_repr
 from .friction import COULOMB, Friction, friction_from
-from .prestress import Prestress, attributes_of, prestress_from
+from .prestress import BUMP_REACH_IN_WIDTHS, Prestress, attributes_of, prestress_from
 from .recorded_law import read_recorded_law
 from .release import RELEASES
 from .removed import refuse_removed_argument
@@ -36,49 +36,46 @@ CHOICES = {"boundary": BOUNDARIES, "release": RELEASES, "scheme": SCHEMES, "orde
 def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
     """Add the argument ``damping_ratio`` to the class `Scene`, as an alternative to ``beta``.
 
-    The dataclass itself has no such field. The new ``__init__`` converts the argument to ``beta``,
-    and calls the one that the dataclass has made.
+    The dataclass itself has no such field. This decorator replaces its ``__init__`` by one that
+    converts the argument to ``beta`` and then calls the original one.
     """
-    initialise_fields = scene.__init__
-    signature = inspect.signature(initialise_fields)
+    original_init = scene.__init__
+    signature = inspect.signature(original_init)
 
-    @wraps(initialise_fields)
+    @wraps(original_init)
     def initialise(
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
-        """Convert damping_ratio to beta, and call the initialiser of the dataclass."""
+        """Convert damping_ratio to beta, and call the original ``__init__``."""
         unknown_names = values.keys() - signature.parameters
         for name in unknown_names:
             refuse_removed_argument("Scene", name)
-        # The arguments by name, including those that were given by position.
+        # All arguments by name, including those that were given by position.
         bind = partial(signature.bind_partial, self, *given)
         arguments = bind(**values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
             check_number("damping_ratio", damping_ratio, at_least=0.0)
-            spacing = arguments.get("dx")
-            check_number("dx", spacing, **SCENE_NUMBERS["dx"].bounds)
-            arguments["beta"] = damping_ratio * float(spacing)  # type: ignore[arg-type]
-        initialise_fields(**arguments)
+            dx = arguments.get("dx")
+            check_number("dx", dx, **SCENE_NUMBERS["dx"].bounds)
+            arguments["beta"] = damping_ratio * float(dx)  # type: ignore[arg-type]
+        original_init(**arguments)
 
+    # Help and editors show the signature, which gets the new argument at its end.
     added = inspect.Parameter("damping_ratio", inspect.Parameter.KEYWORD_ONLY, default=None)
-    shown = signature.replace(parameters=[*signature.parameters.values(), added])
-    initialise.__signature__ = shown  # type: ignore[attr-defined]
+    new_signature = signature.replace(parameters=[*signature.parameters.values(), added])
+    initialise.__signature__ = new_signature  # type: ignore[attr-defined]
     scene.__init__ = initialise  # type: ignore[method-assign]
     return scene
 
 
 class StabilityRatios(NamedTuple):
-    """Numbers on which the stable step depends (`slippulse.model.stability`).
+    """Dimensionless numbers on which the stable step depends (see `slippulse.model.stability`)."""
 
-    They are beta/dx, the stiffness of a block times dx^2, and the largest derivative of friction by
-    slip rate, times dx.
-    """
-
-    damping_ratio: float
-    stiffness: float
-    friction_slope: float
+    damping_ratio: float  # beta/dx
+    stiffness: float  # stiffness of the leaf spring of a block, times dx^2
+    friction_slope: float  # largest derivative of friction by slip velocity, times dx
 
 
 @takes_damping_ratio
@@ -86,7 +83,7 @@ class StabilityRatios(NamedTuple):
 class Scene:
     """One rupture: the parameters of the equation, the pre-stress, the lattice and the scheme.
 
-    The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
+    On a lattice of spacing dx, a sliding block i with slip u_i and slip velocity v_i obeys
 
         dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i
                   + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2 - f_i.
@@ -94,7 +91,7 @@ class Scene:
     A block is released when its stress reaches 1, and sticks when its velocity reaches 0. The
     friction f_i is a function of v_i and of the slip since the release; it is 0 in the paper.
 
-    Source: equation (5) of the paper with the sign of its damping corrected, section II A and
+    Source: equation (5) of the paper, with the sign of its damping corrected, section II A and
     appendix B. Other laws of friction are an addition of this project.
 
     Parameters
@@ -110,10 +107,10 @@ class Scene:
     gamma : float
         Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
     beta : float, units of H times the wave speed
-        Damping, >= 0. The ratio beta/dx selects the front speed.
+        Damping, >= 0. The front speed depends on it through the ratio beta/dx.
     damping_ratio : float, optional
-        beta/dx, given by its name in place of beta. A scene keeps beta: `dataclasses.replace` with
-        another dx leaves beta as it is.
+        beta/dx, which can be given in place of beta. The scene itself stores beta, so that
+        `dataclasses.replace` with another dx leaves beta as it is.
     release : {"total", "elastic"}
         The stress that is compared with 1 includes the damping force ("total"), or excludes it
         ("elastic").
@@ -133,9 +130,9 @@ class Scene:
     resolved_blocks : int
         A pulse with fewer sliding blocks is flagged, since the error of its width is about a block.
     friction : Friction
-        Friction law of a sliding block, from the function `friction`. "fixed_step" takes any law,
-        "continuum" only "coulomb" and "linear_rate", and "localised" these two, "rate_weakening"
-        and "slip_weakening".
+        Friction law of a sliding block, made by the function `friction`. The scheme "fixed_step"
+        takes any law. "continuum" takes "coulomb" and "linear_rate". "localised" takes these two,
+        "rate_weakening" and "slip_weakening".
 
     Raises
     ------
@@ -155,7 +152,7 @@ class Scene:
     duration: float = number(
         "simulated time, in units of H divided by the wave speed", "T", above=0.0
     )
-    # The square of the smallest and of the largest spacing can still be represented.
+    # At both limits, the square of the spacing can still be represented as a float.
     dx: float = number(
         "spacing of the blocks, in units of H",
         r"\Delta x",
@@ -223,15 +220,17 @@ class Scene:
 
     def _check_profile(self) -> None:
         """Raise ValueError if the lattice does not resolve the pre-stress, or would be too long."""
-        width, allowed = self.prestress.width, f">= dx = {self.dx:g}, so that blocks resolve it"
-        check_that(width is None or width >= self.dx, "prestress.width", width, allowed)
+        peak_width = self.prestress.width
+        is_resolved = peak_width is None or peak_width >= self.dx
+        allowed = f">= dx = {self.dx:g}, so that blocks resolve it"
+        check_that(is_resolved, "prestress.width", peak_width, allowed)
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)
             reach = self.prestress.nucleation_reach
             check_number("prestress.points reach", reach, at_most=max_reach)
         for centre, _, width in self.prestress.bumps:
-            reach = abs(centre) + 4.0 * width
+            reach = abs(centre) + BUMP_REACH_IN_WIDTHS * width
             check_number("prestress.bumps reach", reach, at_most=max_reach)
 
     def _check_physics(self) -> None:
@@ -240,8 +239,8 @@ class Scene:
             check_number("gamma", self.gamma, above=0.0)
         else:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
-            absent = isinstance(self.gamma, Real) and self.gamma == 0.0
-            check_that(absent, "gamma", self.gamma, allowed)
+            is_zero = isinstance(self.gamma, Real) and self.gamma == 0.0
+            check_that(is_zero, "gamma", self.gamma, allowed)
         check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
         schemes = self.friction.schemes
         allowed = f"{' or '.join(schemes)}, with friction law {self.friction.law!r}"
@@ -249,22 +248,22 @@ class Scene:
 
     def _check_step(self) -> None:
         """Raise ValueError if the time step is unstable, or too small for the duration."""
-        bound = self.largest_stable_step
+        largest = self.largest_stable_step
         damping_ratio, stiffness, _ = self.ratios
         ratios = f"beta/dx = {damping_ratio:.4g}, stiffness dx^2 = {stiffness:.4g}"
-        if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and bound > 0.0):
+        if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and largest > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
-        # This check comes after the one above. An overflow there makes the step of a preset 0, and
-        # the message must then name its cause.
+        # Presets compute max_step from the stable step. If that overflows, max_step is 0, and the
+        # message above names the cause. This check therefore comes after it.
         check_number("max_step", self.max_step, above=0.0)
         if self.scheme != "continuum":
-            longest = MAX_STEPS * self.max_step * self.dx
-            check_number("duration", self.duration, at_most=longest)
-        if self.max_step > bound:
+            longest_duration = MAX_STEPS * self.max_step * self.dx
+            check_number("duration", self.duration, at_most=longest_duration)
+        if self.max_step > largest:
             if self.friction != COULOMB:
                 ratios += f", friction {json.dumps(self.friction.mapping())}"
-            allowed = f"<= {bound:.4g} (in units of dx), the stability bound of scheme"
+            allowed = f"<= {largest:.4g} (in units of dx), the stability bound of scheme"
             refused = f"max_step: {self.max_step!r}; allowed: {allowed} {self.scheme!r}"
             raise ValueError(f"{refused} at {ratios}")
 
@@ -285,19 +284,19 @@ class Scene:
 
     @property
     def largest_stable_step(self) -> float:
-        """Largest stable time step in units of dx."""
-        bound = largest_step(self.scheme, self.order, *self.ratios)
-        return min(bound, self.friction.traits.longest_step / self.dx)
+        """Largest time step, in units of dx, that is stable and resolves the friction law."""
+        stable = largest_step(self.scheme, self.order, *self.ratios)
+        return min(stable, self.friction.traits.longest_step / self.dx)
 
     @property
     def ratios(self) -> StabilityRatios:
-        """Numbers on which the stable step depends."""
+        """Dimensionless numbers on which the stable step depends."""
         return stability_ratios(vars(self), self.friction)
 
     def attributes(self) -> dict:
-        """Return all parameters as plain numbers and texts, as a data file has them.
+        """Return all parameters as plain numbers and texts, in the form of a data file.
 
-        `from_attributes` makes the scene again.
+        `from_attributes` makes the scene from them.
         """
         values = vars(self) | attributes_of(self.prestress)
         values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
@@ -306,23 +305,24 @@ class Scene:
 
     def _repr_html_(self) -> str:
         """Return the parameters as an HTML table, which a notebook shows."""
-        cells = ((name, escape(str(value))) for name, value in self.attributes().items())
-        rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in cells)
-        return f"<table>{rows}</table>"
+        rows = []
+        for name, value in self.attributes().items():
+            rows.append(f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>")
+        return f"<table>{''.join(rows)}</table>"
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Self:
-        """Make the scene that is described by the attributes of a file, or by a measured row.
+        """Make a scene from the attributes of a data file, or from a row of a measured table.
 
-        The attributes have the names that `attributes` returns. Older files have
+        The attributes have the names that the method `attributes` returns. Older files have
         ``rate_strengthening`` in place of ``friction``, or neither. Raises ValueError if an
         attribute is missing or not allowed.
         """
         is_mapping = hasattr(attributes, "keys")
         check_that(is_mapping, "attributes", attributes, "a mapping of names to values")
         try:
-            # Files from before the program knew an extra term do not have it.
-            values: dict[str, Any] = {**DEFAULTS_OF_EXTRA_TERMS}
+            # A file that is older than an extra term does not have it.
+            values: dict[str, Any] = dict(DEFAULTS_OF_EXTRA_TERMS)
             for name, value in attributes.items():
                 # Numbers from a netCDF file have types of numpy.
                 values[name] = value.item() if hasattr(value, "item") else value
@@ -336,9 +336,9 @@ class Scene:
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
 
 
-# The numbers of a scene in the order of its fields, and those among them that are coefficients of
-# terms that the paper's equation does not have.
+# The numbers of a scene in the order of its fields.
 SCENE_NUMBERS = definitions_of(Scene)
+# Those among them that are coefficients of terms that the paper's equation does not have.
 EXTRA_TERMS = {name: term for name, term in SCENE_NUMBERS.items() if term.extra_term}
 DEFAULTS_OF_EXTRA_TERMS = {name: term.default for name, term in EXTRA_TERMS.items()}
 # Names of the attributes that describe a simulation in a data file.
@@ -369,33 +369,38 @@ ATTRIBUTES = (
 def used_extra_terms(values: Mapping) -> dict[str, float]:
     """Return the coefficients of the extra terms that a scene or a run has.
 
-    values : parameters by name. An extra term is used if its value is not the default.
+    An extra term is used if its coefficient differs from the default value.
+
+    values : parameters of the scene or run by name
     """
-    used = {}
+    used_terms = {}
     for name, default in DEFAULTS_OF_EXTRA_TERMS.items():
         value = values.get(name, default)
         if value != default:
-            used[name] = value
-    return used
+            used_terms[name] = value
+    return used_terms
 
 
 def refuse_extra_terms(values: Mapping, condition: str) -> None:
     """Raise ValueError if an extra term is used.
 
-    values : parameters by name
-    condition : when no extra term is allowed, as the end of the message
+    values : parameters of a scene or run by name
+    condition : the end of the message, which names the condition for which no extra term is allowed
     """
     for name, value in used_extra_terms(values).items():
         raise refusal(name, value, f"{DEFAULTS_OF_EXTRA_TERMS[name]:g} {condition}")
 
 
 def gamma_without_extra_terms(attributes: Mapping) -> float:
-    """Return gamma, or NaN if a run has extra terms, which may resist slip as leaf springs do."""
+    """Return gamma of a run; NaN if it has extra terms, which may resist slip as leaf springs do.
+
+    attributes : parameters of the run by name
+    """
     return math.nan if used_extra_terms(attributes) else attributes["gamma"]
 
 
 def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
-    """Return the numbers on which the stable step depends.
+    """Return the dimensionless numbers on which the stable step depends.
 
     values : parameters of a scene by name
     """
@@ -404,7 +409,7 @@ def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
     return StabilityRatios(values["beta"] / dx, stiffness * dx**2, slope * dx)
 
 
-# Results in the attributes of a run that measurements and figures need.
+# Results among the attributes of a run that measurements and figures need.
 REQUIRED_RESULTS = ("end_time", "releases", "re_releases", "half_lattice_used", "first_stick_time")
 
 

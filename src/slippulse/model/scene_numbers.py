@@ -30,12 +30,13 @@ def number(
     extra_term: bool = False,
     **bounds: Any,
 ) -> Any:
-    """Return the dataclass field of a number.
+    """Return the dataclass field of a number, with its definition in the field's metadata.
 
+    meaning, symbol, unit : see `NumberDefinition`
     default : None for a number without a default value
     extra_term : True for the coefficient of a term that the paper's equation does not have. The
         default value leaves out the term.
-    bounds : as in `check_number`
+    bounds : allowed range, as in `check_number`
     """
     definition = NumberDefinition(meaning, symbol, unit, bounds, extra_term, default)
     field_default: Any = MISSING if default is None else default
@@ -43,6 +44,9 @@ def number(
 
 
 def definitions_of(scene: type) -> dict[str, NumberDefinition]:
-    """Return the definitions of all numbers of a dataclass by name."""
-    definitions = {item.name: item.metadata.get("definition") for item in fields(scene)}
-    return {name: definition for name, definition in definitions.items() if definition is not None}
+    """Return the definitions of all fields of a dataclass that were made by `number`, by name."""
+    definitions = {}
+    for item in fields(scene):
+        if "definition" in item.metadata:
+            definitions[item.name] = item.metadata["definition"]
+    return definitions

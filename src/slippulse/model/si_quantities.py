@@ -1,4 +1,4 @@
-"""The quantity that each number of a run or of a measured table is, and its unit in SI."""
+"""Conversion of a run's numbers to and from SI units, by the quantity that each number measures."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -19,7 +19,7 @@ UNITS = {
     "damping": "m2 s-1",
     "energy": "J m-1",
 }
-# Quantity and name of each variable of a run.
+# Quantity and description of each variable of a run.
 VARIABLES = {
     "x": ("length", "position"),
     "prestress": ("stress", "initial shear stress"),
@@ -37,7 +37,7 @@ VARIABLES = {
     "sample_velocity": ("slip_velocity", "slip velocity at the sampled times and positions"),
 }
 # Names of attributes and measured numbers, by quantity. A number that is not listed has no unit.
-_NAMES = {
+_NAMES_BY_QUANTITY = {
     "length": """
         x position width dx first_stick_position limit_position front_intercept_right
         front_intercept_left transition_length balance_distance last_release_distance
@@ -69,24 +69,26 @@ _NAMES = {
     """,
 }
 QUANTITIES = {name: quantity for name, (quantity, _) in VARIABLES.items()}
-for _quantity, _names in _NAMES.items():
+for _quantity, _names in _NAMES_BY_QUANTITY.items():
     QUANTITIES |= dict.fromkeys(_names.split(), _quantity)
-# Quantities of the numbers in each row of a profile's parts, which a data file has as JSON.
+# Quantities of the numbers in a row, for each part of a pre-stress. A data file has the parts as
+# JSON.
 PROFILE_QUANTITIES = {
     "steps": ("length", "stress"),
     "bumps": ("length", "stress_difference", "length"),
     "points": ("length", "stress"),
 }
-# A function that converts a value, or an array, of the quantity that its second argument names.
+# A function that converts its first argument, a number or an array. The second argument is the name
+# of its quantity.
 Converter = Callable[[Any, str], Any]
 
 
 def converted_run(run: Any, convert: Converter) -> Any:
     """Return the Dataset of a run with all variables and attributes converted."""
-    variables = {
-        name: (variable.dims, convert(variable.values, VARIABLES[name][0]), variable.attrs)
-        for name, variable in run.variables.items()
-    }
+    variables = {}
+    for name, variable in run.variables.items():
+        quantity, _ = VARIABLES[name]
+        variables[name] = (variable.dims, convert(variable.values, quantity), variable.attrs)
     coordinates = {name: variables.pop(name) for name in run.coords}
     converted = run.assign_coords(coordinates).assign(variables)
     converted.attrs = converted_numbers(run.attrs, convert)
@@ -94,18 +96,22 @@ def converted_run(run: Any, convert: Converter) -> Any:
 
 
 def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[str, Any]:
-    """Return numbers by name, and convert those that have a unit."""
+    """Return all numbers by name; those that have a unit are converted."""
     converted = dict(numbers)
     for name in QUANTITIES.keys() & converted.keys():
         if converted[name] is not None:
             converted[name] = convert(converted[name], QUANTITIES[name])
     if "steps_and_bumps" in converted:
-        parts = json.loads(converted["steps_and_bumps"])
-        for part, rows in parts.items():
-            if not isinstance(rows, list):
-                # A measured table has a digest in place of the points.
-                continue
-            quantities = PROFILE_QUANTITIES[part]
-            parts[part] = [[*map(convert, row, quantities)] for row in rows]
-        converted["steps_and_bumps"] = json.dumps(parts)
+        converted["steps_and_bumps"] = _converted_parts(converted["steps_and_bumps"], convert)
     return converted
+
+
+def _converted_parts(text: str, convert: Converter) -> str:
+    """Convert the steps, bumps and points of a pre-stress, which are given and returned as JSON."""
+    parts = json.loads(text)
+    for part, rows in parts.items():
+        # A measured table has a digest, which is text, in place of the points.
+        if isinstance(rows, list):
+            quantities = PROFILE_QUANTITIES[part]
+            parts[part] = [list(map(convert, row, quantities)) for row in rows]
+    return json.dumps(parts)

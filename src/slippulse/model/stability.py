@@ -2,9 +2,9 @@
 
 In a lattice of sliding blocks with leaf springs and damping, each wave (mode) evolves by itself. A
 step is stable if it amplifies no mode. For symplectic Euler this condition has a closed form. For a
-Taylor step, `_taylor_bound` computes the amplification of each mode from the step's polynomial and
-searches for the shortest step that amplifies one: it scans steps from short to long, and then
-divides the interval that contains the bound into smaller and smaller parts.
+Taylor step, `_taylor_bound` searches for the shortest step that amplifies a mode. It scans steps
+from short to long, and then divides the interval that contains the bound into smaller and smaller
+parts.
 """
 
 import math
@@ -12,9 +12,9 @@ from functools import lru_cache
 
 import numpy as np
 
-# A step may amplify a mode by at most 1 plus one of these numbers. The first allows for rounding.
-# The second is for the orders 5 and 6, whose Taylor polynomials amplify an undamped mode slightly
-# at every step size.
+# A step may amplify a mode by a factor of at most 1 plus one of these numbers. The first number
+# allows for rounding. The second is for the orders 5 and 6, whose Taylor polynomials amplify an
+# undamped mode slightly at every step size.
 ROUNDING_GROWTH = 1e-12
 WEAK_GROWTH = 1e-4
 WEAKLY_UNSTABLE_ORDERS = (5, 6)
@@ -22,8 +22,8 @@ WEAKLY_UNSTABLE_ORDERS = (5, 6)
 # bound to one per cent.
 STABILITY_MARGIN = 0.9
 # The error of a Taylor step may be this fraction of the amplitude of the fastest mode. The error of
-# front speeds is then below 1e-3 (for levels of 0.2 to 0.8 and beta/dx up to 100). The step that it
-# allows is shorter than the stable step only if damping is strong.
+# front speeds is then below 1e-3, for levels of 0.2 to 0.8 and beta/dx up to 100. This condition is
+# stricter than stability only if damping is strong.
 MAX_STEP_ERROR = 1e-2
 # The search for the bound divides the remaining interval into this many parts in each round.
 SEARCH_ROUNDS, PARTS_PER_ROUND = 5, 32
@@ -34,22 +34,30 @@ def largest_step(
 ) -> float:
     """Return the largest stable time step, in units of dx.
 
-    In these units a mode of the lattice has stiffness s + gamma dx^2 and damping rate
-    b s + alpha dx, where b = beta/dx and s lies in [0, 4]. Symplectic Euler ("fixed_step") is
-    stable for dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2) and
-    c = b + alpha dx/4. A Taylor step ("localised") expands velocity to ``order`` and slip to one
-    order more; it is stable if it amplifies no mode. The bound is infinite for "continuum", which
-    has no steps, and 0 if the polynomials overflow.
+    In these units, a mode of the lattice has stiffness s + gamma dx^2 and damping rate
+    b s + alpha dx. Here b = beta/dx, and s is between 0 for the longest mode and 4 for the
+    shortest. The bound depends on the scheme:
+
+    - "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + c^2) - c, where
+      dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4;
+    - "localised" (Taylor step of ``order`` in velocity and ``order`` + 1 in slip): the step may
+      amplify no mode; 0 if the polynomials overflow;
+    - "continuum": infinite, since there are no steps.
+
+    damping_ratio : b = beta/dx
+    gamma_dx2 : gamma dx^2
+    alpha_dx : alpha dx, where alpha is the largest derivative of friction by slip velocity
     """
     if scheme == "continuum":
         return math.inf
-    # Where alpha < 0 slip grows physically, and the step need not prevent that.
+    # If alpha is negative, slip grows physically, and the step need not prevent that.
     drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # The form sqrt(dt_c^2 + c^2) - c loses digits at large damping; this equal form does not.
         damping = damping_ratio + 0.25 * drag
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
+    # The results of `_taylor_bound` are cached, and rounded arguments find one more often.
     rounded = [float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)]
     return _taylor_bound(order, *rounded)
 
@@ -59,14 +67,17 @@ def accurate_step(
 ) -> float:
     """Return the largest Taylor step, in units of dx, with at most a given relative error.
 
-    The error is estimated by the first omitted term of the Taylor series of a mode,
-    (r dt)^(order + 1)/(order + 1)!. Here r is the largest rate at which a mode changes. For a mode
-    of stiffness k and damping rate 2c it is sqrt(k), or c + sqrt(c^2 - k) if the mode is
-    overdamped (c^2 > k).
+    The error is estimated by the first omitted term of the Taylor series of the fastest mode. This
+    term is (r dt)^(order + 1)/(order + 1)!, where r is the rate at which the mode changes. For a
+    mode of stiffness k and damping rate 2c, this rate is sqrt(k). If the mode is overdamped
+    (c^2 > k), it is c + sqrt(c^2 - k).
+
+    The other arguments are explained in `largest_step`.
     """
+    # The fastest mode has s = 4, see `largest_step`. Here frequency is sqrt(k), and half_damping c.
     frequency = math.sqrt(4.0 + gamma_dx2)
     half_damping = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
-    # This is sqrt(c^2 - k), written so that the squares do not overflow.
+    # This is sqrt(c^2 - k), or 0 if it is imaginary, written so that the squares do not overflow.
     root = math.sqrt(max(half_damping - frequency, 0.0)) * math.sqrt(half_damping + frequency)
     largest_rate = max(half_damping, frequency) + root
     return (error * math.factorial(order + 1)) ** (1.0 / (order + 1)) / largest_rate
@@ -75,7 +86,7 @@ def accurate_step(
 def choose_step(scheme: str, order: int, *ratios: float) -> float:
     """Return the longest step, in units of dx, that is accurate, and stable with a margin.
 
-    The ratios are beta/dx, gamma dx^2 and, optionally, alpha dx.
+    ratios : beta/dx, gamma dx^2 and, optionally, alpha dx (see `largest_step`)
     """
     stable = STABILITY_MARGIN * largest_step(scheme, order, *ratios)
     if scheme != "localised":
@@ -86,34 +97,54 @@ def choose_step(scheme: str, order: int, *ratios: float) -> float:
 @lru_cache(maxsize=4096)
 @np.errstate(over="ignore", invalid="ignore")
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
-    """Return the largest stable Taylor step, in units of dx; 0 if the polynomials overflow."""
-    modes = np.linspace(0.0, 4.0, 101)
-    stiffness, damping = modes + gamma_dx2, damping_ratio * modes + drag
-    # Each time derivative of a mode's slip is a linear combination of the slip and the velocity at
-    # the start of the step. An array of shape (2, modes) holds the two coefficients.
-    derivatives = [np.outer(start, np.ones_like(modes)) for start in np.eye(2)]
-    for _ in range(order):
-        derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
-    allowed = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
+    """Return the largest stable Taylor step, in units of dx; 0 if the polynomials overflow.
+
+    drag : alpha dx, not negative
+    """
+    # The numbers s of the modes, from the longest to the shortest one (see `largest_step`).
+    s = np.linspace(0.0, 4.0, 101)
+    derivatives = _mode_derivatives(
+        order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag
+    )
+    max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
 
     def are_unstable(steps: np.ndarray) -> np.ndarray:
         """Return a mask of the steps that amplify a mode by more than is allowed."""
-        largest = np.max(_amplifications(steps, np.array(derivatives)), axis=-1)
+        largest = np.max(_amplifications(steps, derivatives), axis=-1)
         # Written with ~ so that an amplification of NaN counts as unstable.
-        return ~(largest <= allowed)
+        return ~(largest <= max_amplification)
 
     # The shortest step that is tried. If it is unstable, the bound lies between 0 and this step.
-    smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
-    if smallest == 0.0:
+    shortest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
+    if shortest == 0.0:
         return 0.0
     # The longest of these steps is unstable at every order.
-    steps = np.append(0.0, np.geomspace(smallest, 8.0, 160))
+    steps = np.append(0.0, np.geomspace(shortest, 8.0, 160))
     for _ in range(SEARCH_ROUNDS):
-        # The last step is known to be unstable from the round before. It is not tested again, since
-        # rounding may make it look stable.
-        last_stable = int(np.argmax(np.append(are_unstable(steps[1:-1]), True)))
+        # The first step is stable and the last one is unstable. They are not tested again, since
+        # rounding may make the last one look stable.
+        is_unstable = np.append(are_unstable(steps[1:-1]), True)
+        last_stable = int(np.argmax(is_unstable))
         steps = np.linspace(steps[last_stable], steps[last_stable + 1], PARTS_PER_ROUND + 1)
     return float(steps[0])
+
+
+def _mode_derivatives(order: int, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """Return the time derivatives of the slip of each mode, in an array (order + 2, 2, modes).
+
+    Each derivative is a linear combination of the slip and the velocity at the start of a step. The
+    second axis of the array holds the two coefficients.
+
+    stiffness, damping : stiffness and damping rate of each mode
+    """
+    ones, zeros = np.ones_like(stiffness), np.zeros_like(stiffness)
+    slip, velocity = np.array([ones, zeros]), np.array([zeros, ones])
+    derivatives = [slip, velocity]
+    # A mode obeys d2u/dt2 = -stiffness u - damping du/dt. Each derivative of this equation gives
+    # the next derivative of u from the two before it.
+    for _ in range(order):
+        derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
+    return np.array(derivatives)
 
 
 def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
@@ -122,20 +153,21 @@ def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
     A step maps the slip and the velocity of a mode to new ones by a matrix of 2 x 2 numbers. Its
     larger eigenvalue, in absolute value, is the amplification.
 
-    derivatives : array of shape (orders, 2, modes), see `_taylor_bound`
+    derivatives : array of shape (orders, 2, modes), see `_mode_derivatives`
     """
     degrees = np.arange(len(derivatives))
     factorials = [math.factorial(k) for k in degrees]
-    # The terms dt^k/k! of the Taylor series, for each step.
-    powers = np.asarray(steps, dtype=float)[:, None] ** degrees / factorials
-    slip = np.tensordot(powers, derivatives, 1)
-    velocity = np.tensordot(powers[:, :-1], derivatives[1:], 1)
+    # The factors dt^k/k! of the Taylor series, for each step.
+    factors = np.asarray(steps, dtype=float)[:, None] ** degrees / factorials
+    # The two rows of the matrix. Index 0 is the coefficient of the old slip, 1 of the old velocity.
+    slip = np.tensordot(factors, derivatives, 1)
+    velocity = np.tensordot(factors[:, :-1], derivatives[1:], 1)
     half_trace = 0.5 * (slip[:, 0] + velocity[:, 1])
     determinant = slip[:, 0] * velocity[:, 1] - slip[:, 1] * velocity[:, 0]
     # The discriminant equals half_trace^2 - determinant. That form would lose digits for a mode
     # that feels drag but no springs.
     discriminant = (0.5 * (slip[:, 0] - velocity[:, 1])) ** 2 + slip[:, 1] * velocity[:, 0]
-    # If it is negative, the two eigenvalues are complex and have equal absolute values.
-    real = np.abs(half_trace) + np.sqrt(np.maximum(discriminant, 0.0))
-    complex_pair = np.sqrt(np.maximum(determinant, 0.0))
-    return np.where(discriminant >= 0.0, real, complex_pair)
+    larger_real_eigenvalue = np.abs(half_trace) + np.sqrt(np.maximum(discriminant, 0.0))
+    # Two complex eigenvalues have the same absolute value.
+    complex_eigenvalue = np.sqrt(np.maximum(determinant, 0.0))
+    return np.where(discriminant >= 0.0, larger_real_eigenvalue, complex_eigenvalue)

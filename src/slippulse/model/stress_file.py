@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 from .checks import short_repr
-from .prestress import MAX_TABLE_POINTS
+from .prestress_parts import MAX_TABLE_POINTS
 
 # Default names of the columns, in upper or lower case.
 POSITION_NAMES = ("x", "position", "distance")
@@ -123,35 +123,40 @@ def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTab
 def _csv_rows(content: bytes) -> list[Row]:
     """Split a CSV file into rows, without blank lines and comments."""
     lines = content.decode("utf-8-sig").splitlines()
-    numbered = [
-        (number, line)
-        for number, line in enumerate(lines, start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    if not numbered:
+    numbered_lines = []
+    for number, line in enumerate(lines, start=1):
+        is_comment = line.lstrip().startswith("#")
+        if line.strip() and not is_comment:
+            numbered_lines.append((number, line))
+    if not numbered_lines:
         raise StressFileError("empty; allowed: a row of names, and rows of numbers below")
     # Names and units are two rows in addition to the rows of numbers.
-    if len(numbered) > MAX_TABLE_POINTS + 2:
-        number = numbered[MAX_TABLE_POINTS + 2][0]
+    max_lines = MAX_TABLE_POINTS + 2
+    if len(numbered_lines) > max_lines:
+        number, _ = numbered_lines[max_lines]
         raise StressFileError(
             f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
         )
-    first_line = numbered[0][1]
+    _, first_line = numbered_lines[0]
     delimiter = next((sign for sign in DELIMITERS if sign in first_line), None)
-    return [Row(number, _cells(line, delimiter)) for number, line in numbered]
+    return [Row(number, _cells(line, delimiter)) for number, line in numbered_lines]
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:
-    """Split a line into cells, at spaces if the delimiter is None."""
+    """Split a line into cells; None as the delimiter stands for spaces."""
     return [cell.strip().strip('"') for cell in line.split(delimiter)]
 
 
 def _find_column(
     header: Sequence[str], key: str, given: str | None, default_names: Sequence[str]
 ) -> int:
-    """Return the index of the column with the given name, or with the first default name found.
+    """Return the index of a column by its name, in upper or lower case.
 
-    key : argument of the caller that has the given name, for the message of StressFileError
+    Raises StressFileError if there is no such column.
+
+    header : names of all columns
+    key : name of the argument with which a user can give the name of the column, for the message
+    given : the name of the column; if it is None, the first default name that occurs is used
     """
     names = default_names if given is None else (given,)
     lower_case = [cell.lower() for cell in header]
@@ -185,7 +190,10 @@ def _cell(row: Row, column: int) -> str:
 
 
 def _number(row: Row, names: Sequence[str], column: int) -> float:
-    """Return the number in a cell, or raise StressFileError if it is not a finite number."""
+    """Return the number in a cell, or raise StressFileError if it is not a finite number.
+
+    names : names of all columns, for the message
+    """
     text = _cell(row, column)
     value = float(text) if NUMBER_PATTERN.fullmatch(text) else math.nan
     if not math.isfinite(value):
@@ -198,20 +206,23 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
 def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
     """Raise StressFileError if there are fewer than two rows, or if positions are not in order.
 
-    ``rows`` are the row numbers in the file, for the message. Positions increase from row to row;
-    two rows, but not three, may have the same position, at which the pre-stress jumps.
+    Positions increase from row to row. Two rows, but not three, may have the same position, at
+    which the pre-stress jumps.
+
+    rows : numbers of the rows in the file, for the message
+    x : positions
     """
     if len(rows) < 2:
         count = "one row" if rows else "no row"
         raise StressFileError(f"{count} of numbers; allowed: at least 2, from left to right")
     for index in range(1, len(rows)):
-        before = x[index - 1]
-        if x[index] < before:
+        position, before = x[index], x[index - 1]
+        if position < before:
             allowed = f">= {before:.10g}, the position in the row before"
-            raise StressFileError(f"row {rows[index]}: {x[index]:.10g}; allowed: {allowed}")
-        if index > 1 and x[index] == before == x[index - 2]:
+            raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
+        if index > 1 and position == before == x[index - 2]:
             allowed = "a position in at most 2 rows, between which the pre-stress jumps"
-            raise StressFileError(f"row {rows[index]}: {x[index]:.10g}; allowed: {allowed}")
+            raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
 
 
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:

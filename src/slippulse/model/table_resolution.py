@@ -7,33 +7,38 @@ from .prestress import Prestress
 
 # The loss of a point is the amount by which its value lies outside the range of the pre-stress at
 # the neighbouring blocks. It is 0 for the points of a ramp or a jump. A table is refused if its
-# root-mean-square loss exceeds both of these limits: the first is in units of the stress drop, the
-# second in units of the table's standard deviation. Rough profiles pass if the block spacing is at
-# most twice the spacing of their points; uncorrelated noise does not pass.
+# root-mean-square loss exceeds both of these limits. The first limit is in units of the stress
+# drop, the second in units of the table's standard deviation. Rough profiles pass if the block
+# spacing is at most twice the spacing of their points; uncorrelated noise does not pass.
 MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
-    """Raise ValueError if the blocks do not resolve the table, or miss a point that reaches 1."""
+    """Raise ValueError if the blocks do not resolve the table, or miss a point that reaches 1.
+
+    dx : spacing of the blocks, which lie at its multiples
+    """
     x, tau = prestress.point_arrays
     in_spacings = x / dx
-    # For each point: the block on its left, the nearest one, and the block on its right.
+    # Positions of three blocks for each point: on its left, nearest to it, and on its right.
     left, right = np.ceil(in_spacings) - 1.0, np.floor(in_spacings) + 1.0
     neighbours = dx * np.array([left, np.round(in_spacings), right])
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
-    missed = first_true((tau >= 1.0) & ~is_released)
-    if missed is not None:
+    missed_point = first_true((tau >= 1.0) & ~is_released)
+    if missed_point is not None:
         allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
-        raise refusal(f"prestress.points {tau[missed]:g} at x", float(x[missed]), allowed)
+        raise refusal(
+            f"prestress.points {tau[missed_point]:g} at x", float(x[missed_point]), allowed
+        )
     at_blocks = prestress.level(neighbours)
-    above = np.maximum(tau - at_blocks.max(axis=0), 0.0)
-    below = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
-    losses = above + below
+    above_blocks = np.maximum(tau - at_blocks.max(axis=0), 0.0)
+    below_blocks = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
+    losses = above_blocks + below_blocks
     rms_loss = float(np.sqrt(np.mean(losses**2)))
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
-        worst = int(np.argmax(losses))
-        key = f"prestress.points: the blocks do not resolve the stress {tau[worst]:g} at x"
+        worst_point = int(np.argmax(losses))
+        key = f"prestress.points: the blocks do not resolve the stress {tau[worst_point]:g} at x"
         allowed = (
             f"a table that blocks of spacing dx = {dx:g} resolve; use a smaller dx or fewer points"
         )
-        raise refusal(key, float(x[worst]), allowed)
+        raise refusal(key, float(x[worst_point]), allowed)

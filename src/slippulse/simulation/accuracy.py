@@ -1,13 +1,13 @@
 """Spacing, step and order that keep the numbers of a scene within a largest relative error.
 
-In the continuum limit, at fixed beta/dx, the relative error of each number is a constant times dx
-divided by a length of the scene (or the square of this ratio). Solving for dx gives one spacing for
-each number, and `settings_for` returns the smallest of them.
+As dx tends to 0 at fixed beta/dx, each measured number tends to a limit. Its relative error is a
+constant times dx divided by a length of the scene, or times the square of this ratio. Solving for
+dx gives one spacing for each number, and `settings_for` returns the smallest of them.
 
 The constants are defined below. If no derivation is given, a constant is an upper bound that was
-measured in runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and gamma W^2 =
-0.001 to 64 under a displacement boundary, and levels of -0.1 to -10 under a stress boundary.
-`slippulse.measurement.promise` lists the numbers that are covered.
+measured in runs at two or three spacings. Under a displacement boundary, these runs had tau_0 = 0.1
+to 0.9, beta/dx = 0 to 1 and gamma W^2 = 0.001 to 64. Under a stress boundary, they had levels of
+-0.1 to -10. `slippulse.measurement.promise` lists the numbers that are covered.
 """
 
 import math
@@ -29,8 +29,8 @@ from ..theory.front_speeds import front_speed
 # this error.
 MAX_DAMPING_RATIO = 1.0
 # Fraction of the promised error that the spacing may use. The step uses a part of the rest. The
-# other part is for the scatter of a grid study, which with factors of 1.5 and 2 finds up to a third
-# more than the true error.
+# other part is for the scatter of a grid study. On lattices that are 1.5 and 2 times coarser, such
+# a study finds up to a third more than the true error.
 SPACING_FRACTION = 0.7
 # Smallest number of blocks across the narrowest length. A lattice four times coarser still has 8.
 MIN_BLOCKS = 32
@@ -38,30 +38,32 @@ MIN_BLOCKS = 32
 # 4e-6 with them at any spacing, and of 2e-5 with the next cheaper pair.
 LARGEST_STEP, TAYLOR_ORDER = 1.0, 8
 
-# Slip and peak velocity of a pulse. Damping makes a boundary layer of (beta/dx) v/(v^2 - 1) blocks,
-# where v is the front speed. It reduces slip and peak velocity by pi^2/4 times its fraction of the
-# pulse width (steady pulse to first order in beta).
+# Error of the slip and the peak velocity of a pulse. Damping makes a boundary layer of
+# (beta/dx) v/(v^2 - 1) blocks, where v is the front speed. It reduces slip and peak velocity by
+# pi^2/4 times its fraction of the pulse width (steady pulse to first order in beta).
 PULSE_PER_LAYER = 0.25 * math.pi**2
-# Pulse width. The front itself covers at most 1/(2 tau_0 v^2) blocks of it.
+# Error of the pulse width. The front itself covers at most 1/(2 tau_0 v^2) blocks of it.
 PULSE_PER_FRONT = 0.5
-# Front speed with leaf springs, of second order in dx divided by the pulse width: a transient, and
-# a part in proportion to the boundary layer times v.
+# Error of the front speed with leaf springs, in proportion to (dx divided by the pulse width)^2.
+# The first constant is for a transient. The second is multiplied by v and by the thickness of the
+# boundary layer in blocks.
 SPEED_ERROR, SPEED_ERROR_PER_LAYER = 7.0, 4.0
-# Front speed without leaf springs, in proportion to dx divided by the width of the Gaussian.
+# Error of the front speed without leaf springs, in proportion to dx divided by the width of the
+# Gaussian.
 FREE_SPEED_ERROR = 0.25
 
-# T_trans and L_trans under a displacement boundary: the blocks of the nucleation, and a front that
-# is slow at first.
+# Error of T_trans and L_trans under a displacement boundary. The first constant is for the blocks
+# of the nucleation, and the second for a front that is slow at first.
 NUCLEATION_ERROR, SLOW_FRONT_ERROR = 0.1, 0.2
-# T_trans and slip velocity under a stress boundary with level 0 on the right, in proportion to dx
-# divided by the distance to the position on the left where the pre-stress falls to 0. The first
-# constant holds without damping, and beta/dx times the second is added.
+# Error of T_trans and of the slip velocity under a stress boundary with level 0 on the right. It is
+# proportional to dx divided by the distance to the position on the left where the pre-stress falls
+# to 0. The first constant holds without damping, and beta/dx times the second is added.
 TRANSITION_ERROR, TRANSITION_ERROR_DAMPED = 2.2, 1.0
 VELOCITY_ERROR, VELOCITY_ERROR_DAMPED = 0.6, 0.6
 
 # Number of levels that represent a table of pre-stress.
 TABLE_LEVELS = 9
-# A front that crosses less pre-stress is not covered (see `slippulse.measurement.promise`).
+# Fronts in lower pre-stress than this are not covered (see `slippulse.measurement.promise`).
 LOWEST_PRESTRESS = 0.05
 
 # Each front speed takes milliseconds, and many runs of a sweep have the same one.
@@ -73,7 +75,7 @@ class Demand(NamedTuple):
 
     error: float  # largest relative error
     levels: list[float]  # of the pre-stress
-    peak_width: float  # of the narrowest Gaussian
+    peak_width: float  # of the narrowest Gaussian, or of the nucleation in a table
     gamma: float
     damping_ratio: float
     release: str
@@ -138,15 +140,12 @@ def settings_for(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=MAX_DAMPING_RATIO)
     # Convert numbers of other types, such as integers or NumPy scalars.
     gamma, damping_ratio = float(gamma), float(damping_ratio)
-    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     peak_width = prestress.narrowest
     if prestress.points:
-        levels += _levels_of_table(prestress)
         peak_width = min(peak_width, _nucleation_width(prestress))
-    error = SPACING_FRACTION * float(accuracy)
     demand = Demand(
-        error=error,
-        levels=levels,
+        error=SPACING_FRACTION * float(accuracy),
+        levels=_levels(prestress),
         peak_width=peak_width,
         gamma=gamma,
         damping_ratio=damping_ratio,
@@ -157,6 +156,7 @@ def settings_for(
         spacings = _spacings_with_springs(demand)
     else:
         spacings = _spacings_without_springs(demand, prestress)
+    # The spacing is rounded to three digits.
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = min(LARGEST_STEP, choose_step("localised", TAYLOR_ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
@@ -166,8 +166,16 @@ def settings_for(
     return settings
 
 
+def _levels(prestress: Prestress) -> list[float]:
+    """Return the levels of a pre-stress on both sides, of its steps, and some of its table."""
+    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
+    if prestress.points:
+        levels += _levels_of_table(prestress)
+    return levels
+
+
 def _levels_of_table(prestress: Prestress) -> list[float]:
-    """Return levels from the lowest to the highest pre-stress of a table that is covered."""
+    """Return some levels from the lowest to the highest pre-stress of a table that is covered."""
     tau = np.array([tau for _, tau in prestress.points])
     # Lower pre-stress is not covered by the promise, and at 1 there is no front.
     covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
@@ -183,11 +191,11 @@ def _nucleation_width(prestress: Prestress) -> float:
     has fallen to exp(-1/2) of its maximum.
     """
     x, tau = prestress.point_arrays
-    start, far_level = int(np.argmax(tau)), max(prestress.left, prestress.right)
-    if tau[start] < 1.0:
+    highest_point, far_level = int(np.argmax(tau)), max(prestress.left, prestress.right)
+    if tau[highest_point] < 1.0:
         return math.inf
-    has_fallen = tau <= far_level + math.exp(-0.5) * (tau[start] - far_level)
-    distances = np.abs(x[has_fallen] - x[start])
+    has_fallen = tau <= far_level + math.exp(-0.5) * (tau[highest_point] - far_level)
+    distances = np.abs(x[has_fallen] - x[highest_point])
     return float(np.min(distances[distances > 0.0], initial=math.inf))
 
 
@@ -196,57 +204,72 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 
     Each error is a constant times a power of dx, and is solved for dx.
     """
-    nucleation = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
+    nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
     # The part of the errors of T_trans and L_trans that the nucleation causes, divided by dx.
-    start_error = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation
-    spacings = [nucleation / MIN_BLOCKS, demand.error / start_error]
+    nucleation_error = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
+    spacings = [nucleation_length / MIN_BLOCKS, demand.error / nucleation_error]
     for level in demand.levels:
-        if level <= 0.0:
-            continue
-        speed = cached_front_speed(level, demand.damping_ratio, demand.release)
-        # In the limit dx -> 0, damping affects the pulse only through the front speed.
-        width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
-        spacings.append(width / MIN_BLOCKS)
-        # The thickness of the boundary layer that damping makes at the front, in blocks.
-        layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
-        # The error of the front speed is this constant times (dx/width)^2.
-        speed_error = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
-        spacings.append(width * math.sqrt(demand.error / speed_error))
-        # The errors of T_trans and L_trans are this constant times dx.
-        transition_error = start_error + SLOW_FRONT_ERROR / width
-        spacings.append(demand.error / transition_error)
-        if demand.fields:
-            # The errors of pulse width, slip and peak velocity are this constant times dx/width.
-            pulse_error = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
-            spacings.append(demand.error * width / pulse_error)
+        if level > 0.0:
+            spacings += _spacings_at_level(demand, level, nucleation_error)
+    return spacings
+
+
+def _spacings_at_level(demand: Demand, level: float, nucleation_error: float) -> list[float]:
+    """Return the largest spacing that each quantity of a front and pulse at a level allows.
+
+    nucleation_error : error of T_trans and L_trans because of the nucleation, divided by dx
+    """
+    speed = cached_front_speed(level, demand.damping_ratio, demand.release)
+    # In the limit dx -> 0, damping affects the pulse only through the front speed.
+    width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
+    # The thickness of the boundary layer that damping makes at the front, in blocks.
+    layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
+    # The error of the front speed is this constant times (dx/width)^2.
+    speed_error = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
+    # The errors of T_trans and L_trans are this constant times dx.
+    transition_error = nucleation_error + SLOW_FRONT_ERROR / width
+    spacings = [
+        width / MIN_BLOCKS,
+        width * math.sqrt(demand.error / speed_error),
+        demand.error / transition_error,
+    ]
+    if demand.fields:
+        # The errors of pulse width, slip and peak velocity are this constant times dx/width.
+        pulse_error = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
+        spacings.append(demand.error * width / pulse_error)
     return spacings
 
 
 def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
-    """Return the distances from the nucleation at which the pre-stress falls to 0, if it does."""
+    """Return the distances from the nucleation at which the pre-stress falls to 0, if it does.
+
+    levels : levels of the pre-stress, towards which its Gaussian falls
+    """
     if prestress.points:
         x, tau = prestress.point_arrays
-        start = 0.0 if prestress.width is not None else x[np.argmax(tau)]
-        negative = np.abs(x[tau < 0.0] - start)
-        return [float(np.min(negative))] if negative.size else []
+        nucleation = 0.0 if prestress.width is not None else x[np.argmax(tau)]
+        distances = np.abs(x[tau < 0.0] - nucleation)
+        return [float(np.min(distances))] if distances.size else []
     width, peak = prestress.width or math.inf, prestress.peak
-    # The Gaussian falls to 0 towards each negative level.
-    below_zero = [level for level in levels if level < 0.0 < peak]
-    return [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in below_zero]
+    # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.
+    negative_levels = [level for level in levels if level < 0.0 < peak]
+    return [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative_levels]
 
 
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
-    """Return the largest spacing for each number of a scene under a stress boundary."""
-    error, ratio = demand.error, demand.damping_ratio
+    """Return the largest spacing that each measured quantity allows, under a stress boundary."""
+    error, damping_ratio = demand.error, demand.damping_ratio
     distances = _distances_to_zero(demand.levels, prestress)
     spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
-    if prestress.left < 0.0 and prestress.right == 0.0 and distances:
+    stops_on_left = prestress.left < 0.0 and prestress.right == 0.0
+    if stops_on_left and distances:
+        # The errors of T_trans and of slip velocity are these constants times dx/distance.
         if not prestress.steps:
-            constant = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * ratio
-            spacings.append(error * distances[0] / constant)
+            transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
+            spacings.append(error * distances[0] / transition_error)
         if demand.fields:
-            constant = VELOCITY_ERROR + VELOCITY_ERROR_DAMPED * ratio
-            spacings.append(error * distances[0] / constant)
+            velocity_error = VELOCITY_ERROR + VELOCITY_ERROR_DAMPED * damping_ratio
+            spacings.append(error * distances[0] / velocity_error)
     return spacings

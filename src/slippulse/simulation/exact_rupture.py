@@ -8,10 +8,10 @@ def exact_rupture(scene: Scene) -> Rupture:
     """Return the exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
     refuse_extra_terms(vars(scene), "for the exact rupture, which has no extra terms")
     return Rupture(
-        scene.prestress,
-        scene.gamma,
-        scene.damping_ratio,
-        scene.release,
-        scene.duration,
+        prestress=scene.prestress,
+        gamma=scene.gamma,
+        damping_ratio=scene.damping_ratio,
+        release=scene.release,
+        duration=scene.duration,
         rate_strengthening=scene.friction.traits.linear_rate,
     )

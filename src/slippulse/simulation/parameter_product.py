@@ -18,7 +18,8 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from .simulate import run_sweep
 
-# Parameters of the pre-stress that may be lists of values, and others that are one value each.
+# Parameters of the pre-stress that may be lists of values, and others that are the same in each
+# run.
 LISTED_PROFILE_NAMES = ("left", "right", "width", "peak")
 SINGLE_PROFILE_NAMES = ("steps", "bumps")
 SCENE_NAMES = (*(field.name for field in fields(Scene)), "damping_ratio")
@@ -43,15 +44,15 @@ def sweep(
         As in `run_sweep`.
     **parameters
         Parameters of `Scene`, each a value or a list of values. Instead of ``prestress``, the
-        parameters of `Prestress` can be given: ``left``, ``right`` (by default equal to ``left``),
-        ``width`` and ``peak``, each a value or a list, and ``steps`` and ``bumps``, which are the
-        same in each run.
+        parameters of `Prestress` can be given. ``left``, ``right``, ``width`` and ``peak`` are
+        values or lists, and ``right`` is equal to ``left`` by default. ``steps`` and ``bumps`` are
+        the same in each run.
 
     Returns
     -------
     xarray.Dataset
-        The same as from `run_sweep`. The last list varies fastest. ``sel`` selects runs by their
-        parameters, and `as_grid` turns the lists into axes.
+        A sweep as `run_sweep` returns it. From run to run, the last list varies fastest. ``sel``
+        selects runs by their parameters, and `as_grid` turns the lists into axes.
 
     Raises
     ------
@@ -87,25 +88,31 @@ def sweep(
 def _values(name: str, value: Any) -> list:
     """Return the values of a parameter as a list, with one value if the parameter is no list."""
     is_sequence = isinstance(value, list | tuple | range | np.ndarray)
-    is_list = is_sequence and name not in SINGLE_PROFILE_NAMES
+    if not is_sequence or name in SINGLE_PROFILE_NAMES:
+        return [value]
     # Elements of an array are converted to Python numbers.
-    values = value.tolist() if isinstance(value, np.ndarray) else value
-    values = list(values) if is_list else [value]
+    values = value.tolist() if isinstance(value, np.ndarray) else list(value)
     check_that(len(values) > 0, name, value, "a value, or a list of at least one")
     return values
 
 
 def _scenes(lists: dict[str, list]) -> Iterator[Scene]:
-    """Yield a scene for each combination of values."""
-    profile = [name for name in lists if name in PROFILE_NAMES]
-    has_both = "prestress" in lists and bool(profile)
-    check_that(not has_both, "prestress", profile, "prestress, or left, right, width and peak")
+    """Yield a scene for each combination of values.
+
+    lists : the values of each parameter by its name
+    """
+    profile_names = [name for name in lists if name in PROFILE_NAMES]
+    has_both = "prestress" in lists and bool(profile_names)
+    check_that(
+        not has_both, "prestress", profile_names, "prestress, or left, right, width and peak"
+    )
     for combination in product(*lists.values()):
         values = dict(zip(lists, combination, strict=True))
-        parts = {name: values.pop(name) for name in profile}
-        if profile:
-            check_that("left" in parts, "left", None, "a level, or a list of levels")
-            values["prestress"] = Prestress(**{"right": parts["left"]} | parts)
+        if profile_names:
+            profile = {name: values.pop(name) for name in profile_names}
+            check_that("left" in profile, "left", None, "a level, or a list of levels")
+            profile.setdefault("right", profile["left"])
+            values["prestress"] = Prestress(**profile)
         for name in ("boundary", "prestress", "duration", "dx"):
             check_that(name in values, name, None, "a value, which every scene needs")
         yield Scene(**values)

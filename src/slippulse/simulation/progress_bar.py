@@ -9,19 +9,21 @@ BAR_FORMAT = "{percentage:3.0f}% |{bar}| {elapsed}, {remaining} left"
 def make_bar(total: float = 1.0) -> Callable[..., None] | None:
     """Return a function that draws a bar when it is called with the amount done, up to a total.
 
-    The bar appears on standard error, or as a widget in a notebook. None if tqdm is not installed.
+    The bar appears on standard error, or as a widget in a notebook. Return None if tqdm is not
+    installed.
     """
     try:
         from tqdm.auto import tqdm
     except ImportError:
         print("progress: no bar is drawn, since tqdm is not installed", file=sys.stderr)
         return None
-    drawn = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=BAR_FORMAT)
+    bar = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=BAR_FORMAT)
 
     def draw(done: float, _: float = total) -> None:
-        """Draw the bar with the amount done; a sweep also passes the total, which is not used."""
-        drawn.update(done - drawn.n)
+        """Draw the bar with the amount done. A sweep also passes the total, which is not used."""
+        # tqdm takes the amount done since the last time.
+        bar.update(done - bar.n)
         if done >= total:
-            drawn.close()
+            bar.close()
 
     return draw

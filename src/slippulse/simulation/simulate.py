@@ -41,22 +41,24 @@ def simulate(
     scene : Scene
     samples : Samples, optional
     progress : callable or bool, optional
-        Called with the fraction of the duration done; True draws a bar with the time that is left.
+        A function that is called with the fraction of the duration done. True draws a bar with the
+        time that is left.
     strict : bool
         Raise UnresolvedRun instead of returning a flagged run.
 
     Returns
     -------
     xarray.Dataset
-        Variables with the dimension x: prestress, release_time, stick_time, and slip,
-        slip_velocity and slip_acceleration at the end. Attributes: every parameter of the scene,
-        counters, the energy balance, run_flags ("" or names separated by commas) and versions.
+        The variables have the dimension x: prestress, release_time, stick_time, and slip,
+        slip_velocity and slip_acceleration at the end. The attributes are every parameter of the
+        scene, counters, the energy balance, run_flags ("" or names separated by commas) and
+        versions.
 
     Raises
     ------
     ValueError
-        If an argument has another type, if a sample is later than the end, or if the run may take
-        days or more memory than a small machine has. `run_sweep` accepts any cost.
+        If an argument has another type, or if a sample is later than the end. Also if the run may
+        take days, or more memory than a small machine has; `run_sweep` accepts any cost.
     UnstableRun
         If slip velocity is not finite or larger than the pre-stress can drive.
     UnresolvedRun
@@ -70,7 +72,7 @@ def simulate(
     is_valid = isinstance(progress, bool | None) or callable(progress)
     check_that(is_valid, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
-    _check_within(samples, scene.duration)
+    _check_sample_times(samples, scene.duration)
     exceeded = bound_cost(scene, samples).exceeded(remedy="use run_sweep, which takes any scene")
     # The exact solution itself refuses scenes that are too large, and names the key.
     if exceeded and scene.scheme != "continuum":
@@ -78,16 +80,19 @@ def simulate(
     if isinstance(progress, bool):
         progress = make_bar() if progress else None
     with announced_compilation():
-        data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
-    if strict and data.attrs["run_flags"]:
-        raise UnresolvedRun(
-            f"the run is flagged: {data.attrs['run_flags']}{_flag_details(scene, data.attrs)}"
-        )
-    return data
+        solution = _solve(scene, samples, progress)
+    run = described(recorded(scene, samples, solution).dataset())
+    if strict and run.attrs["run_flags"]:
+        details = _flag_details(scene, run.attrs)
+        raise UnresolvedRun(f"the run is flagged: {run.attrs['run_flags']}{details}")
+    return run
 
 
 def _flag_details(scene: Scene, numbers: dict) -> str:
-    """Return the numbers on which the flags of a run depend, in parentheses."""
+    """Return the numbers on which the flags of a run depend, as text in parentheses.
+
+    numbers : the attributes of the run
+    """
     if scene.scheme == "continuum":
         return f" ({numbers['limit_reason']})" if numbers["limit_reason"] else ""
     return (
@@ -115,22 +120,24 @@ def run_sweep(
     samples : sequence of Samples, optional
         One for each scene, all with the same numbers of times and positions.
     record : sequence of {"fronts", "fields", "samples"}
-        Fields to keep: "fronts" are release and stick times, "fields" are slip, slip velocity and
-        acceleration at the end, and "samples" are the recorded samples.
+        Groups of results to keep. "fronts" are release and stick times. "fields" are slip, slip
+        velocity and acceleration at the end. "samples" are the recorded samples.
     threads : int, optional
         Number of scenes that are solved at a time, from 1 to 1024. The default is the number of
         cores that this process may use. The result does not depend on it.
     progress : callable or bool, optional
-        Called with (number done, number of scenes) after each scene; for a single scene, with the
-        fraction done and 1. True draws a bar with the time that is left.
+        A function that is called with (number done, number of scenes) after each scene. For a
+        single scene, it is called with the fraction done and 1 during the run. True draws a bar
+        with the time that is left.
 
     Returns
     -------
     xarray.Dataset
-        Numbers have the dimension ``point``, with the parameters as coordinates: ``sel`` selects
-        runs by any of them, and `as_grid` turns the parameters of a full product into axes. Arrays
-        of blocks have the dimension ``block`` and are contiguous ragged arrays: the ``row_size``
-        blocks of a run begin at ``row_start``. Samples have the dimensions (point, time, position).
+        Numbers have the dimension ``point``, with one value for each run. The parameters are
+        coordinates: ``sel`` selects runs by any of them, and `as_grid` turns them into axes if
+        there is a run for each combination. Fields have the dimension ``block``, along which the
+        runs follow one another: the ``row_size`` blocks of a run begin at ``row_start``. Samples
+        have the dimensions (point, time, position).
 
     Raises
     ------
@@ -150,7 +157,7 @@ def run_sweep(
     allowed = f"a list of {len(scenes)} Samples, one for each scene, or None"
     check_that(is_valid, "samples", samples, allowed)
     for scene, samples_of_scene in zip(scenes, samples, strict=True):
-        _check_within(samples_of_scene, scene.duration)
+        _check_sample_times(samples_of_scene, scene.duration)
     _check_record(record, samples)
     threads = _usable_cores() if threads is None else threads
     check_number("threads", threads, integer=True, at_least=1, at_most=1024)
@@ -180,30 +187,33 @@ def _usable_cores() -> int:
     return os.cpu_count() or 1
 
 
-def _check_within(samples: Samples | None, duration: float) -> None:
+def _check_sample_times(samples: Samples | None, duration: float) -> None:
     """Raise ValueError if a sample is later than the end of the scene."""
     if samples is not None:
         check_kind("samples", samples, Samples)
-        last = float(samples.times.max(initial=0.0))
+        last_time = float(samples.times.max(initial=0.0))
         allowed = f"up to the duration of the scene, {duration:g}"
-        check_that(last <= duration, "samples.times", last, allowed)
+        check_that(last_time <= duration, "samples.times", last_time, allowed)
 
 
 def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:
-    """Raise ValueError if the fields to keep are unknown, or if their samples are missing."""
+    """Raise ValueError if the groups to record are unknown, or if their samples are missing.
+
+    record : the groups, of RECORD_GROUPS
+    samples : the samples of each scene
+    """
     is_list = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
     is_valid = is_list and all(isinstance(word, str) and word in RECORD_GROUPS for word in record)
     check_that(is_valid, "record", record, f"a list of {', '.join(RECORD_GROUPS)}")
     if "samples" not in record:
         return
-    given = [item for item in samples if item is not None]
-    if len(given) < len(samples):
+    given_samples = [item for item in samples if item is not None]
+    if len(given_samples) < len(samples):
         allowed = "Samples for each scene, the second argument"
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
-    shapes = {(item.times.shape, item.positions.shape) for item in given}
-    check_that(
-        len(shapes) == 1, "samples", samples, "equal numbers of times and positions for all scenes"
-    )
+    shapes = {(item.times.shape, item.positions.shape) for item in given_samples}
+    allowed = "equal numbers of times and positions for all scenes"
+    check_that(len(shapes) == 1, "samples", samples, allowed)
 
 
 def _solve(

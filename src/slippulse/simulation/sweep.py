@@ -1,4 +1,4 @@
-"""Solutions as Datasets: of one scene, or of many scenes that are solved in threads and joined."""
+"""Solution of one scene, or of many scenes in threads, returned in the form of a Dataset."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -13,6 +13,8 @@ from ..model.scene import Scene
 from ..solver.solution import Solution, solve_on_lattice
 from .flags import flags_of
 
+# A function that solves a scene with its samples, and calls its last argument with the fraction
+# done.
 Solver = Callable[[Scene, Samples | None, Callable[[float], None]], Solution]
 
 
@@ -28,45 +30,55 @@ def solve_sweep(
     threads: int = 1,
     progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
-    """Solve scenes by a solver and join their solutions, as `run_sweep` returns them.
+    """Solve scenes by a solver and join their solutions, in the form that `run_sweep` returns.
 
-    Long scenes on fine lattices are solved first, so that no thread is left with one at the end.
+    Long scenes on fine lattices are solved first. Otherwise one thread could begin such a scene
+    last, and the others would wait for it.
+
+    samples, record, threads, progress : as in `run_sweep`
     """
-    results: dict[int, Recorded] = {}
+    runs: dict[int, Recorded] = {}
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
-    stopped = Event()
+    is_stopped = Event()
     report = progress if progress is not None else _ignore_progress
 
-    def check(fraction_done: float) -> None:
+    def report_or_stop(fraction_done: float) -> None:
         """Raise SweepStopped if the sweep was stopped; report the progress of a single scene."""
-        if stopped.is_set():
+        if is_stopped.is_set():
             raise SweepStopped
         if len(scenes) == 1:
             report(fraction_done, 1)
 
     def solve_one(i: int) -> None:
-        """Solve the scene of this number and keep its solution."""
-        results[i] = recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
+        """Solve scene number i and keep its solution."""
+        solution = solve(scenes[i], samples[i], report_or_stop)
+        runs[i] = recorded(scenes[i], samples[i], solution)
 
     # Exact solutions are computed in Python, which runs only one thread at a time. The main thread
     # solves them itself, because only the main thread can be interrupted at once.
     is_exact = any(scene.scheme == "continuum" for scene in scenes)
+    in_main_thread = is_exact or threads == 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
-            finished = _solve_all(solve_one, order, None if is_exact or threads == 1 else pool)
-            for count, _ in enumerate(finished, start=1):
+            solved_scenes = _solve_all(solve_one, order, None if in_main_thread else pool)
+            for count, _ in enumerate(solved_scenes, start=1):
                 report(count, len(scenes))
         except BaseException:
-            stopped.set()
+            # An error of a scene, or the user, ends all scenes.
+            is_stopped.set()
             pool.shutdown(cancel_futures=True)
             raise
-    return combine([results[i] for i in range(len(scenes))], record)
+    return combine([runs[i] for i in range(len(scenes))], record)
 
 
 def _solve_all(
     solve_one: Callable[[int], None], order: Sequence[int], pool: ThreadPoolExecutor | None
 ) -> Iterator[None]:
-    """Solve scenes by their numbers, in a pool or in this thread, and yield after each of them."""
+    """Solve scenes, and yield after each of them.
+
+    order : the numbers of the scenes in the order in which they begin
+    pool : threads that solve them; None if this thread does
+    """
     if pool is None:
         yield from map(solve_one, order)
         return
@@ -77,7 +89,7 @@ def _solve_all(
 
 
 def _ignore_progress(done: float, total: int) -> None:
-    """Do nothing; it takes the place of a function that reports progress."""
+    """Do nothing, in place of a function that reports progress."""
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
@@ -86,7 +98,7 @@ def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Data
 
 
 def recorded(scene: Scene, samples: Samples | None, solution: Solution) -> Recorded:
-    """Return the arrays of a solution, with the parameters of its scene, its numbers and flags."""
+    """Return a solved scene as a run: its arrays, its parameters, its numbers and its flags."""
     arrays = solution.arrays()
     if samples is not None:
         arrays |= {"sample_time": samples.times, "sample_position": samples.positions}

@@ -1,9 +1,9 @@
 """Arrays, constants and counters that the kernels share, in named groups.
 
-Each group is a NamedTuple, which the kernels read by field name. Shapes: K = order + 2 time
-derivatives of slip (rows 0 to order + 1), and N blocks of the lattice, with one ghost block at each
-end. Lengths are in units of H, times in units of H divided by the wave speed, and stresses in units
-of the stress drop.
+Each group is a NamedTuple, which the kernels read by field name. In the shapes of arrays, K is the
+number of time derivatives of slip, from derivative 0 to derivative order + 1. N is the number of
+blocks of the lattice, with one ghost block at each end. Lengths are in units of H, times in units
+of H divided by the wave speed, and stresses in units of the stress drop.
 """
 
 from typing import NamedTuple
@@ -38,10 +38,12 @@ LATTICE_TOO_SHORT = 2
 BLOWN_UP = 3
 ALL_STUCK = 4
 
-# Kernels and Python read the fields of these records as attributes. Numba recognises a dtype by its
-# address, so there is one dtype object of each kind: a copy would be looked up in each call.
-# The losses of the last step still lack a part that depends on the dissipation at its end. Until
-# this part is added, pending_step is the length of that step; afterwards it is 0.
+# The types below are those of records, whose fields kernels and Python read as attributes. Numba
+# recognises a dtype by its address. There is therefore one object for each type of record: a copy
+# would be looked up in each call.
+
+# Totals of a run. The losses of the last step still lack a part that depends on the dissipation at
+# its end. Until this part is added, pending_step is the length of that step; afterwards it is 0.
 _FLOATS = (
     "time first_stick_time pending_step viscous_loss stick_loss friction_loss min_velocity"
     " min_stuck_stress"
@@ -49,18 +51,19 @@ _FLOATS = (
 _COUNTS = (
     "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
 )
-_TYPES = dict.fromkeys(_FLOATS.split(), "f8") | dict.fromkeys(_COUNTS.split(), "i8")
-TALLY_DTYPE = np.dtype((np.record, [*_TYPES.items()]))
+_TALLY_TYPES = dict.fromkeys(_FLOATS.split(), "f8") | dict.fromkeys(_COUNTS.split(), "i8")
+TALLY_DTYPE = np.dtype((np.record, [*_TALLY_TYPES.items()]))
+# The number of entries of a list that is kept in an array.
 COUNT_DTYPE = np.dtype((np.record, [("n", np.int64)]))
-# An event at time s of a step changes the slope of the dissipation by k. The three moments are the
-# sums of k, k s and k s^2 over the events of the step.
+# Changes of the slope (time derivative) of a dissipation. An event at time s of a step changes it
+# by k. The three moments are the sums of k, k s and k s^2 over the events of the step.
 _MOMENTS = ("moment_0", "moment_1", "moment_2")
 SLOPE_CHANGES_DTYPE = np.dtype((np.record, [(name, np.float64) for name in _MOMENTS]))
 
 
-def new_record(kind: np.dtype) -> np.record:
-    """Return one record whose fields are all 0."""
-    return np.zeros(1, dtype=kind)[0]
+def new_record(dtype: np.dtype) -> np.record:
+    """Return one record of a type, with all fields set to 0."""
+    return np.zeros(1, dtype=dtype)[0]
 
 
 class Medium(NamedTuple):
@@ -74,7 +77,7 @@ class Medium(NamedTuple):
     damping: float  # beta/dx^2
     alpha: float  # friction per unit slip velocity, if friction is linear in it
     law_number: int  # position of any other law of friction in the list of laws, 0 if there is none
-    law_parameter_1: float
+    law_parameter_1: float  # of this other law
     law_parameter_2: float
     law_kink: LawKink | None  # piecewise linear friction, which the Taylor step solves
     is_mirrored: bool  # block 1 lies at x = 0, and block 0 is the mirror image of block 2
@@ -120,8 +123,9 @@ class EventEffect(NamedTuple):
     last: int  # block after the last one that changed
     velocity_before: float  # velocity of a block that sticks, which should be 0
     lowest_stress: float  # of the stuck blocks next to the changed ones
-    # Changes of the slope of the dissipation: sum of (v_{i+1} - v_i) times the change of
-    # a_{i+1} - a_i, where a is the acceleration, and friction times the change of a
+    # Changes of the slopes of two dissipations, for velocities v and accelerations a. The first is
+    # the sum of (v_{i+1} - v_i) times the change of a_{i+1} - a_i. The second is friction times the
+    # change of a.
     loss_slope_change: float
     work_slope_change: float
 
@@ -146,7 +150,7 @@ class Difference(NamedTuple):
 
     rows: np.ndarray  # (K, COLUMN_COUNT), time derivatives of the change of slip, at the event
     centre: np.ndarray  # (K + 2,), the same for the block of the event alone
-    values: np.ndarray  # (COLUMN_COUNT,)
+    values: np.ndarray  # (COLUMN_COUNT,), one time derivative of the change, at another time
 
 
 class StepEvents(NamedTuple):
@@ -156,8 +160,8 @@ class StepEvents(NamedTuple):
     last: np.ndarray  # block after the last one that changed
     stuck_block: np.ndarray  # block that stuck, -1 if the event is no stick
     count: np.record  # type: ignore[assignment]
-    loss_slope_changes: np.record
-    work_slope_changes: np.record  # changes of the work against piecewise linear friction
+    loss_slope_changes: np.record  # of the viscous dissipation
+    work_slope_changes: np.record  # of the power of piecewise linear friction
 
 
 class Scratch(NamedTuple):
@@ -197,11 +201,13 @@ class Limits(NamedTuple):
 
 
 def make_motion(rows: int, size: int) -> Motion:
-    """Return blocks at rest. All rows lie in one piece of memory at equal distances.
+    """Return a lattice of ``size`` blocks at rest, with ``rows`` time derivatives of slip.
 
-    `lattice.PAGE_BLOCKS` explains why their distance matters.
+    All arrays are rows of one piece of memory, at equal distances. `lattice.PAGE_BLOCKS` explains
+    why their distance matters.
     """
-    memory = np.zeros((rows + len(Motion._fields) - 1, size))
+    other_arrays = len(Motion._fields) - 1
+    memory = np.zeros((rows + other_arrays, size))
     return Motion(memory[:rows], *memory[rows:])
 
 
@@ -211,7 +217,7 @@ def make_segments(size: int) -> Segments:
 
 
 def make_scratch(size: int, order: int) -> Scratch:
-    """Return scratch arrays without events for a lattice of ``size`` blocks."""
+    """Return scratch arrays without events, for ``size`` blocks and steps of an order."""
     prediction = EventPrediction(
         release_time=np.full(size, np.inf),
         event_block=np.zeros(2 * size, dtype=np.int64),

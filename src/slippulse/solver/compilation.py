@@ -9,10 +9,17 @@ from .layer import LayerScene, simulate_layer
 
 
 def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
-    """Compile the kernels of the given schemes. The name "layer" stands for the elastic layer."""
+    """Compile the kernels of some schemes, by simulating a small scene with each.
+
+    The name "layer" stands for the elastic layer in the plane.
+    """
     prestress = Prestress(0.5, 0.5)
     for scheme in schemes:
         if scheme == "layer":
-            simulate_layer(LayerScene("displacement", 0.5, prestress, 1.0, 1.0, cells=4))
-            continue
-        solve_by_scheme(Scene("displacement", prestress, 1.0, 0.5, gamma=0.5, scheme=scheme))
+            small_layer = LayerScene(
+                "displacement", 0.5, prestress, weakening=1.0, duration=1.0, cells=4
+            )
+            simulate_layer(small_layer)
+        else:
+            small_scene = Scene("displacement", prestress, 1.0, dx=0.5, gamma=0.5, scheme=scheme)
+            solve_by_scheme(small_scene)

@@ -1,4 +1,4 @@
-"""One line on standard error when the kernels are compiled, which takes half a minute once."""
+"""A notice on standard error when the kernels are compiled, which takes half a minute once."""
 
 import sys
 from collections.abc import Iterator
@@ -19,14 +19,18 @@ class CompileNotice(event.Listener):
     def __init__(self) -> None:
         self.printed = False
 
-    def on_start(self, event: event.Event) -> None:
-        """Print the notice. Loading machine code from the cache does not start this event."""
-        function = getattr(event.data["dispatcher"], "py_func", None)
-        if not self.printed and getattr(function, "__module__", "").startswith(f"{PACKAGE_NAME}."):
+    def on_start(self, compile_event: event.Event) -> None:
+        """Print the notice if a function of this package begins to be compiled.
+
+        Loading machine code from the cache does not start such an event.
+        """
+        function = getattr(compile_event.data["dispatcher"], "py_func", None)
+        module = getattr(function, "__module__", "")
+        if not self.printed and module.startswith(f"{PACKAGE_NAME}."):
             self.printed = True
             print(NOTICE_TEXT, file=sys.stderr, flush=True)
 
-    def on_end(self, event: event.Event) -> None:
+    def on_end(self, compile_event: event.Event) -> None:
         """Do nothing at the end of a compilation."""
 
 

@@ -1,9 +1,10 @@
 """Change of the motion by an event: a release, a stick, or a kink in the law of friction.
 
 The sliding lattice is linear. An event therefore adds a polynomial in time, the difference, to the
-Taylor polynomial of each block. At the block of the event, the first derivative of the difference
-that is not zero is the second one (the third if the event is a kink of the law). Each further
-derivative reaches one block further, since damping couples neighbours through their velocities:
+Taylor polynomial of each block. The lowest derivative of the difference that is not zero is the
+second one, at the block of the event. (If the event is a kink of the law, it is the third one.)
+Each further derivative reaches one block further, since damping couples neighbours through their
+velocities:
 
     derivative 2            x
     derivative 3          x x x
@@ -12,6 +13,9 @@ derivative reaches one block further, since damping couples neighbours through t
 Without damping, two derivatives are needed for each block. The difference ends at the order of the
 step, so only a few blocks change, and they change exactly as in a new expansion of the whole
 lattice.
+
+All times are counted from the start of the step: ``now`` is the time of the event, and ``h`` is the
+end of the step. ``top`` is the order of the highest time derivative of slip.
 """
 
 import numpy as np
@@ -38,7 +42,11 @@ from .stencils import block_range, next_derivative
 
 @kernel_function()
 def shift_polynomial(derivatives, lowest, last, top, s):
-    """Shift derivatives lowest..last of a polynomial of degree ``top`` by a time s, in place."""
+    """Replace derivatives lowest..last of a polynomial at time 0 by those at a time s.
+
+    derivatives : derivative k of the polynomial at index k, up to its degree ``top``
+    """
+    # Horner's rule for each of them. Only higher derivatives are read, which are not replaced yet.
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):
@@ -48,11 +56,11 @@ def shift_polynomial(derivatives, lowest, last, top, s):
 
 @kernel_function(inline=True)
 def velocity_at(w, i, top, s):
-    """Return the velocity of block i at a time s after the step began.
+    """Return the velocity of block i at a time s after the step began, from its Taylor series.
 
-    ``w`` holds the time derivatives of slip at the start of the step, up to derivative ``top``. The
-    Taylor series of the velocity begins with derivative 1 and is summed by Horner's rule.
+    w : time derivatives of slip at the start of the step, up to derivative ``top``
     """
+    # The series of the velocity begins with derivative 1 and is summed by Horner's rule.
     value = w[top, i]
     for k in range(top - 1, 0, -1):
         value = w[k, i] + s * RECIPROCALS[k] * value
@@ -63,7 +71,8 @@ def velocity_at(w, i, top, s):
 def start_sliding(centre, medium, motion, block, now, top):
     """Release a block at the time ``now``, and return its friction.
 
-    ``centre`` receives the time derivatives of its slip at that time.
+    centre : receives the time derivatives of its slip at that time
+    top : order of the highest derivative of slip that the step keeps
     """
     w, offset = motion.w, motion.offset
     strain = motion.strain
@@ -89,11 +98,12 @@ def start_sliding(centre, medium, motion, block, now, top):
 
 @kernel_function(inline=True)
 def hold_block(centre, w, offset, block, now, top):
-    """Stop a block at the time ``now``, and return the velocity that it had.
+    """Stop a block at the time ``now`` since the step began, and return the velocity that it had.
 
-    ``w`` holds the time derivatives of slip at the start of the step. Those of the block are set to
-    0, and its slip at the time ``now`` is kept in ``offset``. From derivative 2 on, ``centre``
-    receives the change of the derivatives at that time, which is minus their value before the stop.
+    centre : receives the changes of derivatives 2 to ``top`` of slip at that time, which are minus
+        their values before the stop
+    w : time derivatives of slip at the start of the step; those of the block are set to 0
+    offset : changes of slip by the events of the step; the slip of the block until now is added
     """
     # Move the derivatives of the block from w to centre, and shift them to the time ``now``.
     centre[SLIP] = 0.0
@@ -110,14 +120,17 @@ def hold_block(centre, w, offset, block, now, top):
 
 @kernel_function(inline=True)
 def change_weakening(centre, motion, law_kink, block, now, top):
-    """Change the slope of a block's friction at a kink of its law.
+    """Change the slope of a block's friction when the block passes the kink of its law.
 
     Friction falls by the slope times its argument, which is the slip or the slip rate (see
-    `LawKink`). A change of the slope therefore changes derivative k of slip by itself times
-    derivative k - 2 of the argument. ``centre`` receives these changes. Friction is continuous at
-    the kink, so derivative 2 does not change.
+    `LawKink`). If the slope changes by s, derivative k of slip therefore changes by s times
+    derivative k - 2 of the argument. Friction is continuous at the kink, so derivative 2 does not
+    change.
 
     Returns the change of the time derivative of the power of friction (friction times velocity).
+
+    centre : receives the changes of derivatives 2 to ``top`` of slip
+    now : time of the event since the step began
     """
     if law_kink is not None:
         for k in range(1, top + 1):
@@ -137,10 +150,13 @@ def change_weakening(centre, motion, law_kink, block, now, top):
 
 @kernel_function(inline=True)
 def spread_difference(difference, medium, motion, event, left, right, top):
-    """Compute the derivatives of the difference from its derivatives at the centre.
+    """Compute the time derivatives of the difference that an event makes, at the time of the event.
 
-    ``left`` and ``right`` are the numbers of adjacent sliding blocks on each side of the event,
-    which limit its reach. ``top`` is the order of the highest derivative.
+    They follow from the derivatives at the block of the event, which are in ``difference.centre``.
+
+    left, right : numbers of adjacent sliding blocks on each side of the event, which limit its
+        reach
+    top : order of the highest derivative
     """
     rows, centre = difference.rows, difference.centre
     # Column p of the difference is the block p + column of the lattice.
@@ -148,6 +164,7 @@ def spread_difference(difference, medium, motion, event, left, right, top):
     for k in range(2, top + 1):
         for p in range(np.uint64(COLUMN_COUNT)):
             rows[k, p] = 0.0
+        # Number of blocks on each side that derivative k reaches (see the module docstring).
         reach = k - 2 if medium.damping != 0.0 else (k - 2) // 2
         first, last = CENTRE_COLUMN - min(left, reach), CENTRE_COLUMN + min(right, reach) + 1
         for p in block_range(first, last):
@@ -159,16 +176,21 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         add_weakening(rows, k, first, last, column, motion, medium.law_kink)
         # After a stick the block is held, so the difference of its neighbours does not move it.
         rows[k, CENTRE_COLUMN] = centre[k] + (0.0 if event.is_stick else rows[k, CENTRE_COLUMN])
+    if event.is_stick:
+        # The polynomial of the block itself was changed when the block was stopped.
+        for k in range(2, top + 1):
+            rows[k, CENTRE_COLUMN] = 0.0
 
 
 @kernel_function(inline=True)
 def evaluate_difference(out, rows, lowest, top, s):
-    """Compute derivative ``lowest`` of the difference at a time s after the event, in ``out``.
+    """Compute a time derivative of the difference at a time s after the event, in ``out``.
 
-    ``rows`` has the derivatives at the event, one row for each up to ``top``, and one column for
-    each block within reach. Horner's rule sums their Taylor series for all blocks at once. The last
-    column is left out, because it lies beyond the reach of every event and is always 0.
+    rows : derivatives at the event, one row for each up to ``top``, and one column for each block
+    lowest : order of the derivative that is computed
     """
+    # Horner's rule sums the Taylor series of all blocks at once. The last column is left out,
+    # because it lies beyond the reach of every event and is always 0.
     columns = np.uint64(COLUMN_COUNT - 1)
     for p in range(columns):
         out[p] = rows[top, p]
@@ -180,19 +202,25 @@ def evaluate_difference(out, rows, lowest, top, s):
 
 @kernel_function(inline=True)
 def add_difference(motion, difference, first, last, block, now, h, top):
-    """Add the difference of an event of ``block`` at the time ``now`` to blocks first..last-1.
+    """Add the difference that an event makes to the motion of blocks first..last-1.
 
-    It changes their velocities at time h and their polynomials around the start of the step.
+    It changes their velocities at the end of the step, and the time derivatives of their slip at
+    its start.
+
+    block, now : block and time of the event, since the step began
+    h : time of the end of the step
+    top : order of the highest time derivative
     """
     w, offset = motion.w, motion.offset
     velocity = motion.velocity
     rows, values = difference.rows, difference.values
     # Block i of the lattice is column i + column of the difference.
     column = np.uint64(CENTRE_COLUMN) - np.uint64(block)
+    # The velocity is derivative 1. The end of the step is the time h - now, counted from the event.
     evaluate_difference(values, rows, 1, top, h - now)
     for i in block_range(first, last):
         velocity[i] += values[i + column]
-    # The start of the step is the time -now, counted from the event.
+    # Slip is derivative 0. The start of the step is the time -now, counted from the event.
     evaluate_difference(values, rows, 0, top, -now)
     for i in block_range(first, last):
         offset[i] += values[i + column]
@@ -204,10 +232,11 @@ def add_difference(motion, difference, first, last, block, now, h, top):
 
 @kernel_function(inline=True)
 def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
-    """Return the sum of dv da over the pairs of a block and a neighbour, at an event of the block.
+    """Return the sum of dv da over the two pairs of a block and a neighbour, at an event.
 
-    Here dv is the difference of the two slip velocities, and da the change of the difference of
-    the accelerations. The velocity of the block is 0, and only its own acceleration changes.
+    Here dv is the difference of the two slip velocities, and da is the change of the difference of
+    the two accelerations. At a release or a stick the velocity of the block is 0, and only its own
+    acceleration changes. The time derivative of the viscous dissipation is proportional to the sum.
     """
     if medium.beta <= 0.0:
         return 0.0
@@ -222,8 +251,9 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
 def update_mirror_image(medium, motion, first, top):
     """Return the first block that an event changed, and update block 0 if it is one of them.
 
-    On a mirrored lattice, block 0 is the mirror image of block 2. ``first`` is the first changed
-    block apart from mirror images.
+    On a mirrored lattice, block 0 is the mirror image of block 2.
+
+    first : first changed block, if mirror images are not counted
     """
     if not medium.is_mirrored or first > 2:
         return first
@@ -236,46 +266,59 @@ def update_mirror_image(medium, motion, first, top):
 
 @inlined_kernel
 def apply_event(medium, motion, segments, prediction, difference, event, h, top):
-    """Change the motion within reach of an event, and predict the next events there until time h.
+    """Change the motion within reach of an event, and predict the next events of these blocks.
 
     Returns an `EventEffect`.
+
+    event : `Event`, its time counted from the start of the step
+    h : time of the end of the step, until which events are predicted
+    top : order of the highest time derivative of slip
     """
     w, offset = motion.w, motion.offset
     velocity = motion.velocity
     centre, law_kink = difference.centre, medium.law_kink
     block, now, is_stick, at_law_kink = event
-    velocity_before = work_change = friction = 0.0
     left, right = count_sliding_neighbours(segments, block)
     if medium.is_mirrored and block == 1:
         # The block on the axis has the mirror images of its right neighbours on its left.
         left = right
+    # First the block of the event itself.
+    velocity_before = work_slope_change = friction = 0.0
     if is_stick:
         velocity_before = hold_block(centre, w, offset, block, now, top)
         velocity[block] = 0.0
         friction = friction_at_stick(motion, law_kink, block)
     elif at_law_kink:
-        work_change = change_weakening(centre, motion, law_kink, block, now, top)
+        work_slope_change = change_weakening(centre, motion, law_kink, block, now, top)
     else:
         friction = start_sliding(centre, medium, motion, block, now, top)
-    loss_change = change_of_loss_slope(medium, w, block, centre[ACCELERATION], now, top)
-    # The time derivative of the power of friction (friction times velocity) changes by friction
-    # times the change of acceleration, and at a kink by what `change_weakening` returns.
-    work_change += friction * centre[ACCELERATION]
-    spread_difference(difference, medium, motion, event, left, right, top)
-    if is_stick:
-        # The polynomial of the block of the event was changed when the block was stopped.
-        for k in range(2, top + 1):
-            difference.rows[k, CENTRE_COLUMN] = 0.0
+    acceleration_change = centre[ACCELERATION]
+    loss_slope_change = change_of_loss_slope(medium, w, block, acceleration_change, now, top)
+    # The power of friction is friction times velocity. Its time derivative changes by friction
+    # times the change of acceleration. At a kink of the law `change_weakening` returns its change.
+    work_slope_change += friction * acceleration_change
 
+    # Then all blocks within its reach.
+    spread_difference(difference, medium, motion, event, left, right, top)
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1
     add_difference(motion, difference, first, last, block, now, h, top)
     first_changed = update_mirror_image(medium, motion, first, top)
 
-    lowest = predict_releases(medium, motion, segments, prediction, first - 1, last + 1, now, h)
+    # Last, the next events of these blocks. Their neighbours at rest feel a different stress, too.
+    lowest_stress = predict_releases(
+        medium, motion, segments, prediction, first - 1, last + 1, now, h
+    )
     drop_predicted_events(prediction, first, last)
-    is_finite = predict_sticks(motion, prediction, first, last, last - first, now, h, top)
+    suspects = last - first
+    is_finite = predict_sticks(motion, prediction, first, last, suspects, now, h, top)
     predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top)
     return EventEffect(
-        is_finite, first_changed, last, velocity_before, lowest, loss_change, work_change
+        is_finite,
+        first_changed,
+        last,
+        velocity_before,
+        lowest_stress,
+        loss_slope_change,
+        work_slope_change,
     )

@@ -33,9 +33,10 @@ from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
 from .taylor import BLOW_UP_FACTOR, next_step, record_release, record_stick
 
-# A front is locked to a fraction of dx/dt if it repeats the same cycle until its end: each time, a
-# few blocks are released after the same numbers of steps. If such a cycle takes fewer steps than
-# the last of these constants, the front speed is wrong by up to 13 per cent.
+# A front is locked to a fraction of dx/dt if it repeats the same cycle until the end. In a cycle a
+# few blocks are released one after another, and the numbers of steps between them are the same each
+# time. The front speed can then be wrong by up to 13 per cent. A cycle of at least
+# MIN_UNBIASED_CYCLE_STEPS steps does no harm.
 MAX_CYCLE_BLOCKS = 6
 MIN_CYCLE_REPEATS = 30
 MIN_UNBIASED_CYCLE_STEPS = 50
@@ -45,19 +46,20 @@ def combine_laws(laws: Sequence[type[Friction]]):
     """Return a compiled function that computes the friction of any of some laws.
 
     Its arguments are the position of the law in the list, the slip since the release, the slip
-    velocity and the two parameters of the law. Kernels cannot choose from a list of functions, so
-    that each compiled function handles the first law and calls another one for the rest.
+    velocity and the two parameters of the law. Kernels cannot choose from a list of functions.
+    Each compiled function therefore handles the first law, and calls another one for the rest.
     """
     if not laws:
         return kernel_function()(lambda law, slip, velocity, parameter_1, parameter_2: 0.0)
-    first, rest = register_jitable(laws[0].friction), combine_laws(laws[1:])
+    friction_of_first = register_jitable(laws[0].friction)
+    friction_of_others = combine_laws(laws[1:])
 
     @kernel_function()
     def friction(law, slip, velocity, parameter_1, parameter_2):
         """Return the friction of the law at a position of the list."""
         if law == 0:
-            return first(slip, velocity, parameter_1, parameter_2)
-        return rest(law - 1, slip, velocity, parameter_1, parameter_2)
+            return friction_of_first(slip, velocity, parameter_1, parameter_2)
+        return friction_of_others(law - 1, slip, velocity, parameter_1, parameter_2)
 
     return friction
 
@@ -70,12 +72,15 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
     """Compute the forces on blocks first..last-1, and release those that reach the threshold.
 
     The forces are written into the row ACCELERATION of w. Returns the number of sliding blocks.
+
+    sliding : mask of the blocks that slide
+    t : time at the start of the step
     """
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     force, tau = motion.w[ACCELERATION], motion.tau
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
-    sliding_count, lowest = 0, tally.min_stuck_stress
+    sliding_count, lowest_stress = 0, tally.min_stuck_stress
     for i in range(first, last):
         elastic = inverse_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
         stress = elastic - medium.leaf_stiffness * slip[i] + tau[i]
@@ -84,12 +89,12 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
         if not sliding[i]:
             if not medium.damping_counts_for_release:
                 damping_force = 0.0
-            lowest = min(lowest, stress + damping_force)
+            lowest_stress = min(lowest_stress, stress + damping_force)
             if stress + damping_force >= 1.0:
                 sliding[i] = True
                 record_release(history, i, t)
         sliding_count += sliding[i]
-    tally.min_stuck_stress = lowest
+    tally.min_stuck_stress = lowest_stress
     return sliding_count
 
 
@@ -105,16 +110,20 @@ def find_sliding_range(sliding, first, last):
 
 @kernel_function()
 def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
-    """Advance the velocities of blocks first..last-1, then their slip.
+    """Advance the velocities of the sliding blocks of first..last-1, then their slip.
 
     A block whose velocity would be negative sticks.
 
     Returns the largest velocity (inf if one is not finite), and the work against friction. Work
     against friction alpha v is left out, because it is a part of `viscous_loss`.
+
+    dt : length of the step
+    end : time at its end
     """
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
     force, tally = motion.w[ACCELERATION], history.tally
     fastest = 0.0
+    # The sum of friction times mean velocity, which is multiplied by dt and dx at the end.
     friction, work = 0.0, 0.0
     for i in range(first, last):
         if not sliding[i]:
@@ -122,14 +131,15 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
         before = velocity[i]
         if medium.law_number > 0:
             slip_since_release = slip[i] - motion.slip_at_release[i]
-            value = friction_by_law_number(
+            full_friction = friction_by_law_number(
                 medium.law_number,
                 slip_since_release,
                 before,
                 medium.law_parameter_1,
                 medium.law_parameter_2,
             )
-            friction = motion.law_factor[i] * value
+            # The factor is 0 in the zone without friction, and otherwise 1.
+            friction = motion.law_factor[i] * full_friction
             force[i] -= friction
         after = before + dt * force[i]
         # A block that has a mirror image counts twice.
@@ -163,36 +173,42 @@ def viscous_loss(medium, velocity, dt, first, last):
     # Sums of (v_{i+1} - v_i)^2 and of v_i^2. On a mirrored lattice they are doubled below, so that
     # block 1 on the axis counts half.
     dv_squared, v_squared = 0.0, 0.0
-    for i in range(max(first - 1, 1 if medium.is_mirrored else 0), last):
+    # The block before the moving ones counts, too, unless it is a mirror image.
+    first_pair = max(first - 1, 1 if medium.is_mirrored else 0)
+    for i in range(first_pair, last):
         dv = velocity[i + 1] - velocity[i]
         dv_squared += dv * dv
         weight = 0.5 if medium.is_mirrored and i == 1 else 1.0
         v_squared += weight * velocity[i] * velocity[i]
-    loss = medium.beta / medium.dx * dv_squared + medium.alpha * medium.dx * v_squared
-    return (2.0 if medium.is_mirrored else 1.0) * dt * loss
+    power = medium.beta / medium.dx * dv_squared + medium.alpha * medium.dx * v_squared
+    sides = 2.0 if medium.is_mirrored else 1.0
+    return sides * dt * power
 
 
 @kernel_function()
 def take_samples(recorder, motion, tally, end):
-    """Take the samples that are due by the time ``end``, with the velocities at that time."""
+    """Record slip and velocity at all sample times up to ``end`` that are not recorded yet.
+
+    end : time at the end of the step
+    """
     times, blocks = recorder.times, recorder.blocks
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         # Within a step, slip changes at the constant velocity that belongs to its end.
-        since = end - times[n]
+        time_to_end = end - times[n]
         for p in range(blocks.shape[0]):
             i = blocks[p]
             if i >= 0:
-                recorder.slip[n, p] = motion.w[SLIP, i] - since * motion.w[VELOCITY, i]
+                recorder.slip[n, p] = motion.w[SLIP, i] - time_to_end * motion.w[VELOCITY, i]
                 recorder.velocity[n, p] = motion.w[VELOCITY, i]
         tally.samples_taken += 1
 
 
 @kernel_entry
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
-    """Advance until a limit, and return the reason why it stopped.
+    """Advance a lattice by the textbook scheme until a limit, and return the reason for stopping.
 
-    The rows of w are slip, velocity and force.
+    The rows of ``motion.w`` are slip, velocity and force. ``sliding`` is a mask of the blocks.
     """
     size, tally = motion.tau.shape[0], history.tally
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
@@ -248,7 +264,8 @@ def solve_by_scheme(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
     """Solve a scene on the lattice by the scheme that it names."""
-    solution = solve_on_lattice(scene, samples, progress, kind=LATTICES[scene.scheme])
+    lattice_type = LATTICES[scene.scheme]
+    solution = solve_on_lattice(scene, samples, progress, lattice_type=lattice_type)
     if scene.scheme == "fixed_step" and has_locked_front(solution):
         solution.flags = ("locked_front",)
     return solution
@@ -258,15 +275,21 @@ def has_locked_front(solution: Solution) -> bool:
     """Return True if a front of the textbook scheme is locked to a fraction of dx/dt."""
     step = solution.numbers["end_time"] / max(solution.numbers["steps"], 1)
     for side in (-1.0, 1.0):
-        released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
-        times = np.sort(solution.release_time[released])
-        # Numbers of steps from one release to the next one.
-        steps_between = np.rint(np.diff(times) / step)
-        for blocks in range(1, MAX_CYCLE_BLOCKS + 1):
-            last = steps_between[-MIN_CYCLE_REPEATS * blocks :]
-            is_long_enough = last.size == MIN_CYCLE_REPEATS * blocks
-            repeats = is_long_enough and (last[blocks:] == last[:-blocks]).all()
-            steps_of_cycle = last[:blocks].sum()
-            if repeats and steps_of_cycle < MIN_UNBIASED_CYCLE_STEPS:
-                return True
+        is_released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
+        times = np.sort(solution.release_time[is_released])
+        steps_between_releases = np.rint(np.diff(times) / step)
+        if _ends_in_short_cycle(steps_between_releases):
+            return True
+    return False
+
+
+def _ends_in_short_cycle(steps_between_releases: np.ndarray) -> bool:
+    """Return True if numbers of steps end in many repeats of a cycle that takes few steps."""
+    for cycle_blocks in range(1, MAX_CYCLE_BLOCKS + 1):
+        needed = MIN_CYCLE_REPEATS * cycle_blocks
+        steps = steps_between_releases[-needed:]
+        # Each number equals the one that is a cycle earlier.
+        repeats = steps.size == needed and (steps[cycle_blocks:] == steps[:-cycle_blocks]).all()
+        if repeats and steps[:cycle_blocks].sum() < MIN_UNBIASED_CYCLE_STEPS:
+            return True
     return False

@@ -27,11 +27,28 @@ class FrictionConstants(NamedTuple):
 
 
 def friction_constants(friction: Friction, localised: bool) -> FrictionConstants:
-    """Return the constants of a law of friction for the kernels of a scheme."""
-    if localised or "continuum" in friction.schemes:
-        traits = friction.traits
-        return FrictionConstants(traits.linear_rate, 0, 0.0, 0.0, traits.law_kink)
-    return FrictionConstants(0.0, LAWS.index(type(friction)), *friction.kernel_parameters, None)
+    """Return the constants of a law of friction for the kernels of a scheme.
+
+    localised : True for the Taylor step, False for the textbook scheme
+    """
+    traits = friction.traits
+    is_linear = "continuum" in friction.schemes
+    if localised or is_linear:
+        return FrictionConstants(
+            alpha=traits.linear_rate,
+            law_number=0,
+            law_parameter_1=0.0,
+            law_parameter_2=0.0,
+            law_kink=traits.law_kink,
+        )
+    parameter_1, parameter_2 = friction.kernel_parameters
+    return FrictionConstants(
+        alpha=0.0,
+        law_number=LAWS.index(type(friction)),
+        law_parameter_1=parameter_1,
+        law_parameter_2=parameter_2,
+        law_kink=None,
+    )
 
 
 @kernel_function()
@@ -47,13 +64,14 @@ def begin_weakening(motion, law_kink, block):
 
 
 @kernel_function(inline=True)
-def friction_of_block(motion, law_kink, block, reached):
-    """Return the piecewise linear friction of a block that reached a slip or slip rate.
+def friction_of_block(motion, law_kink, block, argument):
+    """Return the piecewise linear friction of a block at a given argument of its law.
 
-    For a law of slip rate, ``slip_at_release`` stays 0.
+    The argument is the slip or the slip rate (see `LawKink`), and a slip is counted from t = 0. For
+    a law of slip rate, ``slip_at_release`` stays 0.
     """
     return law_kink.lowest + motion.weakening_slope[block] * (
-        motion.slip_at_release[block] + law_kink.end - reached
+        motion.slip_at_release[block] + law_kink.end - argument
     )
 
 
@@ -64,7 +82,7 @@ def friction_at_stick(motion, law_kink, block):
     A block sticks at slip rate 0, where every law of slip rate has the kinetic value, 0.
     """
     if law_kink is not None and law_kink.rate == 0:
-        # The slip when it sticks: that at the start of the step, and its change since then.
+        # The slip at the start of the step, plus its change since then.
         slip = motion.w[SLIP, block] + motion.offset[block]
         return friction_of_block(motion, law_kink, block, slip)
     return 0.0
@@ -80,9 +98,13 @@ def switch_weakening(motion, law_kink, block):
 
 @kernel_function(inline=True)
 def add_weakening(w, k, first, last, column, motion, law_kink):
-    """Add the decrease of friction to time derivative k of slip.
+    """Add the decrease of piecewise linear friction to time derivative k of slip.
 
-    Block i of ``w`` is block i + ``column`` of the lattice.
+    Friction falls by the slope times its argument, the slip or the slip rate (see `LawKink`).
+    Derivative k of slip therefore contains the slope times derivative k - 2 of the argument. This
+    is row k - 2 of ``w`` if the argument is the slip, and row k - 1 if it is the slip rate.
+
+    w : time derivatives of slip; its column i is block i + ``column`` of the lattice
     """
     if law_kink is not None:
         for i in block_range(first, last):
@@ -91,7 +113,7 @@ def add_weakening(w, k, first, last, column, motion, law_kink):
 
 @kernel_function(inline=True)
 def subtract_friction(motion, first, last, law_kink):
-    """Subtract piecewise linear friction from the accelerations of blocks."""
+    """Subtract piecewise linear friction from the accelerations of blocks first..last-1."""
     if law_kink is not None:
         w = motion.w
         for i in block_range(first, last):
@@ -102,34 +124,37 @@ def subtract_friction(motion, first, last, law_kink):
 def friction_power(medium, motion, segments, law_kink):
     """Return the power that piecewise linear friction dissipates, and its time derivative."""
     # Sums over blocks of friction times velocity, and of the time derivative of this product.
-    power, slope = 0.0, 0.0
+    power, power_slope = 0.0, 0.0
     if law_kink is not None:
         w, weakening_slope = motion.w, motion.weakening_slope
         for r in range(segments.count.n):
             for i in block_range(segments.edges[2 * r], segments.edges[2 * r + 1]):
+                # A block that has a mirror image counts twice.
                 weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
                 friction = friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
                 power += weight * friction * w[VELOCITY, i]
-                slope_of_block = (
+                # Friction changes at the rate of minus the slope times the argument's derivative.
+                power_slope_of_block = (
                     friction * w[ACCELERATION, i]
                     - weakening_slope[i] * w[law_kink.rate + 1, i] * w[VELOCITY, i]
                 )
-                slope += weight * slope_of_block
-    return medium.dx * power, medium.dx * slope
+                power_slope += weight * power_slope_of_block
+    return medium.dx * power, medium.dx * power_slope
 
 
 @kernel_function()
 def subtract_rate_strengthening(w, k, first, last, alpha):
-    """Subtract friction alpha v, with its time derivatives, from time derivative k of slip."""
+    """Subtract derivative k - 2 of the friction alpha v from time derivative k of slip."""
     for i in block_range(first, last):
         w[k, i] -= alpha * w[k - 1, i]
 
 
 @kernel_function(reorder=True)
 def sum_velocity_products(w, first, last):
-    """Return the sums of v^2 and of v a over blocks, with velocities v and accelerations a.
+    """Return the sums of v^2 and of v a over blocks first..last-1.
 
-    They give the dissipation by friction alpha v, and half of its time derivative.
+    Here v is the velocity and a the acceleration of a block. The sums give the dissipation by
+    friction alpha v, and half of its time derivative.
     """
     square, product = 0.0, 0.0
     for i in block_range(first, last):

@@ -35,9 +35,11 @@ LAWS_FOLDER = SOLVER_FOLDER.parent / "model" / "friction_laws"
 
 
 def source_digest(folder: Path = SOLVER_FOLDER) -> str:
-    """Return a digest of all source files of the kernels.
+    """Return a digest of all source files that are compiled into the kernels.
 
     Numba itself checks only the file of the compiled function, and not the files of its callees.
+
+    folder : the folder of the solver
     """
     digest = hashlib.sha256()
     for path in [*sorted(folder.glob("*.py")), *sorted(LAWS_FOLDER.glob("*.py"))]:
@@ -52,34 +54,40 @@ def cache_folder() -> Path:
     cache folder of the user.
     """
     given = os.environ.get("SLIPPULSE_CACHE") or os.environ.get("NUMBA_CACHE_DIR")
-    caches = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
-    return Path(given or f"{caches}/slippulse").absolute() / f"kernels-{source_digest()}"
+    user_cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
+    return Path(given or f"{user_cache}/slippulse").absolute() / f"kernels-{source_digest()}"
 
 
 def writable_cache() -> str:
     """Return a folder for compiled kernels in which files can be written.
 
-    If the usual folder is read-only, warn and use one next to the sources. The result is empty if
-    that is read-only, too.
+    If the usual folder cannot be written, warn and use one next to the sources. If neither can be
+    written, return an empty text.
     """
-    chosen, reason = cache_folder(), ""
-    for folder in (chosen, SOLVER_FOLDER / "__pycache__" / chosen.name):
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=folder):
-                break
-        except OSError as error:
-            reason = reason or f"{chosen}: {error.strerror}"
-    else:
-        folder = None
-    if reason:
-        instead = f"they go to {folder}" if folder else "each process compiles its own"
-        remedy = "to avoid this, set SLIPPULSE_CACHE to a folder that can be written"
-        warnings.warn(f"compiled kernels: {reason}; {instead}; {remedy}", stacklevel=2)
-    return str(folder or "")
+    usual = cache_folder()
+    problem = _write_problem(usual)
+    if not problem:
+        return str(usual)
+    substitute = SOLVER_FOLDER / "__pycache__" / usual.name
+    is_usable = not _write_problem(substitute)
+    consequence = f"they go to {substitute}" if is_usable else "each process compiles its own"
+    remedy = "to avoid this, set SLIPPULSE_CACHE to a folder that can be written"
+    warnings.warn(f"compiled kernels: {usual}: {problem}; {consequence}; {remedy}", stacklevel=2)
+    return str(substitute) if is_usable else ""
 
 
-# Without this setting, numba would choose a folder whose machine code may be of other sources.
+def _write_problem(folder: Path) -> str:
+    """Make a folder, and return the reason why no file can be written in it, empty if one can."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return ""
+    except OSError as error:
+        return str(error.strerror)
+
+
+# Without this setting, numba would choose a folder itself. The machine code in it might be of other
+# sources.
 CACHE_FOLDER = writable_cache()
 numba.config.CACHE_DIR = CACHE_FOLDER  # type: ignore[attr-defined]
 
@@ -98,7 +106,8 @@ inlined_kernel = numba.njit(inline="always", **COMPILER_FLAGS)
 def kernel_function(*, inline: bool = False, reorder: bool = False):
     """Return the decorator of functions that kernels call.
 
-    With ``inline`` they are always inlined, and with ``reorder`` their sums may be reordered.
+    inline : the machine code of the function is always inserted into that of its callers
+    reorder : sums over blocks may be reordered, so that they are faster
     """
     flags = COMPILER_FLAGS | {"fastmath": REORDERING_FLAGS} if reorder else COMPILER_FLAGS
     return register_jitable(forceinline=inline, **flags)

@@ -14,10 +14,10 @@ with gamma = 2G/(lambda + 2G). They are solved on a grid that is staggered in sp
     between      s_xy        v_y
     row j        v_x         s_xx, s_yy
 
-The left column is at x = i h and the right one half a cell further. Rows lie at y = j h from the
-bottom to the top, and the two outer rows have half the height of a cell. Velocities are known half
-a step of time before and after the stresses. The scheme conserves a discrete energy, so the energy
-that friction dissipates is exact to rounding.
+Here h is the side of a square cell. The left column of the scheme is at x = i h, and the right one
+half a cell further. Rows lie at y = j h from the bottom to the top, and the two outer rows have
+half the height of a cell. Velocities are known half a time step before and after the stresses. The
+scheme conserves a discrete energy, so the energy that friction dissipates is exact to rounding.
 """
 
 import math
@@ -41,8 +41,8 @@ PRECURSOR_CELLS = 32
 class LayerScene:
     """Rupture of the layer in the plane, with friction that weakens with slip.
 
-    With ``rate`` 0 the strength falls linearly with the slip since the release. Otherwise it
-    relaxes, over the slip ``weakening``, towards 1/(1 + V/rate) at the slip velocity V, so that it
+    If ``rate`` is 0, the strength falls linearly with the slip since the release. Otherwise it
+    relaxes towards 1/(1 + V/rate) at the slip velocity V, over the slip ``weakening``. It then
     recovers while a point slows down. A point that sticks has its full strength again.
     """
 
@@ -116,7 +116,10 @@ class Elastic(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """Velocities and stresses. Column 0 is a ghost, which is at rest or a mirror image."""
+    """Velocities and stresses, with one row for each y and one column for each x.
+
+    Column 0 is a ghost, which is at rest or a mirror image.
+    """
 
     vx: np.ndarray  # (cells + 1, N)
     vy: np.ndarray  # (cells, N)
@@ -126,9 +129,12 @@ class Fields(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """State of the bottom; arrays of shape (N,). Slip has the unit of `Elastic.weakening`."""
+    """State of the nodes at the bottom, where slip has the unit of `Elastic.weakening`.
 
-    tau: np.ndarray
+    The arrays have the shape (N,) unless another one is stated.
+    """
+
+    tau: np.ndarray  # pre-stress
     nucleus: np.ndarray  # True where friction is 0
     sliding: np.ndarray
     slip: np.ndarray
@@ -136,7 +142,7 @@ class Fault(NamedTuple):
     strength: np.ndarray  # of sliding nodes, if it depends on slip velocity
     release_time: np.ndarray
     stick_time: np.ndarray
-    excess: np.ndarray  # load minus strength at the last step, of nodes at rest
+    excess: np.ndarray  # shear stress minus strength at the last step, of nodes at rest
     # (2,), both divided by h: work of the pre-stress, and work of the pre-stress minus friction
     work: np.ndarray
 
@@ -153,8 +159,8 @@ class Columns(NamedTuple):
 def update_stresses(elastic, fields, first, last):
     """Advance the stresses of columns first..last-1 by one step.
 
-    These are the three equations on the right of the module docstring. Differences between
-    neighbours take the place of derivatives, since ``ratio`` contains the spacing.
+    The equations are the three on the right in the module docstring. Derivatives are replaced by
+    differences between neighbours, and ``ratio`` is the time step divided by their distance.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
@@ -186,7 +192,8 @@ def update_stresses(elastic, fields, first, last):
 def update_velocities(elastic, fields, first, last):
     """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom.
 
-    These are the two equations on the left of the module docstring.
+    The equations are the two on the left in the module docstring. Derivatives are replaced by
+    differences between neighbours, and ``ratio`` is the time step divided by their distance.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
@@ -209,31 +216,35 @@ def update_velocities(elastic, fields, first, last):
 
 @kernel_function()
 def compute_strength(elastic, fields, fault, i):
-    """Return the strength of one node, from its motion since the release and its normal stress."""
+    """Return the strength of node i, from its motion since the release and its normal stress."""
     if fault.nucleus[i]:
         return 0.0
+    # Decrease of the strength since the release of the node.
     weakening = 0.0
     if fault.sliding[i]:
         if elastic.rate > 0.0:
             weakening = 1.0 - fault.strength[i]
         else:
             weakening = (fault.slip[i] - fault.slip_at_release[i]) / elastic.weakening
-    normal = 0.5 * (fields.syy[0, i - 1] + fields.syy[0, i])
-    return max(0.0, 1.0 - weakening) - elastic.coupling * normal
+    # The normal stress is known half a cell to the left and to the right of the node.
+    normal_stress = 0.5 * (fields.syy[0, i - 1] + fields.syy[0, i])
+    return max(0.0, 1.0 - weakening) - elastic.coupling * normal_stress
 
 
 @kernel_function()
 def advance_node(elastic, fields, fault, i, dt, time):
-    """Advance v_x and the slip of one node at the bottom by one step, and add the work done.
+    """Advance v_x and the slip of node i at the bottom by one step, and add the work done.
 
-    A node at rest is released when its load reaches the strength, and sticks when its velocity
-    falls to 0.
+    A node at rest is released when its load, the shear stress, reaches its strength. It sticks when
+    its velocity falls to 0.
+
+    time : time of the stresses, in the middle of the step of the velocities
     """
     # The bottom row has half the height of a cell, so that the difference of s_xx counts half.
     load = fields.sxy[0, i] + 0.5 * (fields.sxx[0, i] - fields.sxx[0, i - 1]) + fault.tau[i]
-    resistance = compute_strength(elastic, fields, fault, i)
+    strength = compute_strength(elastic, fields, fault, i)
     if not fault.sliding[i]:
-        excess, before = load - resistance, fault.excess[i]
+        excess, excess_before = load - strength, fault.excess[i]
         fault.excess[i] = excess
         if excess < 0.0:
             return
@@ -242,46 +253,49 @@ def advance_node(elastic, fields, fault, i, dt, time):
         fault.strength[i] = 1.0
         if np.isnan(fault.release_time[i]):
             # The load is interpolated linearly in time between two steps.
-            delay = excess / (excess - before) if before < 0.0 else 0.0
+            delay = excess / (excess - excess_before) if excess_before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
     # Half a cell has half the mass, so that a force changes the velocity twice as much.
-    earlier = fields.vx[0, i]
-    later = earlier + 2.0 * elastic.ratio * (load - resistance)
-    if later <= 0.0:
+    velocity_before = fields.vx[0, i]
+    velocity = velocity_before + 2.0 * elastic.ratio * (load - strength)
+    if velocity <= 0.0:
         if np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
-            turn = earlier / (earlier - later) if earlier > 0.0 else 0.5
-            fault.stick_time[i] = time + (turn - 0.5) * dt
-        later = 0.0
+            fraction = 0.5
+            if velocity_before > 0.0:
+                fraction = velocity_before / (velocity_before - velocity)
+            fault.stick_time[i] = time + (fraction - 0.5) * dt
+        velocity = 0.0
         fault.sliding[i] = False
-    fields.vx[0, i] = later
-    fault.slip[i] += dt * later
+    fields.vx[0, i] = velocity
+    fault.slip[i] += dt * velocity
     if elastic.rate > 0.0:
         # The strength relaxes towards its steady value over the slip ``weakening``.
-        steady = 1.0 / (1.0 + later / elastic.rate)
-        remaining = np.exp(-dt * later / elastic.weakening)
+        steady = 1.0 / (1.0 + velocity / elastic.rate)
+        remaining = np.exp(-dt * velocity / elastic.weakening)
         fault.strength[i] = steady + (fault.strength[i] - steady) * remaining
     # Work is force times the distance moved at the mean velocity. A node on the axis of symmetry
     # counts half.
-    moved = 0.5 * dt * (earlier + later)
+    distance = 0.5 * dt * (velocity_before + velocity)
     if elastic.is_mirrored and i == 1:
-        moved *= 0.5
+        distance *= 0.5
     # The friction that acted follows from the change of velocity, also when the node sticks.
-    friction = load - (later - earlier) / (2.0 * elastic.ratio)
-    fault.work[0] += abs(fault.tau[i]) * moved
-    fault.work[1] += (fault.tau[i] - friction) * moved
+    friction = load - (velocity - velocity_before) / (2.0 * elastic.ratio)
+    fault.work[0] += abs(fault.tau[i]) * distance
+    fault.work[1] += (fault.tau[i] - friction) * distance
 
 
 @kernel_entry
 def advance_layer(elastic, fields, fault, dt, steps, columns):
-    """Advance from step ``steps[0]`` to step ``steps[1]``, in some columns of the grid."""
+    """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach."""
     centre = columns.centre
     for number in range(steps[0], steps[1]):
         # Number of columns that a compressional wave has crossed since t = 0.
-        wave = int(number * elastic.ratio)
-        reach = columns.nucleation + wave + PRECURSOR_CELLS
+        crossed = int(number * elastic.ratio)
+        reach = columns.nucleation + crossed + PRECURSOR_CELLS
         first, last = max(1, centre - reach), min(fault.tau.shape[0] - 1, centre + reach)
-        first = max(first, centre + wave - columns.trail)
+        # Columns far behind the wave are left out.
+        first = max(first, centre + crossed - columns.trail)
         update_stresses(elastic, fields, first, last)
         update_velocities(elastic, fields, first, last)
         for i in range(first, last):
@@ -293,19 +307,20 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
-    nucleation = int(scene.nucleation / h + 0.5)
+    nucleation_columns = int(scene.nucleation / h + 0.5)
     # No wave is faster than 1, so that during the run waves cross at most this many columns.
-    columns_of_waves = int(steps * dt / h)
-    columns_on_right = nucleation + columns_of_waves + 2 * PRECURSOR_CELLS
+    crossed_columns = int(steps * dt / h)
+    columns_on_right = nucleation_columns + crossed_columns + 2 * PRECURSOR_CELLS
     # A symmetric layer has one column on the left, the mirror image of the first on the right.
     centre = 1 if scene.symmetric else columns_on_right
     x = (np.arange(centre + columns_on_right) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
     # Without a trail, all columns behind the wave are advanced, including those at x < 0.
-    trail = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
-    columns = Columns(centre, nucleation, trail)
+    trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
+    columns = Columns(centre, nucleation_columns, trail_columns)
     advance_layer(elastic, fields, fault, dt, (0, steps - 1), columns)
-    # The energy is balanced at the time of the velocities, between two times of the stresses.
+    # The energy is balanced at the time of the velocities that are copied here. The stresses are
+    # needed half a step before and half a step after this time.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
     advance_layer(elastic, fields, fault, dt, (steps - 1, steps), columns)
@@ -330,24 +345,37 @@ class LayerState(NamedTuple):
 
 
 def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
-    """Return the layer of a scene at nodes x before t = 0.
+    """Return the layer of a scene before t = 0.
 
-    The time step is ``ratio`` times the spacing.
+    x : positions of the nodes
+    ratio : time step divided by the side of a cell
+    """
+    return LayerState(
+        _elastic_constants(scene, ratio), _fields_at_rest(scene, x.size), _fault_at_rest(scene, x)
+    )
+
+
+def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
+    """Return the constants of the layer of a scene.
+
+    ratio : time step divided by the side of a cell
     """
     # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
-    # The bottom row has only a value above it, and the top row only one below it, which counts
-    # twice since these rows have half the height.
+    # The bottom row has only a value above it, and the top row only one below it. This value counts
+    # twice, since these rows have half the height.
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0
     lateral = 1.0 - scene.gamma
-    elastic = Elastic(
+    # The top row moves unless it is held.
+    moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
+    return Elastic(
         ratio=ratio,
         shear=0.5 * scene.gamma,
         is_mirrored=scene.symmetric,
-        moving_rows=scene.cells + (scene.boundary == "stress"),
+        moving_rows=moving_rows,
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
@@ -357,17 +385,26 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
         lateral=lateral * normal,
         normal=normal,
     )
-    on_rows, between_rows = (scene.cells + 1, x.size), (scene.cells, x.size)
-    fields = Fields(
+
+
+def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
+    """Return velocities and stresses of 0, on rows of ``size`` nodes."""
+    on_rows, between_rows = (scene.cells + 1, size), (scene.cells, size)
+    return Fields(
         vx=np.zeros(on_rows),
         vy=np.zeros(between_rows),
         sxx=np.zeros(on_rows),
         syy=np.zeros(on_rows),
         sxy=np.zeros(between_rows),
     )
+
+
+def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
+    """Return the state of the bottom before t = 0, at nodes of positions x."""
+    tau = scene.prestress(x)
     # A quarter of a cell is added, so that rounding does not decide about the outermost node.
-    tau, nucleus = scene.prestress(x), np.abs(x) <= scene.nucleation + 0.25 / scene.cells
-    fault = Fault(
+    nucleus = np.abs(x) <= scene.nucleation + 0.25 / scene.cells
+    return Fault(
         tau=tau,
         nucleus=nucleus,
         sliding=np.zeros(x.size, dtype=bool),
@@ -379,15 +416,19 @@ def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
         excess=tau - np.where(nucleus, 0.0, 1.0),
         work=np.zeros(2),
     )
-    return LayerState(elastic, fields, fault)
 
 
 def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     """Return the energy of the layer divided by h^2, at the time of the velocities.
 
     The elastic energy is a product of the stresses half a step earlier and half a step later.
+
+    earlier : fields whose velocities are those of this time, and whose stresses are half a step
+        earlier
+    later : fields whose stresses are half a step later
     """
-    # Weights of the rows, of the columns half a cell right of the nodes, and of the nodes.
+    # The fraction of a cell that belongs to each row, to each column half a cell right of the
+    # nodes, and to each column of nodes. Column 0 is a ghost.
     rows = np.ones((earlier.vx.shape[0], 1))
     rows[[0, -1]] = 0.5
     columns = np.ones(earlier.vx.shape[1])
@@ -398,8 +439,8 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     # The strain energy of normal stresses in plane strain, with 1 - gamma as `lateral`, and that of
     # shear stress.
     lateral = elastic.lateral.max()
-    direct = earlier.sxx * later.sxx + earlier.syy * later.syy
-    crossed = earlier.sxx * later.syy + earlier.syy * later.sxx
-    normal = (direct - lateral * crossed) / (1.0 - lateral**2)
+    equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
+    mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx
+    normal = (equal_products - lateral * mixed_products) / (1.0 - lateral**2)
     shear = earlier.sxy * later.sxy / elastic.shear
     return float(kinetic + 0.5 * (np.sum(rows * columns * normal) + np.sum(nodes * shear)))

@@ -1,18 +1,19 @@
 """The solution of a scene: its fields, its energies and its counters.
 
-When a lattice has reached the end of its scene, its arrays are unfolded (if only the half x >= 0
-was solved) and cut to the blocks that slipped, with a margin.
+When a lattice has reached the end of its scene, its arrays are cut to the blocks that slipped, with
+a margin. If only the half x >= 0 was solved, they are also extended by their mirror images.
 """
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..model.samples import Samples
 from ..model.scene import Scene
-from .arrays import ACCELERATION, ALL_STUCK, SLIP, TALLY_DTYPE, VELOCITY
+from .arrays import ACCELERATION, ALL_STUCK, SLIP, TALLY_DTYPE, VELOCITY, Medium
 from .lattice import Lattice
 
 # Number of blocks at rest that are kept beyond the outermost block that was released.
@@ -54,53 +55,89 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     """Return the parts of the energy balance, per unit depth, and its residual.
 
     The residual is the energy that is missing, divided by the largest part.
+
+    totals : fields of the lattice's tally by name, among them the losses
     """
     medium, motion = lattice.medium, lattice.motion
-    dx, strain = medium.dx, motion.strain
+    dx = medium.dx
     slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    if not lattice.localised:
-        strain = np.append(np.diff(slip) / dx, 0.0)
-    # Weights of the blocks, and of the bonds between each block and the next one. On a mirrored
-    # lattice each counts twice, except block 1 on the axis; block 0 is a mirror image.
-    weight, bond = np.full((2, lattice.size), 2.0 if medium.is_mirrored else 1.0)
-    if medium.is_mirrored:
-        weight[0], weight[1] = 0.0, 1.0
-        bond[0] = 0.0
+    strain = motion.strain if lattice.localised else _gradient(slip, dx)
+    weights = _block_weights(lattice)
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
         # Such laws are solved by symplectic Euler, which is a leapfrog scheme: its velocities
         # belong to the time half a step before that of its slip. The energies are computed at the
-        # time of the velocities. The sum of the viscous loss has too large a part at its end: it
-        # takes the dissipation D_1 at the end of each step of length h. However, the damping force
-        # contains the velocity at the start of the step and acts over the mean velocity, so that
-        # the loss is h (3 D_0 + D_1)/4. Over all steps the difference adds up to 3 h D_1/4 at the
-        # last one, since it starts at rest.
+        # time of the velocities.
         step = lattice.scene.max_step * dx
         slip = slip - 0.5 * step * velocity
-        strain = np.append(np.diff(slip) / dx, 0.0)
-        rates = np.append(np.diff(velocity) / dx, 0.0)
-        viscous_loss -= 0.75 * step * medium.beta * float(np.sum(bond * rates * rates) * dx)
+        strain = _gradient(slip, dx)
+        strain_rate = _gradient(velocity, dx)
+        viscous_loss -= _excess_of_viscous_loss(strain_rate, weights.bonds, step, medium)
     parts = {
-        "work_of_prestress": float(np.sum(weight * motion.tau * slip) * dx),
-        "kinetic_energy": float(0.5 * np.sum(weight * velocity * velocity) * dx),
-        "elastic_energy": float(0.5 * np.sum(bond * strain * strain) * dx),
+        "work_of_prestress": float(np.sum(weights.blocks * motion.tau * slip) * dx),
+        "kinetic_energy": float(0.5 * np.sum(weights.blocks * velocity * velocity) * dx),
+        "elastic_energy": float(0.5 * np.sum(weights.bonds * strain * strain) * dx),
         "leaf_spring_energy": float(
-            0.5 * medium.leaf_stiffness * np.sum(weight * slip * slip) * dx
+            0.5 * medium.leaf_stiffness * np.sum(weights.blocks * slip * slip) * dx
         ),
         "viscous_loss": viscous_loss,
         "event_loss": totals["stick_loss"],
         "friction_loss": totals["friction_loss"],
     }
-    work, *others = parts.values()
-    missing = abs(work - sum(others))
+    work, *energies_and_losses = parts.values()
+    missing = abs(work - sum(energies_and_losses))
     largest = max(map(abs, parts.values()))
     return parts | {"energy_residual": missing / largest if largest else 0.0}
+
+
+def _gradient(values: np.ndarray, dx: float) -> np.ndarray:
+    """Return the gradient between each block and the next one; 0 for the last block."""
+    return np.append(np.diff(values) / dx, 0.0)
+
+
+class Weights(NamedTuple):
+    """Numbers of times that each block, and the bond between it and the next one, is counted."""
+
+    blocks: np.ndarray
+    bonds: np.ndarray
+
+
+def _block_weights(lattice: Lattice) -> Weights:
+    """Return the weights of blocks and bonds in a sum over the whole lattice.
+
+    On a mirrored lattice each counts twice, because it has a mirror image. Block 1 on the axis
+    counts once. Block 0 is a mirror image itself and does not count.
+    """
+    if not lattice.is_mirrored:
+        return Weights(np.ones(lattice.size), np.ones(lattice.size))
+    blocks, bonds = np.full(lattice.size, 2.0), np.full(lattice.size, 2.0)
+    blocks[0], blocks[1] = 0.0, 1.0
+    bonds[0] = 0.0
+    return Weights(blocks, bonds)
+
+
+def _excess_of_viscous_loss(
+    strain_rate: np.ndarray, bond_weights: np.ndarray, step: float, medium: Medium
+) -> float:
+    """Return the amount by which symplectic Euler overestimates the viscous loss of a run.
+
+    Let D_0 and D_1 be the dissipation at the start and at the end of a step of length h. The scheme
+    counts h D_1. However, the damping force contains the velocity at the start of the step, and
+    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4. Since a run starts at
+    rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
+
+    strain_rate : between each block and the next one, at the end
+    """
+    dissipation_divided_by_beta = float(
+        np.sum(bond_weights * strain_rate * strain_rate) * medium.dx
+    )
+    return 0.75 * step * medium.beta * dissipation_divided_by_beta
 
 
 def compute_numbers(lattice: Lattice, status: int) -> dict:
     """Return energies, counters and extremes of a simulation that has ended.
 
-    ``status`` is the reason why the kernel stopped.
+    status : the reason why the kernel stopped
     """
     totals = dict(zip(TALLY_DTYPE.names or (), lattice.tally.tolist(), strict=True))
     medium, motion = lattice.medium, lattice.motion
@@ -112,18 +149,18 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     if medium.damping_counts_for_release:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
     is_stuck = ~lattice.sliding[1:-1]
-    lowest = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
+    lowest_stress = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
     # A block would slide backwards at a stress of -(1 + 2 mu_k/(mu_s - mu_k)).
-    friction_ratio_needed = max(0.0, -(lowest + 1.0) / 2.0)
-    first_stuck = (totals["first_stuck_block"] + lattice.first_block) * dx
+    friction_ratio_needed = max(0.0, -(lowest_stress + 1.0) / 2.0)
+    first_stuck_position = (totals["first_stuck_block"] + lattice.first_block) * dx
     return compute_energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
         **{name: totals[name] for name in KEPT_COUNTERS},
-        "min_stuck_stress": lowest,
+        "min_stuck_stress": lowest_stress,
         "friction_ratio_needed": friction_ratio_needed,
         "first_stick_time": totals["first_stick_time"],
-        "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
+        "first_stick_position": float(first_stuck_position) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.is_mirrored),
     }
 
@@ -131,29 +168,24 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
 def extract_solution(lattice: Lattice, status: int) -> Solution:
     """Return the solution of a lattice whose kernel stopped for the reason ``status``."""
     motion, history = lattice.motion, lattice.history
-    recorder = lattice.recorder
-    # If the kernel stopped early, the lattice is at rest at the times of all missing samples.
-    missing = slice(lattice.tally.samples_taken, None)
-    has_block = recorder.blocks >= 0
-    sampled_blocks = recorder.blocks[has_block]
-    recorder.slip[missing, has_block] = motion.w[SLIP, sampled_blocks]
-    recorder.velocity[missing, has_block] = motion.w[VELOCITY, sampled_blocks]
+    _fill_missing_samples(lattice)
     blocks = np.arange(lattice.size) + lattice.first_block
     released = blocks[np.isfinite(history.release_time)]
     first, last = 0, 0
     if released.size:
         first, last = released.min(), released.max()
-    keep = (blocks >= first - MARGIN_BLOCKS) & (blocks <= last + MARGIN_BLOCKS)
+    is_kept = (blocks >= first - MARGIN_BLOCKS) & (blocks <= last + MARGIN_BLOCKS)
     if lattice.is_mirrored:
-        keep &= blocks >= 0
+        is_kept &= blocks >= 0
     # The ghost blocks are not part of the solution.
-    keep[0] = keep[-1] = False
+    is_kept[0] = is_kept[-1] = False
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
-        """Return the kept blocks, with their mirror images times a sign if half was solved."""
-        kept = values[keep]
+        """Return the values of the kept blocks, with those of mirror images times a sign."""
+        kept = values[is_kept]
         if not lattice.is_mirrored:
             return kept.copy()
+        # The first kept block lies at x = 0 and has no mirror image.
         mirror_images = sign * kept[:0:-1]
         return np.concatenate([mirror_images, kept])
 
@@ -166,9 +198,22 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
         slip_velocity=unfold(motion.w[VELOCITY]),
         slip_acceleration=unfold(np.where(lattice.sliding, motion.w[ACCELERATION], 0.0)),
         numbers=compute_numbers(lattice, status),
-        sample_slip=recorder.slip if lattice.samples else None,
-        sample_velocity=recorder.velocity if lattice.samples else None,
+        sample_slip=lattice.recorder.slip if lattice.samples else None,
+        sample_velocity=lattice.recorder.velocity if lattice.samples else None,
     )
+
+
+def _fill_missing_samples(lattice: Lattice) -> None:
+    """Fill in the samples after the kernel stopped, if it stopped because all blocks are stuck.
+
+    The lattice is at rest at the times of these samples.
+    """
+    recorder, w = lattice.recorder, lattice.motion.w
+    missing_times = slice(lattice.tally.samples_taken, None)
+    has_block = recorder.blocks >= 0
+    sampled_blocks = recorder.blocks[has_block]
+    recorder.slip[missing_times, has_block] = w[SLIP, sampled_blocks]
+    recorder.velocity[missing_times, has_block] = w[VELOCITY, sampled_blocks]
 
 
 def solve_on_lattice(
@@ -176,11 +221,14 @@ def solve_on_lattice(
     samples: Samples | None = None,
     progress: Callable[[float], None] | None = None,
     damping_sign: int = 1,
-    kind: type[Lattice] = Lattice,
+    lattice_type: type[Lattice] = Lattice,
 ) -> Solution:
     """Solve a scene on a lattice.
 
-    With ``damping_sign = -1``, damping has the sign that is printed in the paper, and blows up.
+    progress : function that is called now and then with the fraction of the duration done
+    damping_sign : with -1, damping has the sign that is printed in the paper, and the run blows up
+    lattice_type : class of the lattice, which determines the scheme
     """
-    lattice = kind(scene, samples, damping_sign * scene.beta)
-    return extract_solution(lattice, lattice.advance_to_end(progress))
+    lattice = lattice_type(scene, samples, damping_sign * scene.beta)
+    status = lattice.advance_to_end(progress)
+    return extract_solution(lattice, status)

@@ -1,9 +1,10 @@
 """Inner loops of the Taylor step: each is a plain pass over the blocks first..last-1.
 
-Row k of ``w`` is the k-th time derivative of slip. The loops count in unsigned integers: an index
-that could be negative would be tested for wrapping, which costs a factor of 4 to 10. They take
-``w`` as one array: each view of a row that is passed to a function costs 30 ns, more than the pass
-over a narrow pulse.
+Row k of ``w`` is the k-th time derivative of slip, and its columns are the blocks.
+
+The loops count in unsigned integers. Numba would test an index that can be negative for wrapping,
+which makes a loop 4 to 10 times slower. The functions take ``w`` as one array, because each row
+that is passed separately costs 30 ns, more than the pass over a narrow pulse.
 """
 
 import numpy as np
@@ -22,15 +23,19 @@ def block_range(first, last):
 
 @kernel_function(inline=True)
 def second_difference(w, k, i):
-    """Return the second difference of row k at block i, as the difference of two differences."""
+    """Return the second difference of row k at block i, w[k, i+1] - 2 w[k, i] + w[k, i-1]."""
     return (w[k, i + UNSIGNED_ONE] - w[k, i]) - (w[k, i] - w[k, i - UNSIGNED_ONE])
 
 
 @kernel_function(inline=True)
 def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping):
-    """Compute accelerations from differences of strain, leaf springs, pre-stress and damping.
+    """Compute the accelerations of blocks first..last-1 from the equation of motion.
 
-    ``leaf`` is the stiffness of the leaf springs, and ``damping`` is beta/dx^2.
+    The forces come from differences of strain, leaf springs, pre-stress and damping. Those of
+    friction are subtracted elsewhere.
+
+    leaf : stiffness of the leaf springs
+    damping : beta/dx^2
     """
     for i in block_range(first, last):
         # Where slip is large (gamma -> 0), second differences of slip would lose digits. The stored
@@ -46,7 +51,8 @@ def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping
 def next_derivative(w, k, i, inverse_dx2, leaf, damping):
     """Return time derivative k of the slip of block i, from the derivatives k - 2 and k - 1.
 
-    It is derivative k - 2 of the equation of motion.
+    It follows from the equation of motion, which is differentiated k - 2 times. Here ``leaf`` is
+    the stiffness of the leaf springs, and ``damping`` is beta/dx^2.
     """
     elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
     return elastic + damping * second_difference(w, k - 1, i) if damping != 0.0 else elastic
@@ -54,9 +60,9 @@ def next_derivative(w, k, i, inverse_dx2, leaf, damping):
 
 @kernel_function(inline=True)
 def add_two_taylor_terms(nested, w, k, weight, lower_weight, first, last):
-    """Add two terms to a Taylor polynomial in nested form, in place.
+    """Add two terms to the Taylor polynomials of blocks, which are summed in nested form, in place.
 
-    The new value is w[k-1] + lower_weight (w[k] + weight nested).
+    The new value of ``nested`` is w[k-1] + lower_weight (w[k] + weight nested).
     """
     for i in block_range(first, last):
         nested[i] = w[k - 1, i] + lower_weight * (w[k, i] + weight * nested[i])
@@ -68,7 +74,8 @@ def compute_velocities(out, w, first, last, step, order):
 
     The Taylor polynomial of degree ``order`` is summed from the innermost parenthesis on:
     w[1] + step (w[2] + step/2 (w[3] + step/3 (w[4] + ... step/order w[order + 1]))).
-    Returns the number of blocks that may stop by then.
+
+    Returns the number of blocks that may stop within this time.
     """
     # ``out`` holds the parenthesis that begins with w[k + 1]. Each pass adds two terms and lowers k
     # by 2, down to 3. If the order is even, one term is added first, so that k is odd.
@@ -89,17 +96,19 @@ def compute_velocities(out, w, first, last, step, order):
     for i in block_range(first, last):
         after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
         out[i] = after
-        # A block may stop if its velocity is negative or NaN after the step. If it is negative only
+        # Count the block if its velocity is negative or NaN after the step. If it is negative only
         # for a part of the step, its tangent at the start of the step is negative at the end.
-        count += (not (after >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
+        tangent_after = w[1, i] + step * w[2, i]
+        count += (not (after >= 0.0)) | (tangent_after < 0.0)
     return count
 
 
 @kernel_function(inline=True)
 def advance_slip(w, velocity, first, last, step, order):
-    """Advance slip by its Taylor polynomial of degree order + 1, and set the velocity.
+    """Advance the slip of blocks first..last-1 by a step, with a polynomial of degree order + 1.
 
-    The change of slip is left in row SLIP_INCREMENT of ``w``.
+    The velocity at the end of the step is copied from ``velocity``. The change of slip is left in
+    row SLIP_INCREMENT of ``w``.
     """
     # The polynomial is w[0] + step (w[1] + step/2 (w[2] + ... step/(order + 1) w[order + 1])). The
     # highest row of ``w`` receives the parenthesis that begins with w[k + 1]. Each pass adds two
@@ -113,8 +122,8 @@ def advance_slip(w, velocity, first, last, step, order):
     fourth, fifth = step / 4.0, step / 5.0
     for i in block_range(first, last):
         # The parenthesis that begins with w[3].
-        rest = w[3, i] + fourth * (w[4, i] + fifth * nested[i] if k == 4 else nested[i])
-        increment = step * (w[1, i] + half * (w[2, i] + third * rest))
+        from_third = w[3, i] + fourth * (w[4, i] + fifth * nested[i] if k == 4 else nested[i])
+        increment = step * (w[1, i] + half * (w[2, i] + third * from_third))
         w[SLIP_INCREMENT, i] = increment
         w[SLIP, i] += increment
         w[VELOCITY, i] = velocity[i]
@@ -122,10 +131,11 @@ def advance_slip(w, velocity, first, last, step, order):
 
 @kernel_function(reorder=True)
 def sum_strain_rate_products(w, first, last):
-    """Return the sums of (dv)^2 and of dv da over neighbours.
+    """Return the sums of (dv)^2 and of dv da over the pairs of neighbours (i, i + 1).
 
-    Here dv and da are the differences of their velocities and of their accelerations. The sums give
-    the viscous dissipation and half of its time derivative.
+    The block i runs from ``first`` to ``last`` - 1. Here dv and da are the differences of the two
+    velocities and of the two accelerations. The sums give the viscous dissipation and half of its
+    time derivative.
     """
     square, product = 0.0, 0.0
     for i in block_range(first, last):

@@ -6,13 +6,13 @@ therefore cheap to compute, and it gives the motion at any time of the step. One
 1. Compute the time derivatives of slip of all sliding blocks (`fill_derivatives`).
 2. The stress of a stuck neighbour and the velocity of a sliding block are polynomials in the time
    since the step began. Find their first root, which is the next event (`event_prediction`).
-3. Add the change that the event makes to the polynomials of the blocks within its reach, predict
-   the events of these blocks again (`events`), and go back to 2 until no event is left.
+3. Add the change that the event makes to the polynomials of the blocks within its reach, and
+   predict the events of these blocks again (`events`). Go back to 2 until no event is left.
 4. Advance slip, velocity and strain to the end of the step (`finish_step`).
 
-Two events so close that each would change the other end the step early, and happen together at its
-end. Only segments of sliding blocks and their neighbours are touched, since the derivatives of all
-other blocks are zero.
+If two events are so close that each would change the other, the step ends early, and they happen
+together at its end. Only segments of sliding blocks and their neighbours are touched, since the
+derivatives of all other blocks are zero.
 """
 
 import math
@@ -48,9 +48,9 @@ BLOW_UP_FACTOR = 100.0
 
 @kernel_function(inline=True)
 def next_step(limits, start):
-    """Return the length of the step from a time ``start`` on, and the time at its end.
+    """Return the length of the step that begins at a time ``start``, and the time at its end.
 
-    The last step ends exactly at the end time, without rounding.
+    The last step ends exactly at the end of the run, without rounding.
     """
     time_left = limits.end_time - start
     length = min(limits.largest_step, time_left)
@@ -59,7 +59,10 @@ def next_step(limits, start):
 
 @kernel_function()
 def record_release(history, block, time):
-    """Record the time of a first release. A later release removes the stick time."""
+    """Record the release of a block at a time.
+
+    Only the time of its first release is kept. A later release removes its stick time.
+    """
     if math.isnan(history.release_time[block]):
         history.release_time[block] = time
     else:
@@ -70,7 +73,7 @@ def record_release(history, block, time):
 
 @kernel_function()
 def record_stick(history, block, time):
-    """Record the time of a stick, and of the first stick also its block."""
+    """Record the stick of a block at a time. For the first stick of all blocks, note the block."""
     history.stick_time[block] = time
     if history.tally.sticks == 0:
         history.tally.first_stick_time = time
@@ -80,20 +83,23 @@ def record_stick(history, block, time):
 
 @kernel_function()
 def take_samples(recorder, motion, tally, start, end, order):
-    """Take the samples due by the time ``end`` from the Taylor polynomials around ``start``.
+    """Record slip and velocity at all sample times up to ``end`` that are not recorded yet.
 
-    Slip has a polynomial of degree ``order`` + 1, and its velocity one of degree ``order``.
+    They are computed from the Taylor polynomials around ``start``, the time at which the step
+    began. The polynomial of slip has the degree ``order`` + 1, and that of velocity ``order``.
     """
     times, blocks = recorder.times, recorder.blocks
     w = motion.w
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
+        # Time of the sample since the step began.
         s = min(max(times[n], start), end) - start
         for p in range(blocks.shape[0]):
             i = blocks[p]
             # Positions outside the lattice have no block.
             if i < 0:
                 continue
+            # Changes since the step began, by Horner's rule.
             slip_change, velocity_change = 0.0, 0.0
             for k in range(order + 1, 0, -1):
                 slip_change = s / k * (w[k, i] + slip_change)
@@ -106,36 +112,40 @@ def take_samples(recorder, motion, tally, start, end, order):
 
 @inlined_kernel
 def compute_dissipation(medium, motion, segments):
-    """Return the dissipation D of energy and its slope dD/dt.
+    """Return the power that damping and friction alpha v dissipate, and its time derivative.
 
-    Damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2, and friction that is linear
-    in slip velocity dissipates alpha dx times the sum of v_i^2.
+    Damping dissipates beta dx times the sum of ((v_{i+1} - v_i)/dx)^2 over all pairs of neighbours.
+    Friction alpha v dissipates alpha dx times the sum of v_i^2 over all blocks.
     """
-    # Sums of dv^2 and dv da over pairs of neighbours, and of v^2 and v a over blocks.
+    # Sums of dv^2 and dv da over pairs of neighbours, and of v^2 and v a over blocks, where a is
+    # the acceleration.
     dv_squared, dv_da = 0.0, 0.0
     v_squared, v_a = 0.0, 0.0
+    w = motion.w
     for r in range(segments.count.n):
         first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
         at_axis = medium.is_mirrored and first == 1
-        square, product = stencils.sum_strain_rate_products(
-            motion.w, first if at_axis else first - 1, last
-        )
+        # The pair of the first block and its left neighbour is a mirror image if it is at the axis.
+        first_pair = first if at_axis else first - 1
+        square, product = stencils.sum_strain_rate_products(w, first_pair, last)
         dv_squared += square
         dv_da += product
         if medium.alpha != 0.0:
             # The sums are doubled below, but the block at x = 0 has no mirror image.
-            half, w = 0.5 if at_axis else 0.0, motion.w
+            half = 0.5 if at_axis else 0.0
             square, product = friction.sum_velocity_products(w, first, last)
             v_squared += square - half * w[VELOCITY, 1] * w[VELOCITY, 1]
             v_a += product - half * w[VELOCITY, 1] * w[ACCELERATION, 1]
     sides = 2.0 if medium.is_mirrored else 1.0
-    viscous, drag = sides * medium.beta / medium.dx, sides * medium.alpha * medium.dx
-    return viscous * dv_squared + drag * v_squared, 2.0 * (viscous * dv_da + drag * v_a)
+    viscous_factor = sides * medium.beta / medium.dx
+    drag_factor = sides * medium.alpha * medium.dx
+    power = viscous_factor * dv_squared + drag_factor * v_squared
+    return power, 2.0 * (viscous_factor * dv_da + drag_factor * v_a)
 
 
 @kernel_function()
 def clear_slope_changes(slope_changes):
-    """Remove all changes of the slope of a dissipation."""
+    """Remove all changes of the slope of a dissipation, at the start of a step."""
     slope_changes.moment_0 = 0.0
     slope_changes.moment_1 = 0.0
     slope_changes.moment_2 = 0.0
@@ -153,11 +163,14 @@ def add_slope_change(slope_changes, change, time):
 def loss_of_step(h, dissipation, slope, slope_changes):
     """Return the energy lost in a step of length h, without the part from the end of the step.
 
-    The loss is h (2 D_0 + D_1)/3 + h^2 D_0'/6, correct to third order in h, where D_0 and D_0' are
-    the dissipation and its slope at the start of the step and D_1 is the dissipation at its end.
-    Velocities are continuous, so D_1 is computed at the start of the next step, and the part
-    h D_1/3 is added there. An event at time s that changes the slope by k adds k (h - s)^2/2 to the
-    loss. Since D_1 contains the event already, h k (h - s)/3 is subtracted again.
+    Let D_0 and D_0' be the dissipation and its slope at the start of the step, and D_1 the
+    dissipation at its end. The loss is h (2 D_0 + D_1)/3 + h^2 D_0'/6, correct to third order in h.
+    The part h D_1/3 is added at the start of the next step, where D_1 is computed. An event at time
+    s that changes the slope by k adds k (h - s)^2/2 to the loss. Since D_1 contains the event
+    already, h k (h - s)/3 is subtracted again.
+
+    dissipation, slope : D_0 and D_0'
+    slope_changes : moments of k over the events of the step, see `arrays.SLOPE_CHANGES_DTYPE`
     """
     without_events = h * 2.0 * dissipation / 3.0 + h * h * slope / 6.0
     # The sums of k (h - s) and of k (h - s)^2 over the events of the step.
@@ -172,32 +185,34 @@ def loss_of_step(h, dissipation, slope, slope_changes):
 def fill_derivatives(medium, motion, segments, alpha, top):
     """Compute the time derivatives 2 to ``top`` of slip on all segments, in the rows of w.
 
-    Each derivative of the equation of motion gives the next one from the two before it. On a
-    mirrored lattice, block 0 is the mirror image of block 2.
+    Each time derivative of the equation of motion gives one derivative of slip from the two before
+    it. On a mirrored lattice, block 0 is the mirror image of block 2.
+
+    alpha : friction per unit slip velocity
     """
     w, is_mirrored = motion.w, medium.is_mirrored
     leaf_stiffness, damping = medium.leaf_stiffness, medium.damping
     for r in range(segments.count.n):
-        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        if is_mirrored and a == 1:
+        first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
+        if is_mirrored and first == 1:
             w[VELOCITY, 0] = w[VELOCITY, 2]
         strain, tau = motion.strain, motion.tau
         stencils.compute_accelerations(
-            w, strain, tau, a, b, medium.inverse_dx, leaf_stiffness, damping
+            w, strain, tau, first, last, medium.inverse_dx, leaf_stiffness, damping
         )
         if alpha != 0.0:
-            friction.subtract_rate_strengthening(w, 2, a, b, alpha)
-        friction.subtract_friction(motion, a, b, medium.law_kink)
+            friction.subtract_rate_strengthening(w, 2, first, last, alpha)
+        friction.subtract_friction(motion, first, last, medium.law_kink)
         for k in range(3, top + 1):
-            if is_mirrored and a == 1:
+            if is_mirrored and first == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            for i in stencils.block_range(a, b):
+            for i in stencils.block_range(first, last):
                 w[k, i] = stencils.next_derivative(
                     w, k, i, medium.inverse_dx2, leaf_stiffness, damping
                 )
             if alpha != 0.0:
-                friction.subtract_rate_strengthening(w, k, a, b, alpha)
-            friction.add_weakening(w, k, a, b, np.uint64(0), motion, medium.law_kink)
+                friction.subtract_rate_strengthening(w, k, first, last, alpha)
+            friction.add_weakening(w, k, first, last, np.uint64(0), motion, medium.law_kink)
     if is_mirrored:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
@@ -205,43 +220,49 @@ def fill_derivatives(medium, motion, segments, alpha, top):
 
 @kernel_function()
 def fill_rate_strengthened_derivatives(medium, motion, segments, top):
-    """Compute the time derivatives with friction that is linear in slip velocity.
+    """Compute the time derivatives of slip with friction alpha v, as `fill_derivatives` does.
 
-    A separate function keeps the common case without this friction fast.
+    It is a separate function so that the compiler can leave out this friction in the common case,
+    where alpha is 0.
     """
     fill_derivatives(medium, motion, segments, medium.alpha, top)
 
 
 @inlined_kernel
 def predict_events(medium, motion, segments, prediction, tally, h, top):
-    """Compute all velocities at time h, and predict the events until then.
+    """Compute all velocities at time h, the end of the step, and predict the events until then.
 
     Returns False if a velocity is not finite.
+
+    top : order of the highest time derivative of slip
     """
     prediction.event_count.n = 0
     for r in range(segments.count.n):
-        a, b = segments.edges[2 * r], segments.edges[2 * r + 1]
-        suspects = stencils.compute_velocities(motion.velocity, motion.w, a, b, h, top - 1)
+        first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
+        suspects = stencils.compute_velocities(motion.velocity, motion.w, first, last, h, top - 1)
         if suspects > 0 and not event_prediction.predict_sticks(
-            motion, prediction, a, b, suspects, 0.0, h, top
+            motion, prediction, first, last, suspects, 0.0, h, top
         ):
             return False
-        event_prediction.predict_law_kinks(motion, medium.law_kink, prediction, a, b, 0.0, h, top)
-    first, last = np.int64(0), motion.tau.shape[0]
-    lowest = event_prediction.predict_releases(
-        medium, motion, segments, prediction, first, last, 0.0, h
+        event_prediction.predict_law_kinks(
+            motion, medium.law_kink, prediction, first, last, 0.0, h, top
+        )
+    # The whole lattice.
+    start, end = np.int64(0), motion.tau.shape[0]
+    lowest_stress = event_prediction.predict_releases(
+        medium, motion, segments, prediction, start, end, 0.0, h
     )
-    tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
+    tally.min_stuck_stress = min(tally.min_stuck_stress, lowest_stress)
     return True
 
 
 @inlined_kernel
 def set_velocities_at_early_end(motion, scratch, h, order):
-    """Compute the velocities of all blocks that moved, for a step that ends early at time h."""
+    """Compute the velocities of all blocks that moved in a step that ends early, at the time h."""
     moved, step_events = scratch.moved, scratch.step_events
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.compute_velocities(motion.velocity, motion.w, a, b, h, order)
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        stencils.compute_velocities(motion.velocity, motion.w, first, last, h, order)
     for q in range(step_events.count.n):
         # The velocity of a block that was just released can be negative by rounding.
         for i in range(step_events.first[q], step_events.last[q]):
@@ -252,11 +273,11 @@ def set_velocities_at_early_end(motion, scratch, h, order):
 def take_event(medium, motion, segments, scratch, history, event, instant, h):
     """Let one event happen, and add it to the history, to the energy losses and to the counters.
 
+    Returns False if a velocity is not finite.
+
     event : `Event`, its time counted from the start of the step
     instant : the time of the event since the start of the run
     h : duration of the step
-
-    Returns False if a velocity is not finite.
     """
     top = motion.w.shape[0] - 1
     step_events, tally = scratch.step_events, history.tally
@@ -297,27 +318,32 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 
 @inlined_kernel
 def finish_step(medium, motion, scratch, tally, order, h):
-    """Advance slip, velocity and strain of all blocks that moved.
+    """Advance slip, velocity and strain of all blocks that moved to the end of the step.
 
     Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
+
+    h : duration of the step
     """
     w, offset = motion.w, motion.offset
     moved, step_events = scratch.moved, scratch.step_events
-    fastest, first = 0.0, 1 if medium.is_mirrored else 0
+    fastest = 0.0
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.advance_slip(w, motion.velocity, a, b, h, order)
-        tally.block_updates += b - a
-        fastest = max(fastest, w[VELOCITY, a], w[VELOCITY, (a + b) // 2], w[VELOCITY, b - 1])
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        stencils.advance_slip(w, motion.velocity, first, last, h, order)
+        tally.block_updates += last - first
+        middle = (first + last) // 2
+        fastest = max(fastest, w[VELOCITY, first], w[VELOCITY, middle], w[VELOCITY, last - 1])
     # Events have changed the slip by the offset. It is added once to each block and then cleared.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
             w[SLIP, i] += offset[i]
             w[SLIP_INCREMENT, i] += offset[i]
             offset[i] = 0.0
+    # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment.
+    first_bond = 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
-        a, b = moved.edges[2 * r], moved.edges[2 * r + 1]
-        for i in stencils.block_range(max(a - 1, first), b):
+        first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
+        for i in stencils.block_range(max(first - 1, first_bond), last):
             change = w[SLIP_INCREMENT, i + stencils.UNSIGNED_ONE] - w[SLIP_INCREMENT, i]
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
@@ -331,11 +357,17 @@ def finish_step(medium, motion, scratch, tally, order, h):
 
 @inlined_kernel
 def apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top):
-    """Let all events until the time ``latest`` happen together, after a step that ended early."""
+    """Let all events until the time ``latest`` happen together, after a step that ended early.
+
+    end : time of these events since the start of the run
+    latest : the same time since the start of the step, plus a tolerance
+    top : order of the highest time derivative of slip
+    """
     prediction, tally = scratch.prediction, history.tally
     # The step is over, so that an array of its events can hold the blocks to be released.
     due = scratch.step_events.first
-    count = event_prediction.list_due_releases(segments, prediction, latest, due)
+    due_count = event_prediction.list_due_releases(segments, prediction, latest, due)
+    # Sticks and kinks of the law.
     for q in range(prediction.event_count.n):
         if prediction.event_time[q] <= latest:
             block = prediction.event_block[q]
@@ -347,7 +379,8 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
                 motion.w[k, block] = 0.0
             toggle_block(segments, block)
             record_stick(history, block, end)
-    for q in range(count):
+    # Releases.
+    for q in range(due_count):
         toggle_block(segments, due[q])
         friction.begin_weakening(motion, medium.law_kink, due[q])
         record_release(history, due[q], end)
@@ -405,7 +438,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         # The step lasts from the time `start` to `end`, and has the length h. Times of events are
         # counted from its start.
         h, end = next_step(limits, start)
-        # Stage 2: the events that will happen until then.
+        # Stage 2: the events that will happen within the step.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
             return BLOWN_UP
         # At first, the blocks that move in this step are those that slide. Events add others.
@@ -416,17 +449,17 @@ def advance(  # noqa: C901, PLR0912, PLR0915
 
         # Stage 3: one event after another. The step ends early at an event that has to happen
         # together with others.
-        early = False
+        ends_early = False
         while True:
             event = find_next_event(segments, prediction)
             if event.time == math.inf:
                 break
             latest = event.time + time_tolerance
-            early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
+            ends_early = step_events.count.n == MAX_EVENTS_PER_STEP or has_simultaneous_event(
                 segments, prediction, medium, event.block, latest
             )
             instant = min(start + event.time, end)
-            if early:
+            if ends_early:
                 h, end = event.time, instant
                 set_velocities_at_early_end(motion, scratch, h, order)
                 break
@@ -443,7 +476,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         tally.friction_loss += loss_of_step(h, power, power_slope, work_slope_changes)
         tally.pending_step = h
         fastest = finish_step(medium, motion, scratch, tally, order, h)
-        if early:
+        if ends_early:
             latest = h + time_tolerance
             apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top)
         tally.steps += 1

@@ -14,7 +14,8 @@ from pydantic_core import PydanticCustomError
 
 from slippulse.model.checks import short_repr
 from slippulse.model.friction import LAW_NAMES, friction_from
-from slippulse.model.layer_units import BOUNDARY_OF_TOP, Layer
+from slippulse.model.layer_material import BOUNDARY_OF_TOP
+from slippulse.model.layer_units import Layer
 from slippulse.model.measured_columns import RECORD_FOR
 from slippulse.model.prestress import Prestress
 from slippulse.model.rough_prestress import rough

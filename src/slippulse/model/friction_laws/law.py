@@ -16,7 +16,7 @@ STEP_PER_GROWTH_TIME = 0.5
 class LawKink(NamedTuple):
     """Friction that decreases linearly with slip or slip rate up to a kink, and is constant beyond.
 
-    Below, "argument" is the slip since the release, or the slip rate.
+    In the comments below, "argument" is the slip since the release, or the slip rate.
     """
 
     rate: int  # order of the time derivative: 0 if the argument is the slip, 1 if it is slip rate
@@ -28,8 +28,8 @@ class LawKink(NamedTuple):
 class Traits(NamedTuple):
     """Properties of a law that the solvers need in addition to its friction."""
 
-    linear_rate: float = 0.0  # alpha, if friction is alpha du/dt
-    law_kink: LawKink | None = None  # if friction is piecewise linear
+    linear_rate: float = 0.0  # alpha of a law alpha du/dt; 0 for any other law
+    law_kink: LawKink | None = None  # kink of a piecewise linear law; None for any other law
     max_rate_slope: float = 0.0  # upper bound on the derivative of friction by slip rate
     max_drive: float = 0.0  # upper bound on friction that drives slip instead of resisting it
     nucleation_half_length: float = 0.0  # friction is 0 within this distance from x = 0
