@@ -94,7 +94,10 @@ def _with_changed_list(simulation: Any, key: str, change: Callable[[Any, str], A
 
 def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return profiles without the names of the files from which their points were read."""
-    return [{key: profile[key] for key in profile if key != "file"} for profile in profiles]
+    copies = [dict(profile) for profile in profiles]
+    for profile in copies:
+        profile.pop("file", None)
+    return copies
 
 
 def rough_lists(background: Mapping[str, Any]) -> dict[str, Sequence]:

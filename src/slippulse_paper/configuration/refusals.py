@@ -52,17 +52,19 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     """
     kind, path = problem["type"], problem["loc"]
     entry = _last_known_entry(path, config)
-    # A value of several allowed forms is refused as a whole. Pydantic adds the form to the path.
+    # If a value may have several forms, pydantic adds the form to the path. Such a value is refused
+    # without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     has_one_form = len(entry.path) >= len(mapping_path)
-    if kind == "value_error" and has_one_form:
+    kind_in_mapping = kind if has_one_form else None
+    if kind_in_mapping == "value_error":
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    if kind == "missing" and isinstance(path[-1], str) and has_one_form:
+    if kind_in_mapping == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     if path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    if kind == "extra_forbidden" and has_one_form:
+    if kind_in_mapping == "extra_forbidden":
         return _unknown_key_line(path, config)
     allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
@@ -154,8 +156,8 @@ def _schema_of_row(schema: Mapping) -> Any:
 def _schema_of_key(schema: Mapping, key: str) -> Any:
     """Return the schema for the value of a key in a mapping, or None if there is none.
 
-    The keys of a mapping are either fixed, or names that match a pattern. Then all values have the
-    same schema.
+    The keys of a mapping are either fixed, or names that match a pattern. In the second case, all
+    values have the same schema.
     """
     properties = schema.get("properties", {})
     if key in properties:

@@ -397,7 +397,7 @@ class Simulation(PhysicsOfSweep):
         "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
     )
     profiles: Distinct[Profile] | None = key(
-        "instead of the three keys above: complete profiles", None
+        "instead of `left`, `right` and `width`: complete profiles", None
     )
     beyond: Beyond | None = key("a second level on one side, given by the next two keys", None)
     gamma: Distinct[Positive] | None = key(GAMMA, None)

@@ -29,8 +29,8 @@ NOT_ONE_PARAGRAPH = "a text for a page is not one paragraph of Markdown"
 # A link has an address and a text, and a picture may have an alternative text.
 LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
 IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
-# In a text of a user, formulas ($...$) and links to the web ([...](https://...)) are kept as they
-# are. Elsewhere, special signs of Markdown are escaped.
+# In a text of a user, formulas ($...$) and links to the web ([text](address)) are kept as they are.
+# Elsewhere, special signs of Markdown are escaped.
 FORMULA = re.compile(r"(?<!\\)\$(?=\S)((?:[^$\\]|\\.)*?)(?<=\S)\$(?!\d)")
 KEPT = re.compile(rf"({FORMULA.pattern}|(?<!!)\[[\w ,.:;()-]+\]\(https?://[\w./?=&%:~-]+\))")
 SPECIAL_SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
