@@ -2,10 +2,10 @@
 
     python workflow/run.py replicate|verify|rulegraph
 
-The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET and ALLOW_LARGE. In
+The options of make are environment variables: CORES, PRESET, OVERLAY, TARGET and ALLOW_LARGE. In
 addition to what Snakemake does, targets may have short names, results that were edited by hand are
-made again, and the verdicts are printed at the end. A signal ends the run and all of its processes
-at once, with one line.
+made again, and the verdicts are printed at the end. A signal ends the run and all its processes at
+once, and one line is printed.
 """
 
 import json
@@ -24,10 +24,11 @@ from typing import TextIO
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT / "src"))
 RESULTS, STATE = Path("results"), Path(".snakemake")
-# In this folder docs/compare.md keeps the results of the shipped configuration for a comparison.
+# According to docs/compare.md, users copy their results to this folder before they make new ones.
 KEPT_RESULTS = Path("shipped")
 LAST_RUN = STATE / "slippulse-last-run.json"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# Options of make that change the results.
 OPTIONS = ("PRESET", "OVERLAY", "ALLOW_LARGE")
 ALLOWED_TARGETS = (
     "allowed: a figure (fig1 to fig11, or a name in docs/figures.md), everything, scenes,"
@@ -38,26 +39,32 @@ PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
 PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
 
 
-def options_of(given: Mapping[str, str]) -> list[str]:
-    """Return the options of Snakemake that correspond to the options of make."""
+def options_of(make_options: Mapping[str, str]) -> list[str]:
+    """Return the options of Snakemake that correspond to the options of make.
+
+    Exits with the reason if the overlay cannot be read.
+    """
     values = []
     for name in ("PRESET", "ALLOW_LARGE"):
-        if given.get(name):
-            values.append(f"{name.lower()}={given[name]}")
+        if make_options.get(name):
+            values.append(f"{name.lower()}={make_options[name]}")
     options = ["--config", *values] if values else []
-    if given.get("OVERLAY"):
-        check_overlay(given["OVERLAY"])
-        options += ["--configfile", given["OVERLAY"]]
+    if make_options.get("OVERLAY"):
+        check_overlay(make_options["OVERLAY"])
+        options += ["--configfile", make_options["OVERLAY"]]
     return options
 
 
-def targets_of(given: Mapping[str, str]) -> list[str]:
-    """Return the targets of make, with the short names of figures completed."""
-    return [full_target(target) for target in given.get("TARGET", "").split()]
+def targets_of(make_options: Mapping[str, str]) -> list[str]:
+    """Return the targets of make. Short names of figures are replaced by paths."""
+    return [full_target(target) for target in make_options.get("TARGET", "").split()]
 
 
 def check_overlay(path: str) -> None:
-    """Refuse an overlay that is not plain data, since Snakemake would execute templates in it."""
+    """Exit with the reason if an overlay is not plain data.
+
+    Snakemake would execute templates in an overlay.
+    """
     from slippulse_paper.configuration.read import ConfigError, read_overlay
 
     try:
@@ -67,9 +74,13 @@ def check_overlay(path: str) -> None:
 
 
 def full_target(target: str) -> str:
-    """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
+    """Return the path of a figure from its short name, such as fig5, fig05.pdf or sweep_NAME.
+
+    Other targets are returned as they are.
+    """
     name, _, ending = target.removeprefix("results/figures/").partition(".")
     modules = PROJECT / "src/slippulse_paper/figures"
+    # A figure of the paper may be given by its number alone.
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
         number = int(numbered[1])
@@ -81,7 +92,7 @@ def full_target(target: str) -> str:
 
 
 def is_unknown(target: str) -> bool:
-    """Return True for a target that is neither a path nor a rule of this project."""
+    """Return True if a target is neither a path nor the name of a rule of this project."""
     rules = "\n".join(
         path.read_text(encoding="utf-8")
         for path in [PROJECT / "Snakefile", *PROJECT.glob("workflow/rules/*.smk")]
@@ -92,8 +103,8 @@ def is_unknown(target: str) -> bool:
 def clean_up_after_kill() -> TextIO:
     """Remove the unfinished files of a killed run. Exit if another run uses this folder.
 
-    Returns a lock, which refuses another run that make starts. Snakemake itself holds the second
-    lock while it runs jobs.
+    There are two locks. The first one is returned, and make holds it until its run ends. The second
+    one is released here, because the Snakemake that make starts takes it.
     """
     from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
@@ -103,10 +114,10 @@ def clean_up_after_kill() -> TextIO:
     if make_lock is None or snakemake_lock is None:
         sys.exit("Another run is using this folder: wait for it, or stop it.")
     # Snakemake removes its own locks unless it is killed.
-    left_locks = [*STATE.glob("locks/*.lock")]
-    if left_locks:
-        unfinished = RESULTS.rglob(f".*{UNFINISHED_MARK}*")
-        for path in [*left_locks, *unfinished]:
+    locks_of_killed_run = [*STATE.glob("locks/*.lock")]
+    if locks_of_killed_run:
+        unfinished_files = RESULTS.rglob(f".*{UNFINISHED_MARK}*")
+        for path in [*locks_of_killed_run, *unfinished_files]:
             path.unlink(missing_ok=True)
         print("The last run was killed: its unfinished files are made again.", file=sys.stderr)
     snakemake_lock.close()
@@ -114,7 +125,10 @@ def clean_up_after_kill() -> TextIO:
 
 
 def changed_results() -> dict[str, str]:
-    """Return results that Snakemake does not know to have changed, with the reasons."""
+    """Return the results whose change Snakemake does not notice, with the reasons.
+
+    Exits if a folder has taken the place of a file.
+    """
     from slippulse_paper.records.job_records import RecordedFiles
 
     problems = dict(RecordedFiles(RESULTS).problems())
@@ -125,7 +139,10 @@ def changed_results() -> dict[str, str]:
 
 
 def options_for_changed_results(options: list[str], targets: list[str]) -> list[str]:
-    """Return options with which Snakemake makes changed results that the targets need again."""
+    """Return options of Snakemake that make changed results again, if the targets need them.
+
+    Prints how many results these are, with the first one and its reason.
+    """
     problems = changed_results()
     if not problems:
         return []
@@ -136,27 +153,30 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
     if not names:
         return []
     first = names[0]
-    count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
-    print(f"{count} made again: {first}: {problems[first]}", file=sys.stderr)
+    results_are = "1 result is" if len(names) == 1 else f"{len(names)} results are"
+    print(f"{results_are} made again: {first}: {problems[first]}", file=sys.stderr)
     return ["--forcerun", *names]
 
 
 def summary(
     options: list[str], targets: list[str], stderr: int | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run Snakemake's --summary, which lists the files of the targets with their state."""
+    """Run Snakemake with --summary, which lists each file that the targets need, with its state."""
     summary_options = ["--profile", "none", "--workflow-profile", "none", "--summary"]
     command = [sys.executable, "-m", "snakemake", *summary_options, *options, "--", *targets]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
 
 
-def closing_text(targets: list[str], given: Mapping[str, str]) -> str:
-    """Return the text that is printed after a run: the verdicts, if requested, and what to open."""
+def closing_text(targets: list[str], make_options: Mapping[str, str]) -> str:
+    """Return the text that is printed after a run.
+
+    It has the verdicts, if the targets include them, and says what to open.
+    """
     from slippulse_paper.configuration.read import read_config, read_overlay
 
     shipped = read_overlay(PROJECT / "config/config.yaml")
-    overlays = [read_overlay(given["OVERLAY"])] if given.get("OVERLAY") else []
-    preset = {"preset": given["PRESET"]} if given.get("PRESET") else {}
+    overlays = [read_overlay(make_options["OVERLAY"])] if make_options.get("OVERLAY") else []
+    preset = {"preset": make_options["PRESET"]} if make_options.get("PRESET") else {}
     config = read_config(shipped, overlays, preset, every_run=False)
     # By default, a draft makes only the figures of the paper.
     if targets in ([], ["all"]) and not config.presets[config.preset].whole:
@@ -172,8 +192,8 @@ def closing_text(targets: list[str], given: Mapping[str, str]) -> str:
 def verdicts_text(shipped: Mapping, config: Mapping) -> str:
     """Return lines with the number of claims of each verdict, and with the changed verdicts.
 
-    Verdicts are compared only if the configuration differs from the shipped one in more than the
-    preset.
+    The verdicts are compared with the shipped ones only if the configuration differs from the
+    shipped one in more than the preset.
     """
     from slippulse_paper.claims.claim_texts import read_text
     from slippulse_paper.claims.ledger import Ledger
@@ -190,7 +210,7 @@ def verdicts_text(shipped: Mapping, config: Mapping) -> str:
 
 
 class Run:
-    """A run of Snakemake in a separate process group, which ends when this process ends."""
+    """A run of Snakemake in a separate process group. The group ends when this process ends."""
 
     def __init__(self, arguments: list[str]) -> None:
         # A profile of the user could change what is made.
@@ -205,8 +225,8 @@ class Run:
             environment["XDG_CACHE_HOME"] = str((STATE / "caches").resolve())
         command = [sys.executable, "-m", "snakemake", "--profile", "none", *arguments]
         self.process = subprocess.Popen(command, env=environment, start_new_session=True)
-        # If this process is killed, the system closes its end of the pipe. The shell, which waits
-        # for that, then kills the group.
+        # A shell waits for the end of its input, which is a pipe from this process. If this process
+        # is killed, the system closes the pipe, and the shell kills the process group.
         end_group = f"read _; kill -KILL -{self.process.pid}"
         self.guard = subprocess.Popen(
             ["sh", "-c", end_group], stdin=subprocess.PIPE, start_new_session=True
@@ -218,20 +238,21 @@ class Run:
             os.killpg(self.process.pid, signal.SIGKILL)
 
     def wait(self) -> int:
-        """Wait for Snakemake and return its exit code."""
+        """Wait for Snakemake, end all other processes of the run, and return the exit code."""
         code = self.process.wait()
         self.guard.kill()
         self.end()
+        # A negative code is a signal. Shells report signal N as 128 + N.
         return code if code >= 0 else 128 - code
 
 
 def end_on_signals(run: Run) -> None:
-    """Make this process end its run with one line when it gets a signal."""
+    """Make this process end its run, print one line and exit when it gets a signal."""
 
     def stop(number: int, _frame: object) -> None:
-        """End the run, and ignore further signals meanwhile."""
-        for other in SIGNALS:
-            signal.signal(other, signal.SIG_IGN)
+        """End the run and this process, and ignore further signals meanwhile."""
+        for further_signal in SIGNALS:
+            signal.signal(further_signal, signal.SIG_IGN)
         run.end()
         # A progress bar hides the cursor of the terminal.
         show_cursor = b"\x1b[?25h" if sys.stderr.isatty() else b""
@@ -242,16 +263,16 @@ def end_on_signals(run: Run) -> None:
         signal.signal(number, stop)
 
 
-def replicate(given: Mapping[str, str]) -> int:
+def replicate(make_options: Mapping[str, str]) -> int:
     """Make the targets, print what to open, and return the exit code."""
     began = time.monotonic()
-    targets, options = targets_of(given), options_of(given)
+    targets, options = targets_of(make_options), options_of(make_options)
     has_results = (RESULTS / "provenance.json").exists()
-    if given.get("OVERLAY") and has_results and not KEPT_RESULTS.exists():
+    if make_options.get("OVERLAY") and has_results and not KEPT_RESULTS.exists():
         line = "To compare these results with the new ones, stop now, copy them, and start again: "
         print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
     lock = clean_up_after_kill()
-    cores = ["--cores", given.get("CORES") or "2"]
+    cores = ["--cores", make_options.get("CORES") or "2"]
     changed = options_for_changed_results(options, targets)
     run = Run([*cores, *options, *changed, "--", *targets])
     end_on_signals(run)
@@ -262,30 +283,33 @@ def replicate(given: Mapping[str, str]) -> int:
         names = ", ".join(unknown)
         print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:
-        record_run(given, targets)
+        record_run(make_options, targets)
         time_taken = timedelta(seconds=round(time.monotonic() - began))
-        print(f"{closing_text(targets, given)}. It took {time_taken}.")
-        if given.get("OVERLAY") and KEPT_RESULTS.exists():
+        print(f"{closing_text(targets, make_options)}. It took {time_taken}.")
+        if make_options.get("OVERLAY") and KEPT_RESULTS.exists():
             command = f"make compare AGAINST={KEPT_RESULTS}"
             print(f"To compare the old results with the new ones: {command}")
     return code
 
 
-def given_options(given: Mapping[str, str]) -> dict[str, str]:
-    """Return the options that the results depend on, and that have a value."""
-    return {name: given[name] for name in OPTIONS if given.get(name)}
+def result_options(make_options: Mapping[str, str]) -> dict[str, str]:
+    """Return those options of make that change the results, if they have a value."""
+    return {name: make_options[name] for name in OPTIONS if make_options.get(name)}
 
 
-def record_run(given: Mapping[str, str], targets: list[str]) -> None:
-    """Record the options of a run, so that `verify` can use them."""
+def record_run(make_options: Mapping[str, str], targets: list[str]) -> None:
+    """Write the options and targets of a run to a file, so that `verify` can use them."""
     recorded_targets = ["everything"] if "everything" in targets else []
-    last_run = {"options": given_options(given), "targets": recorded_targets}
+    last_run = {"options": result_options(make_options), "targets": recorded_targets}
     LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
 
 
-def verified_run(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
-    """Return the options and targets to verify. Without options they are those of the last run."""
-    options, targets = given_options(given), targets_of(given)
+def verified_run(make_options: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
+    """Return the options and targets that `verify` uses.
+
+    They are those of make or, if make has no options that change results, those of the last run.
+    """
+    options, targets = result_options(make_options), targets_of(make_options)
     if not options:
         # Without a readable record of a run, the shipped configuration is verified.
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
@@ -296,13 +320,13 @@ def verified_run(given: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
     return options, targets
 
 
-def verify(given: Mapping[str, str]) -> int:
+def verify(make_options: Mapping[str, str]) -> int:
     """Print each result that differs from what a run would make now, and return the exit code.
 
-    These are the results that Snakemake would make again, those that were changed by hand, and
-    files that no job has recorded. The exit code is 1 if there are any.
+    A result is printed if Snakemake would make it again, if it was changed by hand, or if no job
+    has recorded it. The exit code is 1 if there is any such result.
     """
-    options, targets = verified_run(given)
+    options, targets = verified_run(make_options)
     listing = summary(options_of(options), targets)
     if listing.returncode:
         return listing.returncode
@@ -317,19 +341,26 @@ def verify(given: Mapping[str, str]) -> int:
     return int(bool(problems))
 
 
-def rulegraph(given: Mapping[str, str]) -> int:
+def rulegraph(make_options: Mapping[str, str]) -> int:
     """Print the graph of the rules in the mermaid format, and return the exit code."""
-    targets = targets_of(given) or ["results/figures/fig05_scaling.png", "results/claims.json"]
+    targets = targets_of(make_options) or [
+        "results/figures/fig05_scaling.png",
+        "results/claims.json",
+    ]
     quiet = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
     graph = ["--rulegraph", "mermaid-js", "--", *targets]
-    command = [sys.executable, "-m", "snakemake", *quiet, *options_of(given), *graph]
+    command = [sys.executable, "-m", "snakemake", *quiet, *options_of(make_options), *graph]
     return subprocess.run(command, check=False).returncode
 
 
 def outdated(summary: str) -> Iterable[tuple[str, str]]:
-    """Yield the files that Snakemake would make again, with the reasons, from its summary."""
+    """Yield the files that Snakemake would make again, with the reasons.
+
+    ``summary`` is the text that Snakemake prints with --summary.
+    """
+    # The first line is the header.
     for line in summary.splitlines()[1:]:
-        # The first column is the file, and the last two are its status and its plan.
+        # The first column is the file. The last two are its status and what Snakemake plans.
         name, *_, status, plan = line.split("\t")
         if plan != "no update" or status == "missing":
             yield name, "made from files that are not up to date" if status == "ok" else status
@@ -338,7 +369,7 @@ def outdated(summary: str) -> Iterable[tuple[str, str]]:
 def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
     """Yield the files that differ from what their jobs wrote, and the files that no job wrote.
 
-    outdated : files whose reason is known already
+    outdated : files that have another problem already, which are not listed as unrecorded
     """
     from slippulse_paper.records.job_records import RecordedFiles, made_without_step
 

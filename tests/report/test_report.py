@@ -162,7 +162,7 @@ def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path,
     loaded = LoadedInputs({}, inputs.tables)
     monkeypatch.setattr(write_report, "load_inputs", lambda files: loaded)
     names = names_for(inputs, print, DOCUMENTS[0])
-    assert set(write_report.by_hand(DOCUMENTS[0], print)) == set(names)
+    assert set(write_report.notebook_names(DOCUMENTS[0], print)) == set(names)
 
 
 def test_a_hostile_text_of_an_overlay_is_only_shown(make_inputs, build, shipped):

@@ -1,4 +1,4 @@
-# Joining of the files of chunks. Sweeps are divided into chunks on a cluster.
+# A rule that joins the files of chunks. Sweeps may be divided into chunks, mostly on a cluster.
 
 
 rule join:

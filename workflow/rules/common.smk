@@ -1,4 +1,4 @@
-# The checked configuration, and functions that all rules use: paths, settings and source digests.
+# The checked configuration, and functions of all rules for paths, settings and source digests.
 
 import os
 import re
@@ -8,7 +8,8 @@ from functools import cache
 from pathlib import Path
 
 PROJECT = Path(str(workflow.current_basedir)).resolve().parents[1]
-# Workers, too, run the code of this project, even if another version is installed or on PYTHONPATH.
+# This process and its workers run the code of this project, even if another version is installed or
+# on PYTHONPATH.
 SOURCE_FOLDER = str(PROJECT / "src")
 sys.path.insert(0, SOURCE_FOLDER)
 PYTHON_PATH = os.pathsep.join(filter(None, [SOURCE_FOLDER, os.getenv("PYTHONPATH")]))
@@ -37,12 +38,15 @@ from slippulse_paper.steps.worker_pool import WorkerPool, run_here
 # workflow may add a prefix to the paths.
 IS_MODULE = not workflow.modifier.is_main_snakefile()
 WORKERS = WorkerPool()
-# Lines on jobs that have failed, and the lock of this folder while the run holds it.
+# Lines on jobs that have failed, and the lock of this folder, which is held until the run ends.
 FAILED, HELD_LOCKS = [], []
 
 
 def project(path):
-    """Return the path of a file of the project from the working directory."""
+    """Return the path of a file of the project as seen from the working directory.
+
+    ``path`` is relative to the project.
+    """
     is_in_project = Path.cwd() == PROJECT and not IS_MODULE
     return path if is_in_project else f"{PROJECT}/{path}"
 
@@ -53,12 +57,13 @@ try:
     OVERLAYS = [] if IS_MODULE else [*map(read_overlay, workflow.overwrite_configfiles)]
     GIVEN = dict(config if IS_MODULE else workflow.config_settings.config)
     if not IS_MODULE:
-        # Snakemake reads the name of a preset such as 01 as a number.
+        # Snakemake reads a name of a preset such as 01 as a number. Take the text instead.
         for argument in workflow.config_settings.config_args or ():
             name, _, text = argument.partition("=")
             if name == "preset" and text:
                 GIVEN["preset"] = text
-    # Only the main process checks all scenes. A job on another node starts Snakemake again.
+    # Only the main process checks the scenes of all runs. On a cluster, each job starts Snakemake
+    # again.
     CONFIG = read_config(SHIPPED, OVERLAYS, GIVEN, workflow.is_main_process)
     # Differences from the shipped configuration, or None if there is no overlay.
     ALTERED = None
@@ -94,21 +99,23 @@ SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 LAYERS = {name: scene.layer_parameters() for name, scene in CONFIG.scenes.items()}
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
-# The NEEDS of each figure: its inputs by kind of file, and the keys of the configuration it reads.
+# The constant NEEDS of each figure: the names of its inputs for each kind of file, and the keys of
+# the configuration that it reads (`settings`).
 NEEDS = needs_of("figures")
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 TOPICS = declared("steps.predict", "TOPICS")
+# The same for the figures of simulations that the user has added.
 SWEEPS = {f"sweep_{name}": {"measured": {name: TOPICS}} for name in OWN_SIMULATIONS}
 CLAIM_SIMULATIONS = declared("claims.paper_claims", "SIMULATIONS")
 CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
 # Claims use the predicted front speeds of this simulation, which has no grid study.
 CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
-# For each reader (the claims, the report and every figure), the topics of predictions that it
-# reads, by simulation.
+# The topics of the predictions that the claims, the report and each figure read, by simulation.
 READ_TOPICS = [CLAIM_PREDICTED, REPORT_NEEDS["measured"]]
 READ_TOPICS += [needs.get("measured", {}) for needs in NEEDS.values()]
-# Path of the file of each kind with a name.
+# Paths of the files of each kind. {name} stands for the name of a simulation, study, figure, scene
+# or scheme.
 FILES = {
     "data": "results/data/{name}.nc",
     "measured": "results/measurements/{name}.csv",
@@ -121,9 +128,10 @@ FILES = {
     "animations": "results/scenes/{name}.gif",
     "kernels": "results/kernels/{name}.txt",
 }
-# Errors against measured seconds.
+# Table and figure of errors as a function of the computing time.
 SECONDS = {ending: f"results/seconds/accuracy_cost.{ending}" for ending in ("csv", "png", "pdf")}
-# A job whose modules reach these kernels waits until they are compiled.
+# Modules of the kernels, by name. A job that imports such a module, directly or not, waits until
+# its kernels are compiled.
 KERNELS = {
     "layer": "slippulse.solver.layer",
     "localised": "slippulse.solver.taylor",
@@ -132,20 +140,20 @@ KERNELS = {
 
 
 def made(kind, names):
-    """Return the files of one kind with some names."""
+    """Return the paths of the files of one kind with some names."""
     return expand(FILES[kind], name=[*names])
 
 
 def inputs_of(needs):
-    """Return the files by kind that a figure or a study is made from.
+    """Return the input files of a figure or a study, by kind, from its NEEDS.
 
-    They contain predictions for the simulations that have topics in its NEEDS.
+    Predictions are among them for each simulation that has topics in its NEEDS.
     """
     files = {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
     predicted = [name for name, topics in needs.get("measured", {}).items() if topics]
     files["predicted"] = made("predicted", predicted)
     lists = needs.get("lists", ())
-    # Lists are results, or texts of the project.
+    # The files of the kind `lists` are results, or texts of the project.
     files["lists"] = [path if path.startswith("results/") else project(path) for path in lists]
     return files
 
@@ -154,9 +162,10 @@ SOURCES_BY_DIGEST = {}
 
 
 def code_of(step, *modules, texts=()):
-    """Return the digest of the sources of a step. A job runs again if it changes.
+    """Return the digest of the sources of a step. A job runs again if its digest changes.
 
-    The sources are its module, modules that it imports by name, and texts that it reads.
+    The sources are the module of the step, further ``modules`` that it imports by their names when
+    it runs, all modules that these import, and the ``texts`` that the step reads.
     """
     step_module = f"slippulse_paper.steps.{step}"
     sources = sources_of((step_module, *modules), tuple(texts))
@@ -165,7 +174,7 @@ def code_of(step, *modules, texts=()):
 
 
 def templates(*names):
-    """Return the paths of templates, and of the templates that all pages use."""
+    """Return the paths of some templates, and of the two templates that all pages use."""
     folder = PROJECT / "src/slippulse_paper/report/templates"
     paths = []
     for name in ("base.html", "style.css", *names):
@@ -182,7 +191,10 @@ def plain_paths(named_files):
 
 
 def run_step(step, wildcards, input, output, params, threads, log):
-    """Run a step in a worker process, or in this one if Snakemake has started it for the job."""
+    """Run a step in a worker process, or in this process if Snakemake has started it for the job.
+
+    The arguments are the name of the step, and the variables that Snakemake gives to a rule.
+    """
     variables = dict(wildcards.items()) | {"threads": threads}
     job = Job(
         step=step,
@@ -201,7 +213,7 @@ def run_step(step, wildcards, input, output, params, threads, log):
         else:
             run_here(job)
     except JobFailed as reason:
-        # Snakemake reads the log of a failed job. If no process was started, there is none.
+        # Snakemake prints the log of a failed job. If no process was started, write an empty log.
         with suppress(OSError):
             Path(str(log)).touch()
         FAILED.append(f"{job.name}: {reason}")
@@ -209,54 +221,59 @@ def run_step(step, wildcards, input, output, params, threads, log):
 
 
 def note_of(needs, *keys):
-    """Return a line on altered parameters of the inputs of a figure, or no text.
+    """Return a line that names altered parameters of the inputs of a figure, or no text.
 
-    ``keys`` are keys of the configuration that the figure reads in addition to those in its NEEDS.
+    ``needs`` is its constant NEEDS. ``keys`` are further keys of the configuration that the figure
+    reads.
     """
     if ALTERED is None:
         return ""
     # A figure also depends on everything that its studies read.
-    all_needs = [needs, *(STUDY_NEEDS[study] for study in needs.get("studies", ()))]
+    needs_of_studies = [STUDY_NEEDS[study] for study in needs.get("studies", ())]
     simulations, settings = set(), [*keys]
-    for read in all_needs:
-        settings += read.get("settings", ())
+    for needs_of_one in [needs, *needs_of_studies]:
+        settings += needs_of_one.get("settings", ())
         for kind in ("data", "measured", "uncertainties", "sweeps"):
-            simulations.update(read.get(kind, ()))
+            simulations.update(needs_of_one.get(kind, ()))
     return ALTERED.note(sorted(simulations), settings)
 
 
 @cache
 def sweep_of(name):
-    """Return a resolved simulation."""
+    """Return the resolved simulation with a name."""
     return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY)
 
 
 @cache
 def bound_of(name):
-    """Return the upper bound on the cost of each chunk of a simulation."""
+    """Return the upper bound on the cost of one chunk of a simulation, or of all its runs."""
     return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
 
 
-# Snakemake evaluates the params of all waiting jobs whenever a job has ended.
+# The results are cached, because Snakemake evaluates the params of all waiting jobs whenever a job
+# has ended.
 @cache
 def settings_of(job):
-    """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8."""
+    """Return the settings of the jobs on a simulation, or on a chunk such as NAME/3-of-8.
+
+    Each rule takes from them those that its results depend on.
+    """
     name, _, chunk = job.partition("/")
     whole_sweep = sweep_of(name)
     sweep = {**whole_sweep, "chunk": chunk_numbers(chunk)} if chunk else whole_sweep
     scheme = sweep["scheme"]
-    # Under a displacement boundary no number depends on the fraction.
+    # If the displacement is held, no number depends on the fraction of |x_minus|.
     fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
-        # If an accuracy is requested, `promised` adds the spacing of each run.
+        # If an accuracy is required, `promised` adds the spacing of each run.
         "sweep": promised(sweep),
         "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
         "measure": {**config["measure"], "fraction": fraction},
         "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
-        # The bound is a function, since most rules do not use it and it takes time.
+        # This is a function, since most rules do not need the bound, which takes time.
         "bound": lambda: bound_of(name),
     }
 
@@ -272,7 +289,10 @@ def chunk_names(name, count):
 
 
 def with_chunks(names, chunks):
-    """Return names in which each divided simulation or study is replaced by its chunks."""
+    """Return names of jobs, in which each divided simulation or study is replaced by its chunks.
+
+    ``chunks`` has the names of the chunks of each divided simulation or study.
+    """
     jobs = []
     for name in names:
         jobs += chunks.get(name, [name])
@@ -280,9 +300,10 @@ def with_chunks(names, chunks):
 
 
 def topics_of(name):
-    """Return the topics of predictions that claims, report or figures read for a simulation.
+    """Return the topics of the predictions that are read for a simulation.
 
-    They are all topics if nothing reads any, which is so for the simulations of an overlay.
+    All topics are returned if claims, report and figures read none. This concerns the simulations
+    that an overlay adds.
     """
     topics = set()
     for topics_by_simulation in READ_TOPICS:
@@ -291,12 +312,16 @@ def topics_of(name):
 
 
 def setting(key):
-    """Return a function that returns one setting of the simulation in the wildcards of a job."""
+    """Return a function of the wildcards of a job that returns one setting of its simulation."""
     return lambda wildcards: settings_of(wildcards.simulation)[key]
 
 
 def check_packages_and_lock():
-    """Exit if packages do not have the versions of requirements.lock, or if another run is here."""
+    """Exit if installed packages differ from requirements.lock, or if another run uses this folder.
+
+    Otherwise take the lock of this folder, and print which altered defaults of the model some
+    simulations override.
+    """
     if problem := package_problem(PROJECT / "requirements.lock"):
         sys.exit(problem)
     # The system releases the lock when this process ends, even if it is killed.
@@ -308,44 +333,49 @@ def check_packages_and_lock():
         print(line, file=sys.stderr)
 
 
+# Number of changed results that are named.
 MAX_SHOWN_RESULTS = 5
 
 
 def report_changed_results():
-    """Print one line if results have changed in a way that Snakemake does not notice."""
+    """Print one line if results have changed in a way that Snakemake does not notice.
+
+    The line names some of them, and the command that makes them again.
+    """
     problems = dict(RecordedFiles("results").problems())
     if not problems:
         return
     names = [*problems]
-    count = "1 result is" if len(names) == 1 else f"{len(names)} results are"
+    results_are = "1 result is" if len(names) == 1 else f"{len(names)} results are"
     more = " ..." if len(names) > MAX_SHOWN_RESULTS else ""
     reason = problems[names[0]]
     example = reason if len(names) == 1 else f"{names[0]}: {reason}"
     shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({example})"
     remedy = "make replicate, or snakemake --forcerun and their names"
-    print(f"{count} changed: {shown}. To make them again: {remedy}", file=sys.stderr)
+    print(f"{results_are} changed: {shown}. To make them again: {remedy}", file=sys.stderr)
 
 
 if workflow.is_main_process and not IS_MODULE:
     report_changed_results()
 
 
-# The chunks of each sweep that is divided. Their names contain the number of chunks, so that files
-# of another division are not used.
+# The names of the chunks of each divided sweep. They contain the number of chunks, so that files of
+# another division are not used.
 CHUNKS = {
     name: chunk_names(name, sweep.chunks) for name, sweep in SIMULATIONS.items() if sweep.chunks > 1
 }
-# The chunks of each study that is divided.
+# The names of the chunks of each divided study.
 STUDY_CHUNKS = {}
 LAYER_CHUNKS = config["figures"]["study_layer"].get("chunks", 1)
 if LAYER_CHUNKS > 1:
     STUDY_CHUNKS["layer_map"] = chunk_names("layer_map", LAYER_CHUNKS)
-# A job runs a simulation without chunks, or one chunk.
+# A job runs an undivided simulation or study, or one chunk.
 JOB_NAMES = with_chunks(SIMULATIONS, CHUNKS)
 STUDY_JOB_NAMES = with_chunks(STUDY_NEEDS, STUDY_CHUNKS)
 
 
-# Kind and name (of a simulation or study) of each joined file, by its path below results/.
+# For each file that is joined from chunks, by its path below results/: its kind of file, and the
+# name of the simulation or study.
 JOINED = {}
 for kind in ("data", "measured", "predicted", "uncertainties", "coarser"):
     for name in CHUNKS:
@@ -357,21 +387,21 @@ ALL_FIGURES = NEEDS | SWEEPS
 
 
 def solver_of(wildcards):
-    """Return the module of the solver of a simulation."""
+    """Return the name of the module that solves the scenes of a simulation."""
     return settings_of(wildcards.simulation)["solver"].partition(":")[0]
 
 
 def prediction_modules(wildcards):
-    """Return the modules that compute the predictions of a simulation."""
+    """Return the names of the modules that compute the predictions of a simulation."""
     modules = declared("steps.predict", "MODULES")
     topics = settings_of(wildcards.simulation)["topics"]
     return [f"slippulse.prediction.{modules[topic]}" for topic in topics]
 
 
 def joined_inputs(wildcards):
-    """Return the files of the chunks, and for uncertainties also the joined measurements.
+    """Return the files of the chunks from which a file is joined.
 
-    The joined uncertainties have the order of the runs in the measurements.
+    Uncertainties also need the joined measurements, from which they get the order of the runs.
     """
     kind, name = JOINED[wildcards.joined]
     chunks = STUDY_CHUNKS[name] if kind == "studies" else CHUNKS[name]
@@ -380,13 +410,13 @@ def joined_inputs(wildcards):
 
 
 def joined_settings(wildcards):
-    """Return the kind of a joined file, and what the runs of its simulation record."""
+    """Return the kind of a joined file, and the kinds of data that its runs record."""
     kind, name = JOINED[wildcards.joined]
     return {"kind": kind, "record": SIMULATIONS[name].record if name in SIMULATIONS else []}
 
 
 def joined_megabytes(wildcards, input):
-    """Return the memory that is needed to join the files of chunks, in MB."""
+    """Return the memory in MB that a job needs to join the files of chunks."""
     kind, name = JOINED[wildcards.joined]
     if kind == "data":
         return 1000 + 3 * input.size_mb
@@ -396,12 +426,12 @@ def joined_megabytes(wildcards, input):
 
 
 def study_of(wildcards):
-    """Return the name of a study, or of the study that a chunk belongs to."""
+    """Return the name of the study to which a job belongs, which may be a chunk."""
     return wildcards.study.partition("/")[0]
 
 
 def study_inputs(wildcards):
-    """Return the inputs of a study, and the kernels that it runs."""
+    """Return the input files of a study, and the files of the kernels that it runs."""
     study = study_of(wildcards)
     modules = modules_reached(f"slippulse_paper.studies.{study}")
     schemes = [scheme for scheme, kernel_module in KERNELS.items() if kernel_module in modules]
@@ -409,7 +439,10 @@ def study_inputs(wildcards):
 
 
 def study_settings(wildcards):
-    """Return the study, and the values of the configuration that it depends on."""
+    """Return the name of a study, and the values of the configuration that it depends on.
+
+    They contain the resolved simulations that the study runs itself (`sweeps`).
+    """
     study, _, chunk = wildcards.study.partition("/")
     needs = STUDY_NEEDS[study]
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
@@ -425,12 +458,12 @@ def texts_of(needs):
 
 
 def module_of(figure):
-    """Return the module that draws a figure."""
+    """Return the name of the module that draws a figure."""
     return figure if figure in NEEDS else "user_defined_sweep"
 
 
 def figure_settings(wildcards):
-    """Return the module of a figure, the values it depends on, and a note on altered ones."""
+    """Return the module of a figure, the values that it depends on, and a note on altered ones."""
     figure, needs = wildcards.figure, ALL_FIGURES[wildcards.figure]
     values = selected(config, needs.get("settings", ()), config["figures"].get(figure, {}))
     altered = note_of(needs, f"figures.{figure}")
@@ -451,12 +484,15 @@ def captions():
 
 
 def title_of(figure):
-    """Return the title of a figure."""
+    """Return the title of a figure from its caption, or its name if it has no caption."""
     return captions()[figure].title if figure in captions() else figure
 
 
 def one_of(names):
-    """Return the regular expression for a wildcard that has one of some values."""
+    """Return a regular expression for a wildcard that allows only some values.
+
+    Without any value, the expression matches nothing.
+    """
     return "|".join(map(re.escape, names)) or "(?!)"
 
 

@@ -1,4 +1,4 @@
-# Tables of studies, figures, and the pages and animations of single scenes.
+# Rules for studies, for figures, and for the pages and animations of scenes.
 
 
 rule study:
@@ -25,7 +25,7 @@ rule study:
         run_step("run_study", wildcards, input, output, params, threads, log)
 
 
-# Each figure is drawn from its table (CSV) only.
+# A figure is drawn only from its table, which is the file CSV.
 rule figure:
     input:
         unpack(lambda wildcards: inputs_of(ALL_FIGURES[wildcards.figure])),
@@ -40,7 +40,7 @@ rule figure:
         csv="results/figures/{figure}.csv",
     log:
         "results/logs/figure/{figure}.log",
-    # The report waits for the figures, and so they are drawn before scenes and the explorer.
+    # The report waits for the figures, and so they are drawn before the scenes and the explorer.
     priority: 1
     params:
         settings=figure_settings,
@@ -53,7 +53,8 @@ rule figure:
         run_step("draw_figure", wildcards, input, output, params, threads, log)
 
 
-# Seconds differ from run to run, and so these files are not among the results that are compared.
+# Computing times differ from run to run, and so these files are not among the results that are
+# compared.
 rule measure_seconds:
     input:
         studies=made("studies", ["accuracy_cost"]),

@@ -1,4 +1,4 @@
-# Pages to read: claims, explorer, report, and the index of all results, with the provenance.
+# Rules for pages: claims, explorer, report, scenes, and the index of all results.
 
 from slippulse_paper.records.provenance import changes, source_files
 
@@ -7,7 +7,9 @@ CLAIM_STUDIES = (
     " published_scheme rate_dependence"
     " rough_checks rough_prestress"
 ).split()
+# Names of the report and its supplement.
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
+# Results with a checksum.
 RESULTS = [
     # Snakemake's report has this order.
     *[f"results/{name}" for name in ("claims.html", "claims.json", "findings.json")],
@@ -24,6 +26,7 @@ EVERYTHING = [*RESULTS, *SECONDS.values(), "results/provenance.json", "results/i
 # By default, a draft makes the figures of the paper, and everything that an overlay adds.
 DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS)
 DRAFT += made("scenes", [name for name in SCENES if name not in SHIPPED.get("scenes", {})])
+# Files of the manuscript that the claims, the report and the index read.
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
 CLAIM_TEXTS = ["manuscript/claims.yaml", "manuscript/statements.yaml"]
 REPORT_TEXTS = [
@@ -147,7 +150,7 @@ rule write_index:
             "figures": [*NEEDS, *SWEEPS],
             "scenes": TITLES,
         },
-        # The provenance contains a digest of all source files.
+        # The provenance contains a digest of all source files, and so each of them matters.
         code=code_of(
             "write_index",
             texts=[path.relative_to(PROJECT).as_posix() for path in source_files(PROJECT)],

@@ -1,5 +1,6 @@
-# Data, measured numbers, predictions and uncertainties of each simulation or chunk.
+# Rules for the data, measured numbers, predictions and uncertainties of each simulation or chunk.
 
+# Limits of time and memory on a cluster. After a failure, the next attempt has larger limits.
 BOUNDS = {
     "runtime": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().minutes,
     "mem_mb": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().megabytes,
@@ -28,7 +29,7 @@ rule simulate:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
-    # The report waits for the claims, and so their inputs are made before figures of scenes.
+    # The report waits for the claims, and so the inputs of the claims are made first.
     priority: 2
     threads: lambda wildcards: setting("bound")(wildcards)().threads
     resources:

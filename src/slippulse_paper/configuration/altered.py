@@ -18,7 +18,8 @@ MAX_NAMED_DIFFERENCES = 4
 class Alterations:
     """Differences between a configuration and the shipped one, for each resolved simulation.
 
-    ``simulations`` has the list of changes, as `changes` returns them, for each simulation.
+    ``simulations`` has the list of changes of each simulation, by name. `changes` explains its
+    entries.
     """
 
     def __init__(self, shipped: Configuration, altered: Configuration) -> None:
@@ -29,30 +30,33 @@ class Alterations:
         for name, simulation in self._altered_simulations.items():
             # A simulation that is not shipped is compared with itself under the shipped model.
             shipped_simulation = shipped_simulations.get(name, simulation)
-            before = resolve(shipped_simulation, shipped.model, {})
-            after = resolve(simulation, altered.model, {})
-            # The extent of samples follows from other keys, and beta replaces the damping ratio.
-            derived_keys = {"samples.extent"}
+            # Presets are not compared, and so no accuracy is given.
+            before = resolve(shipped_simulation, shipped.model, accuracy={})
+            after = resolve(simulation, altered.model, accuracy={})
+            # This key follows from others, whose changes are listed.
+            omitted_keys = {"samples.extent"}
             if "beta" in after:
-                derived_keys.add("damping_ratio")
+                # A simulation with beta does not use the damping ratio.
+                omitted_keys.add("damping_ratio")
             all_changes = changes(before, after)
             self.simulations[name] = [
-                change for change in all_changes if change["key"] not in derived_keys
+                change for change in all_changes if change["key"] not in omitted_keys
             ]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
-        """Return one line on the differences in some simulations and below some keys.
+        """Return one line that names altered parameters, such as 'altered: b = 0.05'.
 
-        An example is 'altered: b = 0.05'. The text is empty if nothing differs.
+        These are the parameters of ``simulations``, and the values of the configuration whose
+        dotted key begins with one of ``keys``. The text is empty if nothing differs.
         """
         relevant_changes: list[Mapping[str, Any]] = []
         for name in simulations:
             relevant_changes += self.simulations.get(name, [])
-        relevant_keys = tuple(keys)
+        first_parts = tuple(keys)
         for change in changes(self.shipped.given(), self.altered.given()):
-            if change["key"].startswith(relevant_keys):
+            if change["key"].startswith(first_parts):
                 relevant_changes.append(change)
-        # Several simulations may have the same change.
+        # Several simulations may have the same change, which is named once.
         equations = [*dict.fromkeys(map(_equation, relevant_changes))]
         named = equations[:MAX_NAMED_DIFFERENCES]
         if len(equations) > MAX_NAMED_DIFFERENCES:
@@ -60,10 +64,11 @@ class Alterations:
         return f"altered: {', '.join(named)}" if named else ""
 
     def overridden_defaults(self) -> list[str]:
-        """Return a line for each altered default of the model that some simulations override."""
+        """Return a warning for each altered default of the model that some simulations override."""
         lines = []
         for change in changes(self.shipped.model.plain(), self.altered.model.plain()):
             key = change["key"]
+            # A simulation with its own beta does not use the default damping ratio either.
             overriding_keys = {key, "beta"} if key == "damping_ratio" else {key}
             overriding = [
                 name
@@ -85,7 +90,7 @@ def _equation(change: Mapping[str, Any]) -> str:
 
 
 def _value_text(value: Any) -> str:
-    """Return a value of the configuration as text, if it is short enough for a note."""
+    """Return a value of the configuration as text, or 'other values' if it is nested or empty."""
     if value is None:
         return "absent"
     if not isinstance(value, list | dict):

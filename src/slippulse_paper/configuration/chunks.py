@@ -1,24 +1,24 @@
 """Division of the runs of a sweep into chunks.
 
 The runs are dealt out in rounds, like cards: each chunk gets one run in each round. Neighbouring
-runs cost about the same. Since they are in different chunks, all chunks cost about the same. Each
-round begins with a random chunk, because otherwise one chunk could get all runs with one value of a
-list.
+runs take about the same time. Since they are in different chunks, all chunks take about the same
+time. Each round begins with a random chunk, because otherwise one chunk could get all runs with one
+value of a list.
 """
 
 import random
 from collections.abc import Iterator
 
 
-def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
+def runs_of(chunk: int, chunk_count: int, run_count: int) -> Iterator[int]:
     """Yield the numbers of the runs in one chunk of a sweep.
 
-    ``chunks`` and ``runs`` are the numbers of all chunks and runs of the sweep. Chunks are numbered
-    from 1, and runs from 0.
+    Chunks are numbered from 1, and runs from 0.
     """
-    for dealing_round, first_run in enumerate(range(0, runs, chunks)):
-        # Python guarantees that this method gives the same numbers in every version.
-        first_chunk = 1 + int(chunks * random.Random(dealing_round).random())
-        run = first_run + (chunk - first_chunk) % chunks
-        if run < runs:
+    for dealing_round, first_run in enumerate(range(0, run_count, chunk_count)):
+        # Every version of Python gives the same random numbers for the same seed.
+        first_chunk = 1 + int(chunk_count * random.Random(dealing_round).random())
+        # The chunks get the runs of this round in turn, and chunk 1 follows the last chunk.
+        run = first_run + (chunk - first_chunk) % chunk_count
+        if run < run_count:
             yield run

@@ -1,7 +1,8 @@
-"""Refuse altered simulations that have no run which a figure can draw.
+"""Check that each figure can draw at least one run of each of its simulations.
 
-The module of a figure lists in DRAWS what it needs of each of its simulations. That is checked
-before anything runs.
+A user may have altered a simulation so that it no longer suits its figure. The module of a figure
+therefore has a constant DRAWS, with a condition on the runs of each simulation. The conditions are
+checked before anything runs.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,27 +15,28 @@ from .schema import Configuration
 
 
 def _is_pulse(run: Run) -> bool:
-    """Return True if the displacement is held and a level is above 0."""
+    """Return True if the displacement is held and the pre-stress is positive on some side."""
     highest = max(run.prestress.left, run.prestress.right)
     return run.boundary == "displacement" and highest > 0.0
 
 
 def _has_equal_levels(run: Run) -> bool:
-    """Return True for a pulse on equal levels."""
+    """Return True for a pulse with the same pre-stress on both sides."""
     return _is_pulse(run) and run.prestress.left == run.prestress.right
 
 
 def _has_negative_left_level(run: Run) -> bool:
-    """Return True if the stress is held, and the levels are negative on the left, 0 on the right.
+    """Return True if the stress is held, the left level is negative and the right level is 0.
 
-    Such a run has a balance position, which the paper's estimate of the transition needs.
+    The pre-stress must not have steps. Such a run has a balance position, which the paper's
+    estimate of the transition needs.
     """
     profile = run.prestress
     has_levels = profile.left < 0.0 and profile.right == 0.0 and not profile.steps
     return run.boundary == "stress" and has_levels
 
 
-# Conditions on a run, by the words that the DRAWS of figures use for them.
+# Conditions on a run, by the texts that stand for them in the DRAWS of figures.
 CONDITIONS: dict[str, Callable[[Run], bool]] = {
     "boundary displacement": lambda run: run.boundary == "displacement",
     "boundary displacement and a level above 0": _is_pulse,
@@ -45,9 +47,9 @@ CONDITIONS: dict[str, Callable[[Run], bool]] = {
 
 
 def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Return a line for each simulation that has no run which a figure can draw.
+    """Return a line for each simulation of a figure if the figure can draw none of its runs.
 
-    ``draws`` has the DRAWS of each figure: a condition for each of its simulations.
+    ``draws`` has the DRAWS of each figure: a key of CONDITIONS for each of its simulations.
     """
     accuracy, simulations = accuracy_of(config), all_simulations(config)
     problems = []

@@ -1,4 +1,4 @@
-"""Expansion of a resolved simulation into the scenes of its runs."""
+"""Conversion of a resolved simulation into a list of scenes, one for each run."""
 
 import math
 from collections.abc import Mapping
@@ -17,8 +17,9 @@ from .runs import runs
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
-    """Return the scenes of a resolved simulation, or of a chunk, and the samples of each.
+    """Return the scene of each run of a resolved simulation, or of a chunk, and its samples.
 
+    Samples are the times and positions at which data are recorded, or None if there are none.
     Raises ValueError if a scene is not allowed.
     """
     scenes = [_scene(simulation, run) for run in runs(simulation)]
@@ -26,6 +27,7 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     if recording is None:
         return scenes, [None] * len(scenes)
     extent, count = recording["extent"], recording["positions"]
+    # A single position is x = 0.
     positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
     samples: list[Samples | None] = []
     for scene in scenes:
@@ -35,7 +37,7 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
 
 
 def _scene(simulation: Mapping, run: Run) -> Scene:
-    """Return the scene of one run."""
+    """Return the scene of one run of a simulation."""
     friction = friction_from(run.friction)
     return Scene(
         **(run.parameters() | {"friction": friction}),
@@ -53,35 +55,41 @@ def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
     accuracy = simulation["accuracy"]
     step = simulation.get("max_step", _default_time_step(simulation, run, friction))
     if "promise" in accuracy:
+        # A required accuracy also limits the step that a simulation sets itself.
         step = min(step, accuracy["max_step"])
-    # A grid study of a fixed spacing uses longer steps instead of larger spacings.
-    return step * simulation["coarser"] if "fixed" in simulation["spacing"] else step
+    if "fixed" in simulation["spacing"]:
+        # A grid study uses larger steps, since it cannot use larger spacings.
+        return step * simulation["coarser"]
+    return step
 
 
 def _default_time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
-    """Return the time step of the preset, or a smaller one if that is not stable or accurate.
+    """Return the time step of the preset, or a smaller one if it is not stable or accurate.
 
-    All steps are divided by dx, also those of the preset.
+    All these time steps, also that of the preset, are divided by dx.
     """
     accuracy = simulation["accuracy"]
     # The stability depends on beta/dx, gamma dx^2 and alpha dx.
     ratios = stability_ratios(run.parameters(), friction)
     stable_step = choose_step(simulation["scheme"], accuracy["order"], *ratios)
-    # The longest step that resolves the law of friction.
+    # The largest step that resolves the law of friction.
     step_of_law = STABILITY_MARGIN * friction.traits.longest_step / run.dx
     return min(accuracy["max_step"], stable_step, step_of_law)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
-    """Return the duration of a run in H/c."""
+    """Return the duration of a run in H/c.
+
+    ``rule`` has one entry: a unit of the duration, and the value in this unit.
+    """
     ((unit, value),) = rule.items()
     if unit == "half_periods":
-        value = value * math.pi / math.sqrt(gamma)
+        return float(value * math.pi / math.sqrt(gamma))
     if unit == "balance_distances":
         try:
-            value *= abs(prestress_balance_position(profile))
+            return float(value * abs(prestress_balance_position(profile)))
         except ValueError as error:
-            # Keys of the configuration do not begin with `prestress`.
+            # The library begins its message with `prestress.`, which is no key here.
             reason = str(error).removeprefix("prestress.")
             given = f"{value} times |x_minus|"
             raise ValueError(f"duration.balance_distances: {given}, but {reason}") from None

@@ -1,4 +1,4 @@
-"""Checks of the scenes of each simulation, and upper bounds on the cost of its runs."""
+"""Checks of the scenes of each simulation, and upper bounds on their computing cost."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,7 +19,8 @@ from .resolve import accuracy_of, all_simulations, corners, resolve
 from .runs import run_count
 from .schema import Configuration, Model, Simulation
 
-# A sweep says nothing about the continuum if every run is below this fraction of resolved_blocks.
+# A sweep is refused if the pulse of every run has fewer blocks than this fraction of the key
+# resolved_blocks, since its results would say nothing about the continuum.
 HARDLY_RESOLVED = 0.5
 
 
@@ -47,6 +48,7 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     count = run_count(sweep)
     allowed = f"up to the number of runs, {count}"
     check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
+    # Refusals show at the ends of the lists, and so only these runs are checked.
     scenes, _ = expand(promised(corners(sweep)))
     _check_profiles(scenes)
     _check_resolution(scenes)
@@ -59,7 +61,10 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
 
 
 def _units(config: Configuration, name: str) -> str:
-    """Return a text with the units of a scene in SI units, and no text for other simulations."""
+    """Return a text with the units of a scene that has a layer, and no text for other simulations.
+
+    The message of a refusal has non-dimensional numbers, but such a scene is given in SI units.
+    """
     scene = config.scenes.get(name)
     if scene is None or scene.layer is None:
         return ""
@@ -68,8 +73,10 @@ def _units(config: Configuration, name: str) -> str:
 
 def _check_profiles(scenes: Sequence[Scene]) -> None:
     """Raise ValueError for a pre-stress with which nothing ever moves."""
-    for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
+    different_profiles = dict.fromkeys((scene.prestress, scene.dx) for scene in scenes)
+    for profile, dx in different_profiles:
         largest = _largest_prestress(profile, dx)
+        # NaN is refused too.
         if not largest >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
@@ -79,23 +86,25 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
 
 
 def _largest_prestress(profile: Prestress, dx: float) -> float:
-    """Return the largest pre-stress of a block."""
-    if not (profile.bumps or profile.points or profile.width is None):
+    """Return the largest pre-stress of a block, if the blocks have the spacing ``dx``."""
+    has_only_levels = not (profile.bumps or profile.points or profile.width is None)
+    if has_only_levels:
         levels = [interval.right_value for interval in profile.intervals]
         return max(profile.peak, *levels)
-    # The largest pre-stress is at or near a point of the table, the peak or a bump.
+    # The largest pre-stress is at a block near x = 0, a bump or a point of the table. Near a
+    # Gaussian means within three widths.
     centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
     distances = np.outer(np.linspace(-3.0, 3.0, 601), widths)
     near_gaussians = np.add.outer(centres, distances)
     table_positions = np.array([x for x, _ in profile.points])
     near_points = np.add.outer([-dx, 0.0, dx], table_positions)
-    candidates = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
-    blocks = np.round(candidates / dx) * dx
-    return float(np.max(profile(blocks)))
+    positions = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
+    block_positions = np.round(positions / dx) * dx
+    return float(np.max(profile(block_positions)))
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
-    """Raise ValueError if the pulse is far from resolved in every scene."""
+    """Raise ValueError if the pulse has far too few blocks in every scene."""
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Scenes with wide pulses are tried first, so that one scene is usually enough.
     ordered = sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left))
@@ -109,9 +118,9 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
 
 
 def _pulse_blocks(scene: Scene) -> float:
-    """Return the number of blocks across the pulse, or infinity if it is not known.
+    """Return the number of blocks across the pulse, or infinity if theory does not give its width.
 
-    Under a stress boundary it is the number of blocks across the narrowest Gaussian.
+    If the stress is held, return the number of blocks across the narrowest Gaussian instead.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
@@ -126,7 +135,10 @@ def _pulse_blocks(scene: Scene) -> float:
 
 
 def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
-    """Return an upper bound on the cost of one chunk: the number of its runs times the largest."""
+    """Return an upper bound on the cost of one chunk of a sweep.
+
+    Every run of the chunk counts as much as the most expensive run at the ends of the lists.
+    """
     scenes, samples = expand(promised(corners(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
@@ -139,7 +151,7 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
 
 
 def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
-    """Return a line for each simulation that the user has changed and that costs too much."""
+    """Return a line for each altered simulation whose runs would take too much time or memory."""
     shipped = altered.shipped
     is_lattice_altered = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
     shipped_simulations, accuracy = all_simulations(shipped), accuracy_of(config)

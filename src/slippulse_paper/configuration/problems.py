@@ -1,4 +1,4 @@
-"""Errors of a configuration, and hints at what was probably meant."""
+"""The error for a configuration that is not allowed, and hints at misspelt names."""
 
 import difflib
 from collections.abc import Iterable
@@ -9,6 +9,6 @@ class ConfigError(ValueError):
 
 
 def nearest(name: object, known: Iterable[str]) -> str:
-    """Return a hint at the known name that was probably meant, or no text if none is similar."""
+    """Return a hint such as " (did you mean 'gamma'?)", or no text if no known name is similar."""
     similar = difflib.get_close_matches(str(name)[:80], list(known), n=1)
     return f" (did you mean {similar[0]!r}?)" if similar else ""

@@ -1,8 +1,8 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file, whose points are read into the configuration, or have a rough background
-with lists of parameters, which is expanded into one profile for each combination. Each expanded
-profile is then a `Prestress`.
+A profile may name a file. Its points are then read into the configuration. A profile may also have
+a rough background with lists of parameters. It is then expanded into one profile for each
+combination of the parameters. Each expanded profile is converted to a `Prestress`.
 """
 
 import json
@@ -24,34 +24,34 @@ from .problems import ConfigError
 
 # Keys of a profile that give it a table of pre-stress instead of levels.
 TABLES = frozenset({"points", "file", "rough"})
-# Keys of a rough background that may be lists; the last one may be a range, too.
+# Keys of a rough background that may be lists. The seed may also be a range.
 ROUGH_LISTS = ("level", "deviation", "correlation_length", "hurst", "seed")
 
 
 def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return an overlay in which each profile that names a file also has the points of the file.
 
-    Relative paths are relative to ``folder``. Raises ConfigError with the profile, the file and the
-    row if a file cannot be used.
+    The path of a file may be relative to ``folder``. Raises ConfigError with the profile, the file
+    and the row if a file cannot be used.
     """
 
-    def read(profile: Any, key: str) -> Any:
-        """Return a profile with its points. ``key`` is its place in the configuration."""
+    def add_points(profile: Any, key: str) -> Any:
+        """Return a profile, whose dotted key is ``key``, with the points of its file."""
         names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
-        # If there are points, this overlay was read before.
+        # A profile has both if this function has been called before.
         if not names_file or "points" in profile:
             return profile
         try:
-            columns = _columns(folder / profile["file"], in_si="layer" in profile)
+            columns = _columns_of_file(folder / profile["file"], in_si="layer" in profile)
         except ValueError as error:
             raise ConfigError(f"{key}.file: {error}") from None
         return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
-    return _changed(overlay, read)
+    return _with_changed_profiles(overlay, add_points)
 
 
-def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
-    """Return positions and stresses of a file, in m and Pa for a scene with a layer."""
+def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
+    """Return the positions and stresses in a file, in m and Pa or in non-dimensional units."""
     if in_si:
         x, stress = read_in_si(path)
         return x.tolist(), stress.tolist()
@@ -59,8 +59,13 @@ def _columns(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
     return table.x, table.prestress
 
 
-def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> dict[str, Any]:
-    """Return an overlay in which each scene and each profile of a simulation is changed."""
+def _with_changed_profiles(
+    overlay: Mapping[str, Any], change: Callable[[Any, str], Any]
+) -> dict[str, Any]:
+    """Return an overlay in which each scene and each profile of a simulation is changed.
+
+    ``change`` gets a scene or a profile, and its dotted key.
+    """
     changed = dict(overlay)
     scenes, simulations = overlay.get("scenes"), overlay.get("simulations")
     # An overlay has not been checked yet, and so any value may have any type.
@@ -70,14 +75,14 @@ def _changed(overlay: Mapping[str, Any], change: Callable[[Any, str], Any]) -> d
         }
     if isinstance(simulations, Mapping):
         changed["simulations"] = {
-            name: _changed_simulation(simulation, f"simulations.{name}", change)
+            name: _with_changed_list(simulation, f"simulations.{name}", change)
             for name, simulation in simulations.items()
         }
     return changed
 
 
-def _changed_simulation(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
-    """Return a simulation in which each profile is changed."""
+def _with_changed_list(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
+    """Return a simulation in which each entry of its list of profiles is changed."""
     if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
         return simulation
     profiles = [
@@ -89,16 +94,19 @@ def _changed_simulation(simulation: Any, key: str, change: Callable[[Any, str], 
 
 def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return profiles without the names of the files from which their points were read."""
-    return [{key: profile[key] for key in profile if key != "file"} for profile in profiles]
+    copies = [dict(profile) for profile in profiles]
+    for profile in copies:
+        profile.pop("file", None)
+    return copies
 
 
 def rough_lists(background: Mapping[str, Any]) -> dict[str, Sequence]:
-    """Return the values of each key of a rough background that may be a list."""
+    """Return a list of values for each key of a rough background that may be a list."""
     return {name: _values_of(background[name]) for name in ROUGH_LISTS}
 
 
 def _values_of(given: Any) -> Sequence:
-    """Return the values of a key: all whole numbers of a range, or the entries of a list."""
+    """Return the values of a key, which is a range of whole numbers, a list or a single value."""
     if isinstance(given, Mapping):
         return range(given["from"], given["to"] + 1)
     return given if isinstance(given, list) else [given]
@@ -107,8 +115,8 @@ def _values_of(given: Any) -> Sequence:
 class ExpandedProfiles(Collection[dict[str, Any]]):
     """The profiles of runs: one for each combination of the lists of a rough background.
 
-    The last list, that of the seeds, varies fastest. The profiles are made when they are needed,
-    because there may be many.
+    Neighbouring profiles differ in the seed, which is the last list. The profiles are made when
+    they are needed, because there may be many.
     """
 
     def __init__(self, profiles: Sequence[Mapping[str, Any]]) -> None:
@@ -121,6 +129,7 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
         for profile in self._profiles:
             for values in product(*_lists_of(profile)):
                 run_profile = dict(profile)
+                # There are no values without a rough background.
                 if values:
                     values_by_name = zip(ROUGH_LISTS, values, strict=True)
                     run_profile["rough"] = {**profile["rough"], **dict(values_by_name)}
@@ -131,7 +140,7 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
 
 
 def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
-    """Return the lists of the rough background of a profile; none if it has no such background."""
+    """Return the lists of the rough background of a profile, or no lists if it has none."""
     return [*rough_lists(profile["rough"]).values()] if "rough" in profile else []
 
 
@@ -145,23 +154,27 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 # The profile of each run is needed several times while the workflow is planned.
 @lru_cache(maxsize=512)
 def _prestress_of_table(text: str) -> Prestress:
-    """Return the pre-stress of a profile with a table, given as JSON, which can be cached."""
+    """Return the pre-stress of a profile with a table, from the profile as JSON.
+
+    The cache needs an argument that cannot be altered, which a dictionary is not.
+    """
     profile = json.loads(text)
     x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T
-    rest = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
-    return Prestress.through(x, tau, **rest)
+    gaussians = {key: profile[key] for key in ("width", "peak", "bumps") if key in profile}
+    return Prestress.through(x, tau, **gaussians)
 
 
 def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
     """Return the number of each expanded profile, from 1, and its seed (NaN if it has none).
 
-    Rough profiles that differ only in the seed have the same number.
+    Neighbouring rough profiles that differ only in the seed have the same number.
     """
     labels: list[dict[str, float]] = []
     number, previous_shape = 0, None
     for profile in profiles:
         background = dict(profile.get("rough", {}))
         seed = background.pop("seed", math.nan)
+        # The profile without its seed.
         shape = {**profile, "rough": background}
         if "rough" not in profile or shape != previous_shape:
             number += 1
@@ -171,7 +184,7 @@ def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
 
 
 def ends_of_ensembles(profiles: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return profiles without the seeds between the first and the last one."""
+    """Return profiles in which each list or range of seeds has only its first and last seed."""
     ends = []
     for profile in profiles:
         background = profile.get("rough")

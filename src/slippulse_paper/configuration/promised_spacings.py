@@ -1,4 +1,4 @@
-"""Spacings of the runs of a simulation for which an accuracy is promised."""
+"""Block spacings with which the runs of a simulation reach a required accuracy."""
 
 import math
 from collections.abc import Mapping
@@ -12,25 +12,26 @@ from .runs import entries
 
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """Return a simulation with the spacing of each run, if an accuracy is promised for it.
+    """Return a resolved simulation, with a list ``spacings`` if the user requires an accuracy.
 
-    Raises ValueError if no accuracy can be promised for its scheme or its friction.
+    The list has the block spacing with which each run reaches the accuracy. Raises ValueError if no
+    accuracy can be promised for the scheme or the friction of the simulation.
     """
     promise = simulation["accuracy"].get("promise")
     if promise is None:
         return simulation
-    # With other schemes the time step has an error that a grid study does not show.
+    # With other schemes, the time step causes an error that a grid study does not show.
     scheme = simulation["scheme"]
     check_that(scheme == "localised", "scheme", scheme, "'localised' if accuracy is given")
     # NaN means that the simulation sets its own spacing.
     if math.isnan(promise):
         return simulation
     laws = simulation.get("friction", [])
-    # The constants of `settings_for` hold for Coulomb friction. With other laws a pulse may diverge
-    # or have no width.
-    coulomb = all(law["law"] == "coulomb" for law in laws)
+    # `settings_for` assumes Coulomb friction. With other laws, a pulse may grow for ever, or have
+    # no width.
+    is_coulomb = all(law["law"] == "coulomb" for law in laws)
     condition = "if accuracy is given and the simulation has no dx of its own"
-    check_that(coulomb, "friction", laws, f"law coulomb {condition}")
+    check_that(is_coulomb, "friction", laws, f"law coulomb {condition}")
     spacings = []
     for entry in entries(simulation):
         refuse_extra_terms(entry.extra_terms, condition)

@@ -1,8 +1,8 @@
 """Reading of the configuration.
 
 The shipped file, the overlays and the values of the command line are merged and checked. The files
-are YAML 1.2 without tags, anchors and repeated keys. Templates are refused too, because Snakemake
-would execute them.
+must be YAML 1.2 without tags, anchors and repeated keys. Templates are refused too, because
+Snakemake would execute them.
 """
 
 import json
@@ -46,12 +46,12 @@ def read_config(
 ) -> Configuration:
     """Merge the shipped values, the overlays and the values of ``--config``, and check the result.
 
-    Raises ConfigError with one line for each problem. The runs of all simulations are checked only
-    if ``every_run`` is set, since that takes time.
+    The runs of all simulations are checked only if ``every_run`` is set, since this check takes
+    time. Raises ConfigError with one line for each problem.
     """
     merged = dict(shipped)
-    for overlay in (*overlays, _typed(command_line_values or {})):
-        # An overlay that was read from a file already has the points of the files that it names.
+    for overlay in (*overlays, _parse_texts(command_line_values or {})):
+        # An overlay from `read_overlay` has the points of its files already.
         with_points = with_points_of_files(with_new_names(overlay), Path())
         merged = _merge(merged, with_points)
     _check_shipped_simulations(merged, shipped)
@@ -68,7 +68,7 @@ def _check_shipped_simulations(merged: Mapping, shipped: Mapping) -> None:
     """Raise ConfigError if a shipped simulation was removed."""
     sweeps = merged.get("simulations")
     if not isinstance(sweeps, Mapping):
-        # The validation refuses this.
+        # The later validation refuses this.
         return
     removed = sorted({*shipped["simulations"]} - {*sweeps})
     if removed:
@@ -77,17 +77,25 @@ def _check_shipped_simulations(merged: Mapping, shipped: Mapping) -> None:
 
 
 def _validated(merged: Mapping) -> Configuration:
-    """Return the configuration, or raise ConfigError with a line for each value not allowed."""
+    """Return the configuration, or raise ConfigError with a line for each value not allowed.
+
+    ``merged`` has the shipped values with those of all overlays.
+    """
     try:
         return Configuration.model_validate(merged)
     except ValidationError as error:
-        # Errors inside of an alternative, such as 'same' or a list, give the same line.
+        # A value that may have several forms, such as 'same' or a list, has an error for each form.
+        # All of them give the same line.
         lines = {problem_line(problem, merged) for problem in error.errors(include_url=False)}
         raise ConfigError(format_problems(sorted(lines))) from None
 
 
 def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
-    """Return a line for each text of the user that cannot be shown on a page."""
+    """Return a line for each statement in ``published`` that cannot be shown on a page.
+
+    Only the statements of the user are checked, which are those that the shipped file does not
+    have.
+    """
     problems = []
     for name, reading in given.items():
         text = reading["statement"]
@@ -120,22 +128,28 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
     return merged
 
 
-def _typed(value: Any, path: str = "") -> Any:
-    """Return values of the command line with numbers instead of the texts that Snakemake leaves."""
+def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
+    """Return values of the command line, with each text read as YAML.
+
+    Snakemake leaves some numbers as texts. ``path`` has the keys that lead to ``value``.
+    """
     if isinstance(value, Mapping):
-        return {key: _typed(entry, f"{path}.{key}".lstrip(".")) for key, entry in value.items()}
+        return {key: _parse_texts(entry, (*path, key)) for key, entry in value.items()}
     if isinstance(value, list):
-        return [_typed(entry, path) for entry in value]
+        return [_parse_texts(entry, path) for entry in value]
     if not isinstance(value, str):
         return value
-    if path == "preset" and value.isalnum():
+    if path == ("preset",) and value.isalnum():
         # The name of a preset, such as 01, stays text.
         return value
     try:
         scalar = _load(value)
     except (YAMLError, ConfigError):
-        raise ConfigError(f"{path}: {short_repr(value)}; allowed: a plain value") from None
-    return value if isinstance(scalar, Mapping | list) else scalar
+        problem = f"{dotted(path)}: {short_repr(value)}"
+        raise ConfigError(f"{problem}; allowed: a plain value") from None
+    # A text that looks like a list or a mapping stays text.
+    is_scalar = not isinstance(scalar, Mapping | list)
+    return scalar if is_scalar else value
 
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
@@ -157,7 +171,7 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
 
 
 def _read_text(path: Path) -> str:
-    """Return the text of an overlay. Raises ConfigError if the file is too large."""
+    """Return the text of an overlay. Raises ConfigError if it is no regular file, or too large."""
     if path.exists() and not path.is_file():
         raise ConfigError("not a regular file; allowed: a readable YAML file")
     with path.open("rb") as file:
@@ -169,7 +183,7 @@ def _read_text(path: Path) -> str:
 
 
 def _reason(error: Exception) -> str:
-    """Return the reason why a file is refused, and what is allowed."""
+    """Return the reason why a file is refused, and what is allowed instead."""
     if isinstance(error, ConfigError):
         return str(error)
     if isinstance(error, OSError):
@@ -184,14 +198,15 @@ def _reason(error: Exception) -> str:
 
 
 def _reason_of_parser(error: MarkedYAMLError) -> str:
-    """Return the reason why the parser refuses a file, with the line."""
+    """Return the reason why the parser of YAML refuses a file, with the number of the line."""
     problem = " ".join((error.problem or str(error)).split())
     mark = error.problem_mark
     if error.context_mark and re.search("flow|quoted|simple key", error.context or ""):
-        # The parser notices an unfinished value below the line where the value begins.
+        # The parser notices an unfinished value only on a later line. Report where it begins.
         mark = error.context_mark
     line = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
+        # The message continues with the values of the key.
         return f"{line}{problem.partition(' with value')[0]}; allowed: each key once"
     return f"not YAML ({line}{problem[:120]}); {LIKE_SHIPPED}"
 
@@ -200,7 +215,10 @@ class _PlainComposer(Composer):
     """A composer of YAML that refuses everything except plain data while it parses."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Compose the next node, which ``index`` (a key or a number) selects in ``parent``."""
+        """Compose the next node, which is a key, a value or an entry of ``parent``.
+
+        ``index`` is None for a key, the key for a value, and a number for an entry of a list.
+        """
         event = self.parser.peek_event()
         is_key = isinstance(parent, MappingNode) and index is None
         line, refusal = event.start_mark.line, ""
@@ -226,7 +244,7 @@ def _is_missing(event: Event) -> bool:
 
 
 def _missing_value(parent: Any, key: Any) -> str:
-    """Return the refusal of an entry without a value; in a list it has no key but a number."""
+    """Return the refusal of an entry without a value. ``key`` is a number if it is in a list."""
     if not isinstance(key, ScalarNode):
         return f"no value; {VALUE_ALLOWED}"
     return _decimal_comma(parent, key) or f"{key.value}: no value; {VALUE_ALLOWED}"
@@ -235,7 +253,7 @@ def _missing_value(parent: Any, key: Any) -> str:
 def _decimal_comma(mapping: MappingNode, key: ScalarNode) -> str:
     """Return the refusal of a number with a decimal comma, or no text if there is none.
 
-    In a mapping in braces, the parser takes the second half of such a number for a key.
+    In a mapping in braces, such as {gamma: 0,3}, the parser takes the 3 for a key without a value.
     """
     previous_entry = mapping.value[-1] if mapping.value else (None, None)
     previous_key, previous_value = (getattr(node, "value", None) for node in previous_entry)
@@ -253,7 +271,7 @@ def _is_integer(value: Any) -> bool:
 
 def _load(text: str) -> Any:
     """Read YAML 1.2 that contains only plain data."""
-    # A directive could select an older version of YAML, in which yes is a switch and 1:30 is 90.
+    # A directive could select YAML 1.1, in which yes means true and 1:30 means 90.
     if directive := re.match(r"(?:\s*(?:#.*)?\n)*(%.*)", text):
         raise ConfigError(f"{short_repr(directive[1])}; allowed: YAML 1.2, without directives")
     yaml = YAML(typ="safe", pure=True)

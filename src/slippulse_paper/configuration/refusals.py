@@ -1,7 +1,7 @@
-"""Refusals of a configuration in words.
+"""Messages that refuse a configuration, made from the errors of pydantic.
 
-Each problem that pydantic reports becomes one line with the key, the value and the allowed values,
-which are taken from the JSON Schema of the configuration.
+Each error becomes one line with the key, the value and the allowed values. The allowed values are
+taken from the JSON Schema of the configuration.
 """
 
 import json
@@ -20,7 +20,7 @@ from .schema import LABEL_WORDS, NAME_WORDS, Configuration, Measure, Model, Name
 # Users correct a few mistakes at a time.
 MAX_LINES = 20
 LIMIT_SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
-# Pydantic appends this to the path of a mapping's key that is not allowed.
+# Pydantic appends this to the path of an entry if the key itself is not allowed.
 PYDANTIC_KEY_MARK = "[key]"
 Path = Sequence[str | int]
 json_schema = cache(Configuration.model_json_schema)
@@ -40,26 +40,31 @@ def dotted(path: Path) -> str:
 
 
 def _key_text(part: str | int) -> str:
-    """Return a key as it is, or in quotes and shortened if it is long or has special characters."""
+    """Return a key as it is, or in quotes if it has special characters, and shorten a long one."""
     is_plain = re.fullmatch(r"\w{1,80}", str(part), re.ASCII)
     return str(part) if is_plain else short_repr(part)
 
 
 def problem_line(problem: Mapping, config: Mapping) -> str:
-    """Return one error of pydantic about a configuration as a line."""
+    """Return the line of the refusal for one error of pydantic.
+
+    ``config`` is the configuration that is refused.
+    """
     kind, path = problem["type"], problem["loc"]
     entry = _last_known_entry(path, config)
-    # A value of several allowed forms is refused as a whole. Pydantic adds the form to the path.
+    # If a value may have several forms, pydantic adds the form to the path. Such a value is refused
+    # without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     has_one_form = len(entry.path) >= len(mapping_path)
-    if kind == "value_error" and has_one_form:
+    kind_in_mapping = kind if has_one_form else None
+    if kind_in_mapping == "value_error":
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    if kind == "missing" and isinstance(path[-1], str) and has_one_form:
+    if kind_in_mapping == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     if path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    if kind == "extra_forbidden" and has_one_form:
+    if kind_in_mapping == "extra_forbidden":
         return _unknown_key_line(path, config)
     allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
@@ -67,14 +72,15 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
 
 
 def _name_line(path: Path) -> str:
-    """Return the refusal of a name, such as the name of a scene. The last part is its mark."""
+    """Return the refusal of a name, such as the name of a scene."""
+    # The last part of the path is PYDANTIC_KEY_MARK.
     *parents, name, _ = path
     allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
     return f"{dotted(parents)}: {short_repr(name)}; allowed: {allowed}"
 
 
 def _unknown_key_line(path: Path, config: Mapping) -> str:
-    """Return the refusal of an unknown key, with a hint at what was probably meant."""
+    """Return the refusal of an unknown key, with a hint at the key that was probably meant."""
     known_keys = [*_last_known_entry(path, config).schema["properties"]]
     hint = nearest(path[-1], known_keys) or _other_blocks(path[-1])
     return f"{dotted(path)}: unknown key{hint}; allowed: {', '.join(known_keys)}"
@@ -87,7 +93,7 @@ def _value_text(value: Any) -> str:
 
 
 def _other_blocks(key: str | int) -> str:
-    """Return a hint at the blocks of the configuration that have a key, such as gamma."""
+    """Return a hint at the blocks of the configuration that have a key, or no text if none has."""
     blocks: dict[str, type[BaseModel]] = {
         "simulations.NAME": Simulation,
         "scenes.NAME": NamedScene,
@@ -104,7 +110,7 @@ def _missing_line(path: Path, config: Mapping) -> str:
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):
-        # An entry without a required key may be a shipped one with a misspelt name.
+        # The name of this entry may be a misspelt name of a shipped entry, which has all keys.
         siblings = _last_known_entry(path[:-2], config).value
         line += nearest(path[-2], {*siblings} - {path[-2]})
         if path[0] == "simulations" and path[-2].startswith("fig"):
@@ -121,7 +127,10 @@ class _Entry(NamedTuple):
 
 
 def _last_known_entry(path: Path, config: Any) -> _Entry:
-    """Return the last entry on a path that exists and has a single schema."""
+    """Return the last entry on a path that exists in the configuration and has a single schema.
+
+    Pydantic's path goes further if a value has several allowed forms, or if a key is missing.
+    """
     schema, value = resolved(json_schema()), config
     for depth, part in enumerate(path):
         inner = _schema_of_row(schema) if isinstance(part, int) else _schema_of_key(schema, part)
@@ -135,18 +144,20 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
 def _schema_of_row(schema: Mapping) -> Any:
     """Return the schema for the entries of a list, or None if there is none.
 
-    It is also None for rows of numbers: a row is refused with its list, whose schema describes the
-    rows.
+    It is also None if the entries are rows of numbers. A wrong row is refused with the whole list,
+    whose schema describes the rows.
     """
     items = schema.get("items")
+    # In JSON Schema, only a row of a fixed length has this key.
     has_rows = items is not None and "prefixItems" in resolved(items)
     return None if has_rows else items
 
 
 def _schema_of_key(schema: Mapping, key: str) -> Any:
-    """Return the schema for the value of a key, or None if there is none.
+    """Return the schema for the value of a key in a mapping, or None if there is none.
 
-    A mapping has either fixed keys, or names of a pattern whose values all have one schema.
+    The keys of a mapping are either fixed, or names that match a pattern. In the second case, all
+    values have the same schema.
     """
     properties = schema.get("properties", {})
     if key in properties:
@@ -158,8 +169,7 @@ def _schema_of_key(schema: Mapping, key: str) -> Any:
 def resolved(schema: dict[str, Any]) -> dict[str, Any]:
     """Return the schema that a reference leads to, or the only alternative to null.
 
-    Other schemas are returned as they are. If the key has its own words for the allowed values, the
-    result keeps them.
+    Other schemas are returned as they are. The text ``allowed`` of the given schema is kept.
     """
     alternatives = _not_null(schema)
     if "$ref" in schema:
@@ -177,7 +187,7 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
 def words(schema: dict[str, Any]) -> str:
     """Return in words which values a schema allows."""
     schema = resolved(schema)
-    kind = schema.get("type")
+    json_type = schema.get("type")
     if "allowed" in schema:
         return schema["allowed"]
     if "anyOf" in schema:
@@ -186,17 +196,18 @@ def words(schema: dict[str, Any]) -> str:
         return str(schema["const"])
     if "enum" in schema:
         return ", ".join(map(str, schema["enum"]))
-    if kind == "array" and "items" in schema:
+    if json_type == "array" and "items" in schema:
         return _list_words(schema)
-    if kind == "number":
+    if json_type == "number":
         return f"a number {_range(schema)}".strip()
-    if kind == "integer":
+    if json_type == "integer":
         return f"a whole number {_range(schema)}".strip()
-    return {"boolean": "true or false", "string": "text"}.get(str(kind), "a mapping")
+    return {"boolean": "true or false", "string": "text"}.get(str(json_type), "a mapping")
 
 
 def _list_words(schema: Mapping) -> str:
     """Return in words which lists a schema allows, such as "a list of numbers > 0"."""
+    # The plural of the words for one entry, such as "numbers > 0" for "a number > 0".
     items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words(schema["items"]))
     different = "different " if schema.get("uniqueItems") else ""
     at_least = ", at least one" if schema.get("minItems") else ""
@@ -204,12 +215,12 @@ def _list_words(schema: Mapping) -> str:
 
 
 def _not_null(schema: Mapping) -> list[dict[str, Any]]:
-    """Return the alternatives of a schema other than null."""
+    """Return the alternatives that a schema allows, without null."""
     return [option for option in schema.get("anyOf", []) if option.get("type") != "null"]
 
 
 def _range(schema: Mapping) -> str:
-    """Return the limits of a number in words."""
+    """Return the limits of a number in words, such as "> 0 and <= 1"."""
     limits = {}
     for key in LIMIT_SIGNS:
         if key in schema:
@@ -221,10 +232,12 @@ def _range(schema: Mapping) -> str:
 
 
 def _remedy(value: object) -> str:
-    """Return advice if a value is text that was meant as a number."""
+    """Return advice if a value is text that was meant as a number, and no text otherwise."""
     text = value.strip() if isinstance(value, str) else ""
+    # A number, such as -1.5e3.
     if re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text, re.ASCII):
         return " (text: write the number without quotes)"
+    # A number with a decimal comma.
     if re.fullmatch(r"[-+]?\d+,\d+", text):
         return f" (write {text.replace(',', '.')}, with a point)"
     return ""

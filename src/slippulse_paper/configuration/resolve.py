@@ -1,7 +1,8 @@
 """Resolution of simulations.
 
-A resolved simulation is plain data with everything that the results of a simulation depend on: its
-own keys, the defaults of the model, and the accuracy of the preset. Rules pass it to their jobs.
+A resolved simulation is a dictionary with everything that the results of a simulation depend on:
+its own keys, the defaults of the model, and the accuracy of the preset. Rules pass it to their
+jobs.
 """
 
 import math
@@ -19,20 +20,21 @@ from slippulse.theory.front_speeds import LARGEST_RATIO, front_speed
 from .profiles import ExpandedProfiles, ends_of_ensembles, prestress_of, without_files
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
-# Numbers of sampled times and positions of a scene, for its map and its animation.
+# Numbers of times and positions at which a scene is sampled, for its figure and its animation.
 SAMPLED_TIMES, SAMPLED_POSITIONS = 241, 801
-# Number of levels at which the exact front speed is computed for a table of pre-stress.
+# Number of values of the pre-stress at which the exact front speed is computed for a table.
 FRONT_SPEED_LEVELS = 65
 # Keys that have one value in a scene and a list of values in a simulation.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
-# Keys of the accuracy that a simulation depends on.
+# Those keys of a preset that the results of a simulation depend on.
 NUMERICAL_KEYS = ("dx", "max_step", "order", "promise")
-# Lists of a simulation for which refusals and costs are largest at the smallest or largest value.
+# Lists of a simulation that may be replaced by their smallest and largest value when simulations
+# are checked: if any value of such a list is refused or expensive, one of these two is, too.
 ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels", *EXTRA_TERMS)
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:
-    """Return the numerical parameters of the preset, or those for a given `accuracy`."""
+    """Return the numerical parameters of the preset, or those for the key `accuracy` if given."""
     preset = config.presets[config.preset].plain()
     if config.accuracy is None:
         return preset
@@ -40,11 +42,13 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 
 
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
-    """Return a simulation as plain data with everything that its results depend on.
+    """Return a simulation as a dictionary with everything that its results depend on.
 
-    The number of chunks is left out, since results do not depend on it.
+    The number of chunks is left out, since results do not depend on it. ``accuracy`` has the
+    numerical parameters from `accuracy_of`.
     """
     defaults = Model.model_validate(model).plain()
+    # The model has one value of these keys, and a simulation a list.
     defaults |= {key: [defaults[key]] for key in LISTED if key in defaults}
     given = Simulation.model_validate(simulation).plain()
     del given["chunks"]
@@ -53,10 +57,10 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "profiles" in given:
         given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
-    # With a fixed beta, the damping ratio beta/dx depends on the spacing.
+    # A fixed beta also fixes the spacing, because another one would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in numerical and has_own_spacing:
-        # No accuracy is promised.
+        # NaN means that no accuracy is promised.
         numerical["promise"] = math.nan
     return {**defaults, **given, "accuracy": numerical, "coarser": 1.0}
 
@@ -76,7 +80,8 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """Return a scene as a simulation of one run.
 
-    It records everything, and samples all positions that the fronts may reach.
+    The simulation records all kinds of data. Its samples cover all positions that the fronts may
+    reach.
     """
     friction_ratio = None
     if scene.layer is not None:
@@ -100,51 +105,58 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     return Simulation.model_validate(given)
 
 
+def _largest_front_speeds(scene: NamedScene, model: Model, levels: np.ndarray) -> np.ndarray:
+    """Return an upper bound on the front speed at each of some values of the pre-stress."""
+    # The speed is infinite at 1.
+    levels = np.minimum(levels, 1.0 - 1e-6)
+    # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
+    is_fast, speeds = levels > 0.0, np.ones(levels.shape)
+    if scene.beta is not None:
+        # This is the speed at beta/dx = 1 with the release rule "total".
+        speeds[is_fast] = 1.0 / (1.0 - levels[is_fast])
+    elif is_fast.any():
+        ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
+        speeds[is_fast] = front_speed(levels[is_fast], min(ratio, LARGEST_RATIO), "total")
+    return speeds
+
+
 def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> float:
-    """Return the distance from x = 0 that the fronts of a scene may reach."""
+    """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
+
+    ``profile`` has the keys of the scene that describe its pre-stress.
+    """
+    # Slip may start at a bump, and four widths away from its centre a bump is negligible.
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
-    ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
-
-    def speeds_at(levels: np.ndarray) -> np.ndarray:
-        """Return a bound on the front speed at some levels."""
-        levels = np.minimum(levels, 1.0 - 1e-6)
-        fast, speeds = levels > 0.0, np.ones(levels.shape)
-        if scene.beta is not None:
-            # The rule "total" gives this speed at beta/dx = 1.
-            speeds[fast] = 1.0 / (1.0 - levels[fast])
-        elif fast.any():
-            speeds[fast] = front_speed(levels[fast], min(ratio, LARGEST_RATIO), "total")
-        return speeds
-
     if scene.left is not None and scene.right is not None:
         step_levels = [level for _, level in scene.steps]
         highest = max(scene.left, scene.right, *step_levels)
-        (speed,) = speeds_at(np.array([highest]))
+        (speed,) = _largest_front_speeds(scene, model, np.array([highest]))
         reach = float(speed) * scene.duration
     else:
         (expanded_profile,) = ExpandedProfiles([profile])
         table = prestress_of(expanded_profile)
         # Exact speeds at all points of a table would take seconds. The speed is a convex function
-        # of the level, and so linear interpolation between a few levels gives an upper bound.
+        # of the pre-stress, and so linear interpolation between a few values is an upper bound.
         table_levels = [tau for _, tau in table.points]
         highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
-        speeds = speeds_at(levels)
+        speeds = _largest_front_speeds(scene, model, levels)
         reach = bound_front_reach(
             table,
             table.nucleation_reach,
             scene.duration,
             lambda tau: np.interp(tau, levels, speeds),
         )
+    # Within three widths, the Gaussian at x = 0 raises the speed.
     width = scene.width or 0.0
     return farthest_bump + reach + 3.0 * width
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:
-    """Return a resolved simulation with only the ends of its lists, at which refusals show.
+    """Return a resolved simulation with only the smallest and largest value of each list.
 
-    Of an ensemble of rough profiles, the first and the last seed are kept. A job checks the scenes
-    of all seeds before it simulates.
+    Refusals show at these values. Of an ensemble of rough profiles, the first and the last seed are
+    kept. The job checks the scenes of all seeds before it simulates.
     """
     ends = {key: value for key, value in simulation.items() if key != "chunk"}
     if "profiles" in ends:

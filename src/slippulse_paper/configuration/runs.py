@@ -50,7 +50,7 @@ def runs(simulation: Mapping) -> Iterator[Run]:
 
 
 def parameters(simulation: Mapping) -> Iterator[dict[str, Any]]:
-    """Yield the parameters of each run by name."""
+    """Yield the parameters of each run by name, with those of its pre-stress."""
     for run in runs(simulation):
         yield {**run.parameters(), **vars(run.prestress), "damping_ratio": run.damping_ratio}
 
@@ -80,7 +80,10 @@ def _prestress(values: Mapping[str, Any]) -> Prestress:
 
 
 def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
-    """Return number and seed of the profile of each run, or an empty list if none has a table."""
+    """Return the number and the seed of the profile of each run, by name.
+
+    The list is empty if no profile of the simulation has a table of pre-stress.
+    """
     profiles = simulation.get("profiles", [])
     if not any(TABLES.intersection(profile) for profile in profiles):
         return []
@@ -97,8 +100,8 @@ def _combinations(simulation: Mapping, axes: Mapping[str, Collection]) -> Iterat
     chunk = simulation.get("chunk")
     runs_in_chunk = None
     if chunk is not None:
-        number, chunks = chunk
-        runs_in_chunk = set(runs_of(number, chunks, run_count(simulation)))
+        chunk_number, chunk_count = chunk
+        runs_in_chunk = set(runs_of(chunk_number, chunk_count, run_count(simulation)))
     for run, combination in enumerate(product(*axes.values())):
         if runs_in_chunk is None or run in runs_in_chunk:
             yield dict(zip(axes, combination, strict=True))
@@ -137,7 +140,7 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
     right, replacement = simulation["right"], simulation.get("beyond")
     steps: list[tuple] = [()]
     if replacement is not None:
-        # Each level is a step of the pre-stress at the position where it begins.
+        # The pre-stress of each run has one step to one of the new levels.
         steps = [((replacement["position"], level),) for level in replacement["levels"]]
     return {
         "left": simulation["left"],
@@ -148,10 +151,10 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
 
 
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
-    """Return the spacing of a run, whose number from 0 is ``index``.
+    """Return the block spacing of a run, whose number from 0 is ``index``.
 
-    It is fixed by ``spacing``, chosen to reach a required accuracy (``spacings``), given in a list
-    (``dx``), or follows from the rule in ``spacing``.
+    The spacing is fixed by the key ``spacing``, or chosen to reach a required accuracy
+    (``spacings``), or an entry of the list ``dx``, or it follows from a rule in ``spacing``.
     """
     rule = simulation["spacing"]
     if "fixed" in rule:
@@ -162,12 +165,12 @@ def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
         spacing = entry.dx
     else:
         spacing = _scaled_spacing(simulation["accuracy"]["dx"], rule, entry)
-    # With twelve digits, a spacing of 0.02 is exactly 0.02 in the data and in labels.
+    # Rounding errors of the product would show in the data and in labels.
     return float(f"{simulation['coarser'] * spacing:.12g}")
 
 
 def _scaled_spacing(dx: float, rule: Mapping, entry: Entry) -> float:
-    """Return the spacing that a rule derives from ``dx``, the spacing of the preset.
+    """Return the block spacing that a rule derives from ``dx``, the spacing of the preset.
 
     The rule has a scale and two powers. The spacing is
     dx * scale * W^width_power * gamma^gamma_power.

@@ -1,7 +1,7 @@
 """Definition of every key of the configuration: type, range, default, meaning, [unit] and (origin).
 
-Refusals follow from these definitions (`refusals`), and docs/describe.py writes the JSON Schema and
-the tables of config/README.md from them. A class without a docstring is explained by the
+The messages of refusals follow from these definitions. The script docs/describe.py writes the JSON
+Schema and the tables of config/README.md from them. A class without a docstring is explained by the
 description of its key.
 """
 
@@ -32,7 +32,10 @@ LIMITS = {"above": "gt", "at_least": "ge", "at_most": "le", "below": "lt"}
 
 
 class Block(BaseModel):
-    """A mapping of the configuration: only known keys, no conversions, finite numbers."""
+    """A mapping of the configuration.
+
+    It has only known keys, no value is converted to another type, and all numbers are finite.
+    """
 
     model_config = ConfigDict(
         extra="forbid", strict=True, allow_inf_nan=False, defer_build=True, serialize_by_alias=True
@@ -48,9 +51,9 @@ class Block(BaseModel):
 
 
 def key(description: str, default: Any = ..., words: str | None = None, **limits: Any) -> Any:
-    """Return the definition of a key.
+    """Return the definition of a key for pydantic.
 
-    ``words`` describe the allowed values if the type and the limits are not enough.
+    ``words`` describe the allowed values in refusals. Without them, the type and the limits do.
     """
     if words:
         limits["json_schema_extra"] = {"allowed": words}
@@ -72,7 +75,7 @@ def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
 
 
 def _all_different(values: list[T]) -> list[T]:
-    """Return a list, or raise an error if it has an entry twice."""
+    """Return a list unchanged, or raise an error if it has an entry twice."""
     if len({*map(repr, values)}) < len(values):
         raise PydanticCustomError("different", "an entry twice")
     return values
@@ -101,7 +104,7 @@ LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
-    """Return the mapping of a law of friction, or raise ValueError if there is no such law."""
+    """Return the mapping of a friction law unchanged, or raise ValueError if it is not allowed."""
     friction_from(mapping)
     return mapping
 
@@ -187,7 +190,10 @@ class Rough(Block):
     )
 
     def check(self) -> None:
-        """Raise ValueError if there is no such background, at any of the levels."""
+        """Raise ValueError if there is no rough background with one of the levels.
+
+        Only the first value of each other list is checked.
+        """
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
         for level in lists["level"]:
@@ -239,7 +245,8 @@ class Profile(Block):
     def _check_background(self) -> Self:
         """Raise ValueError unless a profile has either levels or one table.
 
-        A table without a width gets no Gaussian.
+        The width of a profile with points becomes None if it is not given. The pre-stress then has
+        no Gaussian.
         """
         tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
@@ -256,6 +263,7 @@ class Profile(Block):
             given.append("steps")
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
         if self.points is not None and "width" not in self.model_fields_set:
+            # An assignment would mark the width as given.
             self.__dict__["width"] = None
         if self.file is not None:
             require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
@@ -356,7 +364,7 @@ class Physics(Block):
 
     @model_validator(mode="after")
     def _check_physics(self) -> Self:
-        """Raise ValueError for keys that the boundary condition or another key excludes."""
+        """Raise ValueError if a key is excluded by the boundary condition or by another key."""
         if getattr(self, "layer", None) is None:
             self._check_gamma()
         self.refuse_together("beta", "damping_ratio")
@@ -374,7 +382,7 @@ class Physics(Block):
 
 
 def _with_extra_terms(lists: bool) -> type[Physics]:
-    """Return `Physics` with a key for each extra term of the equation.
+    """Return a subclass of `Physics` with a key for each extra term of the equation of motion.
 
     The value of a key is a number, or a list of numbers if ``lists`` is set.
     """
@@ -390,7 +398,8 @@ def _with_extra_terms(lists: bool) -> type[Physics]:
     return create_model("PhysicsWithExtraTerms", __base__=Physics, **keys)
 
 
-# To the type checker the keys of extra terms are not known, and nothing uses them by name.
+# The type checker does not know the keys of extra terms. It does not need them, since nothing uses
+# them by name.
 if TYPE_CHECKING:
     PhysicsOfSweep = Physics
     PhysicsOfScene = Physics
@@ -445,6 +454,12 @@ class Simulation(PhysicsOfSweep):
         """Raise ValueError for keys that are missing or exclude each other."""
         self.refuse_together("profiles", "left", "right", "width", "beyond")
         self.refuse_together("dx", "spacing")
+        self._check_lists_and_units()
+        self._check_record()
+        return self
+
+    def _check_lists_and_units(self) -> None:
+        """Raise ValueError if the pre-stress, spacing or duration is not described in one way."""
         has_levels = self.left is not None and self.right is not None
         has_profile = has_levels or self.profiles is not None
         require(has_profile, "left, right: missing", "lists, or profiles")
@@ -457,6 +472,9 @@ class Simulation(PhysicsOfSweep):
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
             require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
+
+    def _check_record(self) -> None:
+        """Raise ValueError if fronts are not recorded, or if samples are incomplete."""
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
         if "samples" in self.record:
             allowed = "times, positions and extent, since record contains samples"
@@ -464,7 +482,6 @@ class Simulation(PhysicsOfSweep):
         else:
             problem = "samples: given, but record does not contain samples"
             require(self.samples is None, problem, "record: [..., samples], or samples: null")
-        return self
 
 
 class LayerKeys(Block):
@@ -488,12 +505,12 @@ class LayerKeys(Block):
 
     @model_validator(mode="after")
     def _check_layer(self) -> Self:
-        """Raise ValueError if there is no such layer."""
+        """Raise ValueError if the library does not accept the properties of the layer."""
         self.layer("displacement")
         return self
 
     def layer(self, boundary: str) -> Layer:
-        """Return the layer. By default its condition on top is that of a boundary condition."""
+        """Return the layer of the library. Without a key ``top``, it follows from ``boundary``."""
         given = {"top": TOP_OF_BOUNDARY[boundary]} | self.plain()
         return Layer(**given)
 
@@ -536,7 +553,7 @@ class NamedScene(Profile, PhysicsOfScene):
 
     @model_validator(mode="after")
     def _check_in_model_units(self) -> Self:
-        """Raise ValueError if the scene is not allowed in the units of the model."""
+        """Raise ValueError if the scene is not allowed, in non-dimensional units too."""
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
             require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
@@ -560,9 +577,9 @@ class NamedScene(Profile, PhysicsOfScene):
         return None if self.layer is None else self.layer.layer(self.boundary).mapping()
 
     def in_model_units(self) -> Self:
-        """Return the non-dimensional scene without its layer.
+        """Return the scene in non-dimensional units, without its layer.
 
-        Raises ValueError if a stress is not allowed.
+        Raises ValueError if a stress or the spacing is not allowed.
         """
         if self.layer is None:
             return self
@@ -806,7 +823,7 @@ class Configuration(Block):
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:
-        """Raise ValueError for names that are unknown or used twice."""
+        """Raise ValueError if a name is unknown or used twice, or if a scheme has no accuracy."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme

@@ -5,12 +5,16 @@ from copy import deepcopy
 
 
 def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
-    """Return the values of some dotted keys, nested as in the configuration, with additions."""
+    """Return the part of a configuration that consists of some dotted keys, and ``additions``.
+
+    Values are nested as in the configuration.
+    """
     values = deepcopy(dict(additions))
     for key in keys:
-        target, source = values, config
         *parents, last = key.split(".")
+        selected_block, block = values, config
         for parent in parents:
-            target, source = target.setdefault(parent, {}), source[parent]
-        target[last] = source[last]
+            selected_block = selected_block.setdefault(parent, {})
+            block = block[parent]
+        selected_block[last] = block[last]
     return values

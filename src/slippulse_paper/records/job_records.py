@@ -1,9 +1,9 @@
 """Records of jobs: outputs and inputs with their digests, and digests of sources and settings.
 
-Snakemake decides which jobs run, by its own records and the times of files. It does not notice a
-result that was edited by hand. For that, the records here have the digest of everything that a job
-wrote. The record of a job is ``.records/NAME.json`` in the folder of its first output, NAME. A job
-with outputs in two folders has a record in each.
+Snakemake decides by its own records and by the times of files which jobs run. It does not notice a
+result that was edited by hand. The records of this module show that, since they have the digest of
+every file that a job wrote. The record of a job is ``.records/NAME.json`` in the folder of its
+first output, NAME. A job with outputs in two folders has a record in each.
 """
 
 import base64
@@ -20,16 +20,16 @@ from typing import Any, NamedTuple
 from slippulse.data.files import write_text
 
 FOLDER = ".records"
-# The call in a rule that runs a step of this project and so has a record.
+# The rules of this project contain this call. It runs a step, which writes a record.
 STEP_CALL = "run_step("
 
 
 class ChangedFile(RuntimeError):
-    """Refusal of a file that differs from what its job wrote, or that changed during a job."""
+    """A file differs from what its job wrote, or it has changed while a job used it."""
 
 
 class FileState(NamedTuple):
-    """Digest of a file, with its size and time, which show quickly that it is unchanged."""
+    """Digest of a file, and its size and time, which show quickly whether the file has changed."""
 
     sha256: str
     size: int
@@ -37,11 +37,11 @@ class FileState(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Record of a job.
+    """Record of a job, with those of its outputs that are in one folder.
 
-    ``code`` and ``configuration`` are the digests of its sources and of all settings. ``outputs``
-    are those in one folder, by name. ``inputs`` has the SHA-256 of each input, by the path relative
-    to that folder.
+    ``code`` is the digest of the sources of the job, and ``configuration`` that of all settings.
+    ``outputs`` has the state of each output, by the name of the file. ``inputs`` has the SHA-256 of
+    each input, by the path relative to the folder of the outputs.
     """
 
     step: str
@@ -68,20 +68,26 @@ def file_digest(path: str | Path) -> str:
 def _digest_at(path: str, _size: int, _modified_ns: int) -> str:
     """Return the SHA-256 of a file.
 
-    Its size and time are arguments so that the cache is not used after a change.
+    The size and time of the file are arguments, so that a changed file is not found in the cache.
     """
     return file_digest(path)
 
 
 def state_of(path: str | Path) -> FileState:
-    """Return the state of a file. The content is read only if its size or time has changed."""
+    """Return the state of a file.
+
+    The file is read only if its size or time has changed since the last call.
+    """
     info = os.stat(path)
     digest = _digest_at(os.path.abspath(path), info.st_size, info.st_mtime_ns)
     return FileState(digest, info.st_size, info.st_mtime_ns)
 
 
 def is_unchanged(path: str | Path, state: FileState) -> bool:
-    """Return True if a file has a recorded content. The file is read only if its time differs."""
+    """Return True if a file still has its recorded content.
+
+    The file is read only if it has the recorded size but another time.
+    """
     info = os.stat(path)
     if (info.st_size, info.st_mtime_ns) == (state.size, state.modified_ns):
         return True
@@ -89,7 +95,7 @@ def is_unchanged(path: str | Path, state: FileState) -> bool:
 
 
 def _is_unchanged_or_missing(path: str, state: FileState) -> bool:
-    """Return True if a file has a recorded content, or cannot be read."""
+    """Return True if a file still has its recorded content, or if it cannot be read."""
     try:
         return is_unchanged(path, state)
     except OSError:
@@ -97,7 +103,7 @@ def _is_unchanged_or_missing(path: str, state: FileState) -> bool:
 
 
 def record_path(output: str | Path) -> Path:
-    """Return the path of the record whose first output is given."""
+    """Return the path of the record of a job, given the first output of the job."""
     path = Path(output)
     return path.parent / FOLDER / f"{path.name}.json"
 
@@ -108,7 +114,7 @@ def write_json(value: object, path: str | Path) -> None:
 
 
 def write_record(record: Record, folder: str | Path) -> None:
-    """Write the record of the outputs of a job in one folder."""
+    """Write the record of a job. ``folder`` is the folder of its outputs."""
     content = record._asdict()
     content["outputs"] = {name: state._asdict() for name, state in record.outputs.items()}
     first_output, *_ = record.outputs
@@ -116,12 +122,12 @@ def write_record(record: Record, folder: str | Path) -> None:
 
 
 def read_record(path: str | Path) -> Record:
-    """Read one record.
+    """Read the record in one file.
 
     Raises
     ------
     OSError
-        if there is no such file
+        if the file cannot be read
     ValueError
         if the file does not have the form of a record
     """
@@ -134,13 +140,16 @@ def read_record(path: str | Path) -> Record:
 
 
 class _Job(NamedTuple):
-    """Outputs of a job in one folder, and the SHA-256 of each input that it read, by path."""
+    """A recorded job: the paths of its outputs, and the SHA-256 of each input that it read."""
 
     outputs: list[str]
     inputs: dict[str, str]
 
     def replaced_inputs(self, states: Mapping[str, FileState]) -> list[str]:
-        """Return the inputs whose recorded content is no longer the one that the job read."""
+        """Return the inputs that were written again, with other content, after the job read them.
+
+        ``states`` has the recorded state of each file by its path.
+        """
         replaced = []
         for path, sha256 in self.inputs.items():
             if path in states and states[path].sha256 != sha256:
@@ -149,7 +158,7 @@ class _Job(NamedTuple):
 
 
 class RecordedFiles:
-    """All records in a folder of results, and the state of the recorded files."""
+    """All records in a folder of results, and the states of the files that they record."""
 
     def __init__(self, results: str | Path) -> None:
         self.results = Path(results)
@@ -170,7 +179,7 @@ class RecordedFiles:
         return states
 
     def problems(self) -> Iterator[tuple[str, str]]:
-        """Yield each file whose change Snakemake would not notice, with the reason.
+        """Yield each file whose change Snakemake does not notice, and the reason.
 
         A missing file is not a problem, since Snakemake makes it again if it is needed.
         """
@@ -185,7 +194,7 @@ class RecordedFiles:
                     yield output, f"made from another {replaced_inputs[0]}"
 
     def older_than_inputs(self) -> set[str]:
-        """Return the files that were made from files that have been made again since then.
+        """Return the files that were made from an older version of one of their inputs.
 
         This includes files that were made from such files.
         """
@@ -194,17 +203,17 @@ class RecordedFiles:
         for job in jobs:
             if job.replaced_inputs(states):
                 older.update(job.outputs)
-        # Repeat until no further file was made from an older one.
-        count = -1
-        while len(older) > count:
-            count = len(older)
+        # Repeat until no further file is added.
+        previous_count = -1
+        while len(older) > previous_count:
+            previous_count = len(older)
             for job in jobs:
                 if not older.isdisjoint(job.inputs):
                     older.update(job.outputs)
         return older
 
     def _jobs(self) -> list["_Job"]:
-        """Return outputs and inputs of each record, by their paths from the working directory."""
+        """Return the job of each record, with paths from the working directory."""
         jobs = []
         for path, record in self.records.items():
             folder = _recorded_folder(path)
@@ -217,25 +226,31 @@ class RecordedFiles:
 
 
 def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]:
-    """Yield each file that has no longer its recorded content, and files unknown to Snakemake."""
+    """Yield each file with another content than the recorded one, or that Snakemake does not know.
+
+    Each file comes with the reason. ``states`` has the recorded state of each file by its path.
+    """
     snakemake_files = _files_recorded_by_snakemake()
-    # Most of the time goes into digests of the files, which threads compute in parallel.
+    # The digests of the files take most of the time. Threads compute them in parallel.
     with ThreadPoolExecutor() as threads:
         unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
-    for name, is_recorded in zip(states, unchanged, strict=True):
-        if not is_recorded:
+    for name, is_unchanged_file in zip(states, unchanged, strict=True):
+        if not is_unchanged_file:
             yield name, "not what its job wrote"
         elif name not in snakemake_files and Path(name).is_file():
             yield name, "Snakemake's own record of it (in .snakemake) is lost"
 
 
 def _recorded_folder(record: Path) -> Path:
-    """Return the folder with the files that a record is about."""
+    """Return the folder of the outputs in a record, given the path of the record."""
     return record.parent.parent
 
 
 def _files_recorded_by_snakemake() -> dict[str, Path]:
-    """Return Snakemake's record of each file by the path of the file, which its name encodes."""
+    """Return the path of Snakemake's record of each file, by the path of the file.
+
+    The name of a record is the path of the file, encoded in base64.
+    """
     folder = Path(".snakemake/metadata")
     records = {}
     for path in folder.rglob("*"):
@@ -247,21 +262,21 @@ def _files_recorded_by_snakemake() -> dict[str, Path]:
 
 
 def made_without_step(paths: Iterable[str]) -> set[str]:
-    """Return the files that Snakemake made by a rule without a step of this project.
+    """Return those files that Snakemake made by a rule of the user.
 
-    Such a rule is one of the user, and its jobs have no record here.
+    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`.
     """
-    records, found = _files_recorded_by_snakemake(), set()
+    records, user_files = _files_recorded_by_snakemake(), set()
     for name in {*paths} & {*records}:
         with suppress(OSError, ValueError, TypeError, AttributeError):
             code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
             if code and STEP_CALL not in code:
-                found.add(name)
-    return found
+                user_files.add(name)
+    return user_files
 
 
 def job_seconds(results: str | Path) -> dict[str, float]:
-    """Return the total time in seconds of the jobs of each step, from their records."""
+    """Return the total time in seconds of all jobs of each step, from the records in a folder."""
     seconds: dict[str, float] = {}
     for record in RecordedFiles(results).records.values():
         seconds[record.step] = round(seconds.get(record.step, 0.0) + record.seconds, 2)
@@ -269,14 +284,9 @@ def job_seconds(results: str | Path) -> dict[str, float]:
 
 
 def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, Record]]:
-    """Check that the inputs of a job still have the content that their jobs wrote.
+    """Raise ChangedFile if an input of a job has another content than its own job wrote.
 
-    Returns the state of each existing file, and the record of each recorded file, by path.
-
-    Raises
-    ------
-    ChangedFile
-        if a file has another content
+    Returns the state of each input that exists, and the record of each input that has one, by path.
     """
     states, records = {}, {}
     for path in paths:
@@ -317,9 +327,9 @@ def _time_of(folder: Path) -> int:
 
 @cache
 def _records_in(folder: str, _modified_ns: int) -> dict[str, Record]:
-    """Return the record of each output, by its name, from the records in a folder.
+    """Return the record of each output in a folder of records, by the name of the output.
 
-    The time of the folder is an argument so that the cache is not used after a change.
+    The time of the folder is an argument, so that a changed folder is not found in the cache.
     """
     records: dict[str, Record] = {}
     for path in Path(folder).glob("*.json"):

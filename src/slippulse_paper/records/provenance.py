@@ -1,7 +1,7 @@
-"""Provenance of the results, their checksums and a manifest for CODECHECK.
+"""Provenance of the results, their checksums, and a manifest for CODECHECK.
 
-Only the provenance and the folder ``seconds`` contain times. The seconds have no checksums, so that
-all results with a checksum can be compared by byte.
+Only the provenance and the folder ``seconds`` contain times, which differ from run to run. They
+have no checksums, and so all results with a checksum can be compared byte by byte.
 """
 
 import os
@@ -29,10 +29,11 @@ PAPER = {
 
 
 def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """List all values that differ between two configurations, or between their values at a key.
+    """List all values that differ between the shipped and another configuration.
 
     Each entry has the dotted ``key``, the value in the ``shipped`` configuration, and the value
-    ``here``. The value of an absent key is None.
+    ``here``, in ``config``. The value of an absent key is None. If ``key`` is given, ``shipped``
+    and ``config`` are only the values at this key.
     """
     if not (isinstance(shipped, Mapping) and isinstance(config, Mapping)):
         return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
@@ -44,7 +45,7 @@ def changes(shipped: object, config: object, key: str = "") -> list[dict]:
 
 
 def source_files(root: str | Path) -> list[Path]:
-    """List all files of the project, except the configuration, that a result may depend on."""
+    """List all files of the project that a result may depend on, except the configuration."""
     files = [Path(root, "Snakefile")]
     for folder in ("src", "workflow", "manuscript"):
         paths = Path(root, folder).rglob("*")
@@ -53,11 +54,11 @@ def source_files(root: str | Path) -> list[Path]:
 
 
 def git_state(root: str | Path) -> dict | None:
-    """Return the commit and the files that differ from it.
+    """Return the current commit of the project, and the files that differ from it.
 
-    Returns None outside of a repository, or if git is not installed.
+    Returns None if the project is not in a git repository, or if git is not installed.
     """
-    # Environment variables of git could select another repository.
+    # Without its environment variables, git cannot be led to another repository.
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     options = {"stderr": subprocess.DEVNULL, "timeout": 30, "cwd": root, "env": environment}
     git = partial(subprocess.check_output, **options)
@@ -66,7 +67,9 @@ def git_state(root: str | Path) -> dict | None:
         status = git(["git", "status", "--porcelain", "--untracked-files=no"], text=True)
     except (OSError, subprocess.SubprocessError):
         return None
-    return {"commit": commit, "changed_files": sorted(line[3:] for line in status.splitlines())}
+    # Each line has two letters and a space before the path.
+    changed_files = sorted(line[3:] for line in status.splitlines())
+    return {"commit": commit, "changed_files": changed_files}
 
 
 def machine_class() -> dict:
@@ -109,34 +112,48 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | 
 
 
 def checksums(files: Sequence[str], base: str | Path) -> str:
-    """Return the SHA-256 of files in the format of sha256sum, sorted by the path below ``base``."""
+    """Return the SHA-256 of files in the format of the program sha256sum.
+
+    The files are sorted by their path below the folder ``base``.
+    """
     names = sorted(str(Path(file).relative_to(base)) for file in files)
     return "".join(f"{file_digest(Path(base) / name)}  {name}\n" for name in names)
 
 
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
-    """Return a CODECHECK manifest, which lists every output with a comment.
+    """Return a CODECHECK manifest, which lists every file with a comment.
 
-    comments : titles of figures by name
+    Parameters
+    ----------
+    files : sequence of str
+        paths of the results
+    base : str or Path
+        folder of the results
+    comments : mapping
+        titles of figures by name, which are the comments on their files
     """
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
-        # The folder of the output, or its name if it is in no folder.
-        part = path.parts[0]
-        comment = COMMENTS.get(part, comments.get(path.stem, "result"))
-        if part in COMPARISON_ADVICE:
-            comment += f"; {COMPARISON_ADVICE[part]}"
+        folder_or_file = path.parts[0]
+        comment = COMMENTS.get(folder_or_file, comments.get(path.stem, "result"))
+        if folder_or_file in COMPARISON_ADVICE:
+            comment += f"; {COMPARISON_ADVICE[folder_or_file]}"
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
-    form = "https://codecheck.org.uk/spec/config/1.0/"
+    specification = "https://codecheck.org.uk/spec/config/1.0/"
     summary = "make compare AGAINST=FOLDER shows figures, verdicts and tables beside another run"
-    content = {"version": form, "paper": paper, "manifest": entries, "summary": summary}
+    content = {
+        "version": specification,
+        "paper": paper,
+        "manifest": entries,
+        "summary": summary,
+    }
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 
 
-# Advice for the comparison with outputs of another machine, by the folder or the name of the
-# output.
+# Advice for a comparison with results of another machine, by the folder of a file in results, or by
+# its name if it is in no folder.
 COMPARISON_ADVICE = {
     "claims.json": "compare first: the verdicts must be the same",
     "claims.html": "read it",
@@ -145,6 +162,7 @@ COMPARISON_ADVICE = {
     "studies": "numbers must agree to a relative 1e-6",
     "manuscript": "read it; its numbers follow from the tables",
 }
+# Comments on files, by their folder or name.
 COMMENTS = {
     "data": "simulated data, netCDF-4",
     "measurements": "measured numbers, one row for each run",

@@ -17,7 +17,7 @@ from .job_records import digest_of, file_digest
 PACKAGES = ("slippulse", "slippulse_paper")
 SOURCES = Path(__file__).resolve().parents[2]
 PROJECT = SOURCES.parent
-# Results may depend on the versions of the packages.
+# Results may depend on the versions of the installed packages, which this file lists.
 LOCK = "requirements.lock"
 
 
@@ -30,8 +30,9 @@ class Sources(NamedTuple):
 
 @cache
 def _imports() -> grimp.ImportGraph:
-    """Return the graph of imports in both packages. Each module also imports its own package."""
+    """Return the graph of the imports in both packages."""
     graph = grimp.build_graph(*PACKAGES, cache_dir=None, exclude_type_checking_imports=True)
+    # Python runs the __init__ of a package before its modules, and so each module depends on it.
     for name in graph.modules - {*PACKAGES}:
         graph.add_import(importer=name, imported=name.rpartition(".")[0])
     return graph
@@ -45,7 +46,7 @@ def _digest(path: str) -> str:
 
 @cache
 def modules_reached(*modules: str) -> frozenset[str]:
-    """Return the full names of modules and of everything that they import."""
+    """Return the full names of modules and of all modules that they import, even indirectly."""
     imports = _imports()
     imported = [imports.find_upstream_modules(module) for module in modules]
     return frozenset(modules).union(*imported)
@@ -53,12 +54,12 @@ def modules_reached(*modules: str) -> frozenset[str]:
 
 @cache
 def sources_of(modules: tuple[str, ...], texts: tuple[str, ...] = ()) -> Sources:
-    """Return the sources of a step.
+    """Return the sources of a step: its modules, the texts that it reads, and requirements.lock.
 
     Parameters
     ----------
     modules : tuple of str
-        full names of the modules that the step runs
+        full names of the modules that the step runs; those that they import are added
     texts : tuple of str
         paths below the project of other files that it reads, such as templates and texts
     """
@@ -69,7 +70,10 @@ def sources_of(modules: tuple[str, ...], texts: tuple[str, ...] = ()) -> Sources
 
 
 def changed_sources(files: dict[str, str]) -> Iterable[str]:
-    """Yield the paths of sources whose content no longer has the given SHA-256."""
+    """Yield the paths of source files that have changed or are missing.
+
+    ``files`` has the earlier SHA-256 of each file by its path below the project.
+    """
     for path, digest in files.items():
         try:
             is_unchanged = file_digest(PROJECT / path) == digest
@@ -80,7 +84,7 @@ def changed_sources(files: dict[str, str]) -> Iterable[str]:
 
 
 def _path_of(module: str) -> str:
-    """Return the path of a module below the project."""
+    """Return the path of a module below the project, from the full name of the module."""
     path = SOURCES.joinpath(*module.split("."))
     path = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     return path.relative_to(PROJECT).as_posix()

@@ -13,13 +13,16 @@ from ..report.scene_page import scene_page
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write ``numbers``, ``csv``, ``png``, ``pdf`` and ``html`` of a scene.
+    """Write the table of main numbers, the figure with its table, and the page of a scene.
 
-    The files are its ``data`` and its tables ``measured``, ``predicted`` and ``uncertainties``. The
-    settings have its title, the note ``altered``, and its layer in SI units or None.
+    The outputs are ``numbers`` and ``csv`` (tables), ``png`` and ``pdf`` (the figure) and ``html``.
+    The files are the ``data`` of the scene and its tables ``measured``, ``predicted`` and
+    ``uncertainties``. The settings have the title of the scene, a note on altered parameters
+    (``altered``), and the parameters of its layer in SI units or None.
     """
     title, note = settings["title"], settings["altered"]
     layer = Layer(**settings["layer"]) if settings.get("layer") else None
+    # A scene is a simulation of one run, whose number is 0.
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     row = at_constant_levels(row)

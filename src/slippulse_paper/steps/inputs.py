@@ -21,10 +21,11 @@ class LoadedInputs(NamedTuple):
 
 
 def load_inputs(files: Mapping) -> LoadedInputs:
-    """Load data and tables by name, from lists of paths for each kind of file.
+    """Load the data of simulations, and tables, by the names of their files.
 
-    The predictions for a simulation are joined to its measured table. Uncertainties and tables of
-    coarser lattices have their kind in the name, such as ``coarser/arrest``.
+    ``files`` has a list of paths for each kind of file. The predictions for a simulation are joined
+    to its measured table. Tables of uncertainties and of coarser lattices have their kind in the
+    name, such as ``coarser/arrest``. JSON and YAML files of the kind ``lists`` become tables, too.
     """
     tables: dict[str, pd.DataFrame] = {}
     for kind in ("measured", "studies"):
@@ -38,7 +39,7 @@ def load_inputs(files: Mapping) -> LoadedInputs:
         for path in map(Path, files.get(kind, [])):
             tables[f"{kind}/{path.stem}"] = load_table(path)
     for path in map(Path, files.get("lists", [])):
-        read = json.loads if path.suffix == ".json" else yaml.safe_load
-        tables[path.stem] = pd.DataFrame(read(path.read_text(encoding="utf-8")))
+        parse = json.loads if path.suffix == ".json" else yaml.safe_load
+        tables[path.stem] = pd.DataFrame(parse(path.read_text(encoding="utf-8")))
     data = {Path(path).stem: load_dataset(path) for path in files.get("data", [])}
     return LoadedInputs(data, tables)

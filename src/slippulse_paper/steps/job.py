@@ -40,9 +40,9 @@ class JobFailed(Exception):
 class Job(NamedTuple):
     """A job: the step that it runs, its files, its settings and the sources that it depends on.
 
-    Results depend on ``settings``. They do not depend on ``variables``, the wildcards and threads
-    of Snakemake, which the step gets too. ``code`` is the digest of ``sources``, which has the
-    SHA-256 of each source file when the run was planned.
+    Results depend on ``settings``. The step also gets ``variables``, which are the wildcards and
+    the number of threads of Snakemake. Results do not depend on them. ``sources`` has the SHA-256
+    that each source file had when the run was planned, and ``code`` is the digest of all of them.
     """
 
     step: str
@@ -57,7 +57,10 @@ class Job(NamedTuple):
 
 
 def run_job(job: Job) -> None:
-    """Run the step of a job and write its record. Raises JobFailed with the reason if it fails."""
+    """Run the step of a job, and write its log and its record.
+
+    Raises JobFailed with the reason in one line if the job fails.
+    """
     began = time.monotonic()
     with logged(job.log) as progress_stream:
         states, records = check_inputs(_paths(job.inputs))
@@ -67,14 +70,15 @@ def run_job(job: Job) -> None:
         configuration = digest_of([dict(job.settings), *sorted(input_digests)])
         os.environ[CONFIGURATION_VARIABLE] = configuration
         step = import_module(f"slippulse_paper.steps.{job.step}")
-        # Settings replace wildcards of the same name: the figure of a user-defined sweep is drawn
-        # by a module with another name than the wildcard.
+        # Settings replace wildcards of the same name, because the figure of a user-defined sweep is
+        # drawn by a module whose name differs from the wildcard.
         report_progress = progress_writer(progress_stream, job.name)
         settings = {**job.variables, **job.settings, "progress": report_progress}
         step.run(job.inputs, job.outputs, settings)
         check_unchanged(states)
-        for path in changed_sources(dict(job.sources)):
-            raise ChangedFile(f"{path}: changed since this run was planned; run again")
+        changed_source = next(iter(changed_sources(dict(job.sources))), None)
+        if changed_source is not None:
+            raise ChangedFile(f"{changed_source}: changed since this run was planned; run again")
         seconds = round(time.monotonic() - began, 2)
         _write_records(job, configuration, states, seconds)
     if not sys.stderr.isatty():
@@ -85,9 +89,10 @@ def run_job(job: Job) -> None:
 def _write_records(
     job: Job, configuration: str, input_states: Mapping[str, FileState], seconds: float
 ) -> None:
-    """Write a record of the job into each folder that has some of its outputs.
+    """Write a record of the job into each folder that contains some of its outputs.
 
     Only the first record has the computing time, so that a sum over all records counts it once.
+    ``configuration`` is the digest of all settings that the outputs depend on.
     """
     names_by_folder: dict[Path, list[str]] = {}
     for output in map(Path, _paths(job.outputs)):
@@ -110,17 +115,18 @@ def _write_records(
 
 
 def _paths(files: Mapping[str, str | list[str]]) -> list[str]:
-    """Return the paths of all files, of which each name may have one or several."""
+    """Return the paths of all files. Each name in ``files`` has one path or a list of paths."""
     paths = []
-    for value in files.values():
-        paths += [value] if isinstance(value, str) else value
+    for path_or_list in files.values():
+        paths += [path_or_list] if isinstance(path_or_list, str) else path_or_list
     return paths
 
 
 def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
     """Return a function that writes how much of a job is done and how long the rest will take.
 
-    Its arguments are the number of finished runs and the number of all runs.
+    The arguments of this function are the number of finished runs and the number of all runs. It
+    writes a line only if the last one is some seconds old.
     """
     began = last_written = time.monotonic()
 
@@ -131,18 +137,19 @@ def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
         if not is_underway or now - last_written <= SECONDS_BETWEEN_LINES:
             return
         last_written = now
-        part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
+        progress = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
         seconds_left = (now - began) * (total / done - 1.0)
-        print(f"  {name}: {part}, about {seconds_left:.0f} s left", file=stream, flush=True)
+        print(f"  {name}: {progress}, about {seconds_left:.0f} s left", file=stream, flush=True)
 
     return write
 
 
 @contextmanager
 def logged(path: str | Path) -> Iterator[TextIO]:
-    """Write the standard error of a job to its log, and yield a stream for its progress.
+    """Redirect the standard error of a job to its log, and yield a stream for its progress.
 
-    Raises JobFailed with the reason in one line if the job raises an exception.
+    If the job raises an exception, write the traceback to a separate file, and raise JobFailed with
+    the reason in one line.
     """
     # Snakemake prints the log of a failed job, and so the traceback has a separate file.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")

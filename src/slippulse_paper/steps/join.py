@@ -11,8 +11,8 @@ from .joined_files import join_datasets, join_grid_studies, join_tables
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the file ``joined`` from the files ``chunks``.
 
-    The settings have the kind of the file, and the kinds of data that the runs record. For
-    uncertainties, the file ``finest`` has the joined measurements.
+    The settings have the ``kind`` of these files, and the kinds of data that the runs ``record``.
+    If the kind is uncertainties, the file ``finest`` has the joined measurements.
     """
     kind = settings["kind"]
     chunks, joined = files["chunks"], outputs["joined"]
@@ -20,6 +20,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         save_dataset(join_datasets(chunks, settings["record"]), joined)
     elif kind == "uncertainties":
         finest = files["finest"][0]
+        # Columns that identify a run.
         keys = [*PARAMETERS, *(name for name in LABELS if name in load_table(finest))]
         join_grid_studies(chunks, finest, keys, studied_columns, joined)
     else:

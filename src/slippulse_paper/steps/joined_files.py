@@ -1,4 +1,4 @@
-"""Joining of the chunks of a sweep.
+"""Joining of the files of the chunks of a sweep.
 
 A joined file is equal, byte by byte, to the file of the same sweep without chunks.
 """
@@ -23,9 +23,14 @@ NOT_ONE_SWEEP = "this chunk and the others do not have the runs of one sweep"
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
-    """Return one Dataset of the sweep, joined from the files of all chunks in their order.
+    """Return the data of a sweep, joined from the files of its chunks.
 
-    record : kinds of data that the runs have
+    Parameters
+    ----------
+    paths : sequence of paths
+        files of all chunks, in the order of the chunks
+    record : sequence of str
+        kinds of data that the runs have
     """
     chunks = [load_dataset(path) for path in paths]
     run_numbers = _run_numbers(paths, [chunk.sizes["point"] for chunk in chunks])
@@ -37,24 +42,26 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
-    """Join tables with one row for each run.
+    """Join the tables of the chunks of a sweep, which have one row for each run.
 
-    A table of coarser lattices has such a block of rows for each value of ``factor``. This column
-    stays the last one.
+    A table of coarser lattices has one row for each run and lattice, sorted by the lattice first.
+    Its last column ``factor`` has the factor by which the spacing of the lattice is larger.
     """
     chunks = _read_as_text(paths)
     has_factor = "factor" in chunks[0]
-    blocks = chunks[0]["factor"].nunique() if has_factor else 1
-    run_numbers = _run_numbers(paths, [len(chunk) // blocks for chunk in chunks])
+    lattices = chunks[0]["factor"].nunique() if has_factor else 1
+    run_numbers = _run_numbers(paths, [len(chunk) // lattices for chunk in chunks])
     for path, chunk, numbers in zip(paths, chunks, run_numbers, strict=True):
-        if len(chunk) != blocks * len(numbers):
+        if len(chunk) != lattices * len(numbers):
             raise UnreadableFile(path, NOT_ONE_SWEEP)
-        chunk.index = pd.MultiIndex.from_product([range(blocks), numbers])
+        # Each row gets the number of its lattice, and the number of its run in the sweep.
+        chunk.index = pd.MultiIndex.from_product([range(lattices), numbers])
     # The chunk with the first run determines the order of the columns.
     first_runs = [numbers[0] for numbers in run_numbers]
     in_order = [chunks[position] for position in np.argsort(first_runs)]
     table = pd.concat(in_order).sort_index().fillna("")
     if has_factor:
+        # Move the column to the end.
         table["factor"] = table.pop("factor")
     save_table(table, joined)
 
@@ -62,24 +69,36 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
 def join_grid_studies(
     paths: Sequence[str], finest: str, keys: Sequence[str], quantities: Callable, joined: str
 ) -> None:
-    """Join the grid studies of the chunks of a sweep.
+    """Join the tables of uncertainties of the chunks of a sweep.
 
-    ``finest`` is the path of the joined measurements. ``keys`` are the columns that identify a run,
-    and ``quantities`` is a function of the measurements and the keys that returns the numbers with
-    a grid study.
+    Parameters
+    ----------
+    paths : sequence of str
+        tables of all chunks, in the order of the chunks
+    finest : str
+        table of the joined measurements
+    keys : sequence of str
+        columns that identify a run
+    quantities : function
+        returns the names of the measured numbers that have an uncertainty, from the table of
+        measurements and ``keys``
+    joined : str
+        path of the table that is written
     """
     (measured,) = _read_as_text([finest])
     chunks = _read_as_text(paths)
-    # A study has several rows for each run, whose numbers in the column `point` begin with 0.
+    # A table has several rows for each run. Its column `point` has the number of the run in the
+    # chunk, from 0.
     counts = [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks]
     run_numbers = _run_numbers(paths, counts)
     if sum(counts) != len(measured):
         raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
+        # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
-    # A chunk has no row for a number that none of its runs has. The joined study has the rows that
-    # a study of the whole sweep would have.
+    # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets
+    # all rows that a table of the undivided sweep has.
     names = quantities(load_table(finest), keys)
     rows = pd.MultiIndex.from_product([range(len(measured)), names], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
@@ -89,14 +108,17 @@ def join_grid_studies(
 
 
 def _read_as_text(paths: Sequence[str | Path]) -> list[pd.DataFrame]:
-    """Read tables as text. A column may have integers in one chunk and fractions in another."""
+    """Read tables as text, so that each number keeps its form.
+
+    A column may have integers in one chunk and fractions in another.
+    """
     return [pd.read_csv(path, dtype=str, keep_default_na=False) for path in paths]
 
 
 def _run_numbers(paths: Sequence[str | Path], counts: Sequence[int]) -> list[list[int]]:
-    """Return the numbers of the runs in each chunk.
+    """Return the numbers of the runs in each chunk. ``counts`` has how many runs each chunk has.
 
-    Raises UnreadableFile if the counts are not those of the chunks of one sweep.
+    Raises UnreadableFile if the chunks of one sweep cannot have these counts.
     """
     chunk_count, run_count = len(counts), sum(counts)
     run_numbers = []

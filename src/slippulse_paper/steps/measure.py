@@ -6,6 +6,9 @@ from slippulse.prediction.comparison import measured_table
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write the table ``measured`` from ``data``, by the settings ``measure``."""
+    """Write the table ``measured`` from ``data``.
+
+    The settings have the settings of the measurements (``measure``).
+    """
     table = measured_table(load_dataset(files["data"]), settings["measure"])
     save_table(table, outputs["measured"])

@@ -1,7 +1,7 @@
-"""Measure the seconds of the runs behind the study of accuracy, and draw its errors against them.
+"""Measure the computing times of the study of accuracy, and draw errors as a function of time.
 
-Seconds differ between machines and between runs of one machine. Therefore these files are in a
-folder of their own, and are neither in the checksums nor in the manifest of results.
+Computing times differ between machines, and between runs on the same machine. Therefore these files
+are in a separate folder, and neither the checksums nor the manifest of the results contain them.
 """
 
 import time
@@ -26,15 +26,19 @@ from ..figures.shared.error_panels import draw_errors, error_rows
 from ..studies.accuracy_cost import DAMPING_RATIOS, Setting
 from .inputs import load_inputs
 
-# A run is repeated until it has taken this many seconds in total, but not more often than this.
+# A simulation is repeated until all its repetitions have taken this many seconds in total, but at
+# most this many times.
 MIN_TOTAL_SECONDS = 0.01
 MAX_REPETITIONS = 3
-# Seconds that have a number on the axis, as far as the axis reaches.
+# Computing times in seconds that are labelled on the axis.
 AXIS_TICKS = np.outer(10.0 ** np.arange(-5, 3), [1.0, 2.0, 5.0]).ravel()
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: studies (accuracy_cost). Outputs: csv, png, pdf."""
+    """Write the table ``csv`` of errors and computing times, and the figure ``png`` and ``pdf``.
+
+    The files ``studies`` contain the table of the study `accuracy_cost`.
+    """
     study = load_inputs(files).tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
     save_table(timed(trade), outputs["csv"])
@@ -43,33 +47,39 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def timed(trade: pd.DataFrame) -> pd.DataFrame:
-    """Return the errors of a study with measured processor seconds of one run.
+    """Return a table with the errors of the study and the processor seconds of one simulation.
 
-    These are seconds of the crack for its 95 % time, and the mean of the pulses otherwise.
+    This simulation is the crack for the error of the crack's 95 % time. For all other errors it is
+    a pulse, and the seconds are averaged over the damping ratios.
     """
     settings = [
         Setting(row.scheme, int(row.order), row.step, row.dx)
         for row in trade[["scheme", "order", "step", "dx"]].itertuples()
     ]
-    # Machine code and other things that only the first run needs are loaded before.
-    for first in {setting.scheme: setting for setting in settings}.values():
-        first.run_crack()
-        first.run_pulse(0.0)
-    crack = [shortest_seconds(setting.run_crack) for setting in settings]
-    pulses = [
-        sum(shortest_seconds(partial(setting.run_pulse, ratio)) for ratio in DAMPING_RATIOS)
-        for setting in settings
-    ]
-    measured = trade.assign(
-        crack=crack, pulse=[seconds / len(DAMPING_RATIOS) for seconds in pulses]
-    )
-    return error_rows(
-        measured, "seconds", lambda quantity: "crack" if quantity == "share_time" else "pulse"
-    )
+    # The first simulation of a scheme also loads machine code, which should not be timed.
+    one_setting_per_scheme = {setting.scheme: setting for setting in settings}
+    for setting in one_setting_per_scheme.values():
+        setting.run_crack()
+        setting.run_pulse(0.0)
+    crack_seconds = [shortest_seconds(setting.run_crack) for setting in settings]
+    pulse_seconds = [_mean_pulse_seconds(setting) for setting in settings]
+    with_seconds = trade.assign(crack=crack_seconds, pulse=pulse_seconds)
+    return error_rows(with_seconds, "seconds", _column_of_seconds)
+
+
+def _mean_pulse_seconds(setting: Setting) -> float:
+    """Return the processor time of a pulse, averaged over the damping ratios."""
+    runs = [partial(setting.run_pulse, ratio) for ratio in DAMPING_RATIOS]
+    return sum(map(shortest_seconds, runs)) / len(runs)
+
+
+def _column_of_seconds(quantity: str) -> str:
+    """Return the column with the processor seconds of the simulation that gives a quantity."""
+    return "crack" if quantity == "share_time" else "pulse"
 
 
 def shortest_seconds(simulate: Callable[[], object]) -> float:
-    """Return the processor time of a run, the shortest of some repetitions."""
+    """Return the processor time of a simulation: the shortest of some repetitions."""
     times: list[float] = []
     while len(times) < MAX_REPETITIONS and sum(times) < MIN_TOTAL_SECONDS:
         start = time.process_time()
@@ -79,10 +89,11 @@ def shortest_seconds(simulate: Callable[[], object]) -> float:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw four errors against processor seconds."""
+    """Draw four errors as functions of the processor seconds."""
     figure, panels = new_panels(PAGE_WIDTH, 5.0, "ab;cd")
     draw_errors(panels, table, "seconds", "processor seconds for one run")
     for axes in panels:
+        # Label only ticks inside the axis.
         low, high = axes.get_xlim()
         few_ticks(axes.xaxis, AXIS_TICKS[(low < AXIS_TICKS) & (high > AXIS_TICKS)])
     legend_above(figure, panels[0])

@@ -1,6 +1,7 @@
 """Constants that the rules of the workflow read from modules of figures, studies and steps.
 
-Examples are NEEDS, the inputs of a figure or study, and DRAWS, its conditions on simulations.
+For example, NEEDS lists the inputs of a figure or study, and DRAWS the conditions that a figure has
+on its simulations.
 """
 
 import ast
@@ -12,10 +13,11 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 @cache
 def declared(module: str, name: str):
-    """Read a constant of a module, dotted below slippulse_paper, without importing the module.
+    """Return the value of a constant of a module in slippulse_paper, without importing the module.
 
-    Snakemake needs these constants at every start, and importing the modules would take seconds.
-    Returns None if the module does not have the constant.
+    ``module`` is a dotted name such as figures.fig05_scaling. Snakemake needs these constants at
+    every start, and importing the modules would take seconds. The value is None if the module does
+    not have the constant.
     """
     path = PACKAGE.joinpath(*module.split(".")).with_suffix(".py")
     text = path.read_text(encoding="utf-8")
@@ -29,7 +31,10 @@ def declared(module: str, name: str):
 
 
 def needs_of(folder: str) -> dict[str, dict]:
-    """Read the NEEDS of all modules in a folder that have this constant, by module name."""
+    """Return the constant NEEDS of each module in a folder, by the name of the module.
+
+    Modules without this constant are left out.
+    """
     needs = {}
     for path in sorted((PACKAGE / folder).glob("*.py")):
         value = declared(f"{folder}.{path.stem}", "NEEDS")

@@ -26,7 +26,8 @@ DIGITS = 15
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
 
-    The settings also have the topics, and the values ``fraction`` and ``still`` of `measure`.
+    The settings also have the topics of the predictions (``topics``), and the values ``fraction``
+    and ``still`` of the block `measure` of the configuration.
     """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)
@@ -36,7 +37,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 def predictions(
     topics: Iterable[str], swept_runs: Sequence[Run], settings: Mapping
 ) -> pd.DataFrame:
-    """Join the predictions on some topics to a table with one row for each run.
+    """Return a table of the predictions on some topics, with one row for each run.
 
     A number is NaN if the theory does not cover the friction law or an extra term of the run.
     """
@@ -45,13 +46,14 @@ def predictions(
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
         table = module.predictions(swept_runs, settings)
         is_covered = [_is_covered(swept_run, module.LAWS) for swept_run in swept_runs]
+        # Rows that are removed come back with NaN.
         tables.append(table[is_covered].reindex(table.index))
     return pd.concat(tables, axis=1)
 
 
 def _is_covered(swept_run: Run, laws: Container[str]) -> bool:
-    """Return True if a prediction for some friction laws holds for a run.
+    """Return True if a run has one of some friction laws, and no extra term of the equation.
 
-    A number that ignores the friction or an extra term of a run would be misleading.
+    Otherwise a prediction would ignore the friction law or the extra term, and be misleading.
     """
     return swept_run.friction["law"] in laws and not used_extra_terms(swept_run.extra_terms)

@@ -1,4 +1,4 @@
-"""Make the table of one study."""
+"""Compute the table of one study."""
 
 from importlib import import_module
 
@@ -8,10 +8,10 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write the ``table`` of a study from files of the kinds of `load_inputs`.
+    """Write the ``table`` of a study.
 
-    The settings have the study (the name of its module) and the values of the configuration that
-    it reads.
+    The files are those that `load_inputs` reads. The settings have the name of the module of the
+    study (``study``), and the ``values`` of the configuration that the study reads.
     """
     study = import_module(f"slippulse_paper.studies.{settings['study']}")
     inputs = load_inputs(files)

@@ -12,8 +12,8 @@ from slippulse.simulation.sweep import solve_sweep
 from ..configuration.expand import expand
 from ..configuration.runs import profile_labels
 
-# Module and function for each scheme. A job depends only on the solver that it runs, so that an
-# edit of the theory runs only the exact solutions again.
+# Module and function that solve the scenes of each scheme. A job depends only on the solver that it
+# runs. After an edit of the theory, only the exact solutions (`continuum`) are computed again.
 SOLVERS = {
     "localised": "slippulse.solver.solution:solve_on_lattice",
     "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
@@ -24,8 +24,8 @@ SOLVERS = {
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the ``data`` of the resolved simulation ``sweep`` in the settings.
 
-    The settings also have the name of the simulation, the solver (one of SOLVERS), the number of
-    threads, and a function that reports the progress.
+    The settings also have the name of the simulation, the solver (an entry of SOLVERS), the number
+    of threads, and a function that reports the progress.
     """
     solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)

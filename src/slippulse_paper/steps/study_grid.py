@@ -1,4 +1,4 @@
-"""Run and measure one simulation on coarser lattices, for the uncertainty of each number."""
+"""Run and measure one simulation on coarser lattices to find the uncertainty of each number."""
 
 import sys
 from pkgutil import resolve_name
@@ -20,21 +20,19 @@ from ..configuration.runs import profile_labels
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the tables ``uncertainties`` and ``coarser`` of a simulation.
 
-    The file ``finest`` has its measurements. The settings have the solver, the settings
-    ``measure``, and the resolved simulation for each factor of the spacing (``sweeps``).
+    The file ``finest`` has the measurements on the finest lattice. The settings have the solver,
+    the settings of the measurements (``measure``), and the resolved simulation for each factor by
+    which the spacing is larger (``sweeps``).
     """
     name, sweeps = settings["simulation"], settings["sweeps"]
-    solve = resolve_name(settings["solver"])
     coarser_tables = {}
     for factor, sweep in sorted(sweeps.items()):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
-        scenes, samples = expand(sweep)
-        data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
-        data = labelled(data, profile_labels(sweep), sweep["record"])
-        coarser_tables[factor] = measured_table(data, settings["measure"])
+        coarser_tables[factor] = _run_and_measure(sweep, settings)
     is_chunk = any("chunk" in sweep for sweep in sweeps.values())
     measured = _load_measured(files["finest"], is_chunk)
-    keys = [*PARAMETERS, *(name for name in LABELS if name in measured)]
+    # Columns that identify a run.
+    keys = [*PARAMETERS, *(label for label in LABELS if label in measured)]
     tables = (measured, *coarser_tables.values())
     uncertainties = grid_tables(tables, tuple(coarser_tables), keys)
     promise = sweeps[min(sweeps)]["accuracy"].get("promise")
@@ -47,13 +45,22 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
 
 
+def _run_and_measure(sweep: dict, settings: dict) -> pd.DataFrame:
+    """Return the measurements of a resolved simulation after solving its scenes."""
+    solve = resolve_name(settings["solver"])
+    scenes, samples = expand(sweep)
+    data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
+    data = labelled(data, profile_labels(sweep), sweep["record"])
+    return measured_table(data, settings["measure"])
+
+
 def _load_measured(path: str, is_chunk: bool) -> pd.DataFrame:
     """Load the measurements of a simulation, or of one chunk of it."""
     measured = load_table(path)
     if not is_chunk:
         return measured
-    # In one chunk a column of fractions may contain only integers. Read as integers, -0 would lose
-    # its sign.
+    # A column of fractions may happen to have only integers in one chunk. Read it as fractions,
+    # since an integer cannot be -0.
     integer_columns = measured.select_dtypes("integer").columns
-    fractions = integer_columns.difference([*PARAMETERS, *LABELS])
-    return load_table(path, dict.fromkeys(fractions, float))
+    measured_columns = integer_columns.difference([*PARAMETERS, *LABELS])
+    return load_table(path, dict.fromkeys(measured_columns, float))

@@ -19,7 +19,7 @@ import xarray
 
 # The first function that is compiled loads most of numba.
 numba.njit(lambda: 0)()
-# Garbage collection would write to memory that the workers share, and so copy it. It may be rare,
-# since few objects of jobs form cycles.
+# The workers share memory until one of them writes to it. Garbage collection would write to all
+# objects. It can be rare, since few objects of a job refer to each other in a cycle.
 gc.freeze()
 gc.set_threshold(50_000)

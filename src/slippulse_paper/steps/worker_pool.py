@@ -1,8 +1,8 @@
 """Worker processes that run the jobs of a workflow one after another.
 
 A job of this workflow takes about a second, and a new Python process needs longer than that to load
-the libraries. The workers are forked from a process that has loaded them once. A draft of 50 jobs
-takes 75 processor seconds with workers, and 145 with Snakemake's ``script:``.
+the libraries. The workers are forked from a process that has loaded them once. The preset draft,
+with 50 jobs, takes 75 processor seconds with workers, and 145 with Snakemake's ``script:``.
 """
 
 import multiprocessing
@@ -40,7 +40,10 @@ class WorkerPool:
             self._submit(workers, os.getpid)
 
     def run(self, job: Job, workers: int) -> None:
-        """Run a job in one of at most ``workers`` processes. Raises JobFailed with the reason."""
+        """Run a job in one of at most ``workers`` processes, and wait for its end.
+
+        Raises JobFailed with the reason if the job fails.
+        """
         try:
             self._submit(workers, run_job, job).result()
         except BrokenProcessPool:
@@ -53,7 +56,10 @@ class WorkerPool:
             raise JobFailed("stopped") from None
 
     def _submit(self, workers: int, function, *arguments) -> Future:
-        """Let a worker call a function. The first call starts the processes."""
+        """Let a worker call a function with some arguments, and return its future result.
+
+        The first call starts the processes.
+        """
         with self._executor_lock:
             if self._executor is None:
                 self._executor = _new_executor(workers)
@@ -61,7 +67,10 @@ class WorkerPool:
 
 
 def run_here(job: Job) -> None:
-    """Run a job in this process, which Snakemake has started for it. Raises JobFailed."""
+    """Run a job in this process, which Snakemake has started for the job.
+
+    Raises JobFailed with the reason if the job fails.
+    """
     # The job needs the libraries and the environment variables that this module sets.
     from . import worker_libraries  # noqa: F401
 
@@ -69,8 +78,12 @@ def run_here(job: Job) -> None:
 
 
 def _new_executor(workers: int) -> ProcessPoolExecutor:
-    """Return an executor whose processes are forked from one that has loaded the libraries."""
-    # Otherwise each worker would load the main program, Snakemake, which it does not need.
+    """Return an executor whose processes are forked from one that has loaded the libraries.
+
+    Where that is not possible, each process loads the libraries itself.
+    """
+    # Without these names in the main module, a worker does not load Snakemake, which is the main
+    # program.
     vars(sys.modules["__main__"]).update(__spec__=None, __file__=None)
     path_is_short = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
     # On other systems some libraries fail after a fork.
@@ -81,9 +94,9 @@ def _new_executor(workers: int) -> ProcessPoolExecutor:
 
 
 def _prepare_worker() -> None:
-    """Load the libraries, and make the worker end at once if the run is stopped.
+    """Load the libraries, and make the worker end at once if the run ends.
 
-    The run is stopped by the user, or because the parent process ends.
+    The run ends if the user stops it, or if the parent process ends.
     """
     # A forked worker has these libraries already; a worker started by "spawn" loads them here.
     from . import worker_libraries  # noqa: F401

@@ -14,11 +14,11 @@ from .inputs import load_inputs
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write ``json`` with the claims, ``findings``, and the page ``html``.
+    """Write the claims with their verdicts (``json``), the ``findings``, and the page ``html``.
 
-    The files are tables of the kinds of `load_inputs`, and ``texts`` and ``statements`` of the
-    manuscript. The settings have the keys ``claims``, ``published`` and ``measure`` of the
-    configuration, the damping ratio, and the list of altered values.
+    The files are the tables that `load_inputs` reads, and two files of the manuscript (``texts``
+    and ``statements``). The settings have the blocks ``claims``, ``published`` and ``measure`` of
+    the configuration, the damping ratio, and the list of altered values.
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]

@@ -19,10 +19,11 @@ HEADINGS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write ``html``, ``provenance``, ``checksums`` and ``manifest``.
+    """Write the page ``html``, and the files ``provenance``, ``checksums`` and ``manifest``.
 
     The files are all results, and texts of the manuscript. The settings have the configuration
-    ``config``, the ``shipped`` one, the names of the figures, and the titles of the scenes.
+    (``config``), the shipped configuration (``shipped``), the names of the figures, and the titles
+    of the scenes by name.
     """
     base = Path(outputs["html"]).parent
     titles = {name: caption.title for name, caption in read_captions(files["captions"]).items()}

@@ -26,20 +26,21 @@ NEEDS = {
     "studies": ["arrest_path", "derivations", "extremes", "layer", "stability"],
 }
 VERDICTS_COMMENT = (
-    "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
-    "from the run of the shipped one."
+    "# Verdict of each claim. manuscript/shipped_verdicts.yaml has those of the shipped"
+    " configuration."
 )
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write ``html`` and ``pdf`` of each document, and the file ``verdicts``.
+    """Write ``html`` and ``pdf`` of the report and its supplement, and the file ``verdicts``.
 
-    The files are those that `inputs_of` reads. The settings have the names of the figures and the
-    configuration ``config``.
+    The files are those that `inputs_of` reads. The settings have the names of the figures, and the
+    configuration (``config``).
     """
     inputs = inputs_of(files, settings)
     folder = inputs.manuscript
-    # Each writer waits for a separate process, and so threads are enough to run them at once.
+    # Each document is written by a separate process, and so threads are enough to write them at the
+    # same time.
     with ThreadPoolExecutor() as pool:
         pending = []
         for document, html, pdf in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
@@ -47,7 +48,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
             pending.append(pool.submit(write_html, text, folder, html))
             pending.append(pool.submit(write_pdf, text, folder, pdf))
     for future in pending:
-        # This raises the error of a writer that has failed.
+        # This raises an exception if the document could not be written.
         future.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
     table = yaml.safe_dump(verdicts, sort_keys=False)
@@ -55,7 +56,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
-    """Read everything that the report is written from."""
+    """Read everything that the report is written from, given the files and settings of its rule."""
     return Inputs(
         config=settings["config"],
         shipped=read_text(files["shipped"]),
@@ -69,10 +70,15 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
     )
 
 
-def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
-    """Return the names that the cells of a document use, for a notebook.
+def notebook_names(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
+    """Return the names that the Python cells of a document use, to run the cells in a notebook.
 
-    ``show`` gets Markdown; by default it is displayed below the cell.
+    Parameters
+    ----------
+    document : str
+        name of the document, such as "replication"
+    show : function or None
+        shows Markdown; by default it is displayed below the cell
     """
     if show is None:
         from IPython.display import Markdown, display

@@ -1,1 +1,1 @@
-"""Write numbers as text, convert Markdown, and fill texts that are templates."""
+"""Conversion of numbers and Markdown to text for pages, and evaluation of templates."""

@@ -1,4 +1,4 @@
-"""Convert Markdown with the pandoc of the locked environment.
+"""Conversion of Markdown with the pandoc of the locked environment.
 
 `markup_of` turns the texts of a page into HTML, and `harmless` escapes the texts of a user.
 """
@@ -13,7 +13,8 @@ from markupsafe import Markup
 
 # The program inside the package pypandoc_binary, not another one on the user's path.
 PANDOC = Path(str(getattr(find_spec("pypandoc"), "origin", ""))).with_name("files") / "pandoc"
-# A folder without pandoc defaults, templates, filters or styles, so that none of the user's apply.
+# Pandoc looks here for defaults, templates, filters and styles. There are none, so that those of
+# the user have no effect.
 DATA_FOLDER = Path(__file__).parent
 # Extensions that are switched off for the texts of pages, so that a text cannot add HTML,
 # attributes or code of its own.
@@ -23,19 +24,22 @@ DISABLED_EXTENSIONS = """
     fancy_lists latex_macros inline_notes footnotes citations
 """
 PAGE_TEXT = "-".join(["markdown", *DISABLED_EXTENSIONS.split()])
+# The text of an exception.
 NOT_ONE_PARAGRAPH = "a text for a page is not one paragraph of Markdown"
+# A link has an address and a text, and a picture may have an alternative text.
 LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
 IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
-# Formulas and links to the web are kept in a user's text. Elsewhere special signs are escaped.
+# In a text of a user, formulas ($...$) and links to the web ([text](address)) are kept as they are.
+# Elsewhere, special signs of Markdown are escaped.
 FORMULA = re.compile(r"(?<!\\)\$(?=\S)((?:[^$\\]|\\.)*?)(?<=\S)\$(?!\d)")
 KEPT = re.compile(rf"({FORMULA.pattern}|(?<!!)\[[\w ,.:;()-]+\]\(https?://[\w./?=&%:~-]+\))")
 SPECIAL_SIGNS = re.compile(r"([\\`\[\]{}<>|@$^~#!])")
 
 
 def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
-    """Convert a text from the format ``source`` to the format ``to``.
+    """Convert a text from one format of pandoc (``source``) to another one (``to``).
 
-    Raises ValueError with the message of pandoc if it fails or warns.
+    Raises ValueError with the message of pandoc if pandoc fails or prints a warning.
     """
     command = [str(PANDOC), f"--data-dir={DATA_FOLDER}", f"--from={source}", f"--to={to}"]
     command += ["--fail-if-warnings", *options]
@@ -50,10 +54,10 @@ def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Return HTML with MathML for each text, which is one paragraph of Markdown.
+    """Return HTML with MathML for each text, by the text. A text is one paragraph of Markdown.
 
-    HTML in a text is shown as text, a link is kept only if it leads to the web, and a picture
-    becomes its alternative text.
+    HTML in a text is shown as text. A link is kept only if it leads to the web. A picture is
+    replaced by its alternative text.
     """
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
@@ -71,14 +75,14 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
 
 
 def _paragraph_content(html: str) -> str:
-    """Return the content of a paragraph, or raise ValueError if the HTML is something else."""
+    """Return the content of an HTML paragraph, or raise ValueError if the HTML is not one."""
     if not (html.startswith("<p>") and html.endswith("</p>")):
         raise ValueError(NOT_ONE_PARAGRAPH)
     return html.removeprefix("<p>").removesuffix("</p>")
 
 
 def _web_link(link: re.Match) -> str:
-    """Return a link to the web without its attributes, and of any other link only the text."""
+    """Return a link to the web without its attributes, or the text of any other link."""
     address, text = link.groups()
     is_web_link = address.lower().startswith(("http://", "https://"))
     return f'<a href="{address}">{text}</a>' if is_web_link else text
@@ -92,18 +96,18 @@ def _alternative_text(image: re.Match) -> str:
 def harmless(text: str) -> str:
     """Return a user's text as Markdown in which only formulas, emphasis and web links have effect.
 
-    The result is safe in a page, in the report and in a cell of a table.
+    The result is one line, and safe in a page, in the report and in a cell of a table.
     """
-    parts, end = [], 0
+    parts, end_of_last = [], 0
     for kept in KEPT.finditer(text):
-        parts += [_escaped(text[end : kept.start()]), kept[0]]
-        end = kept.end()
-    parts.append(_escaped(text[end:]))
+        parts += [_escaped(text[end_of_last : kept.start()]), kept[0]]
+        end_of_last = kept.end()
+    parts.append(_escaped(text[end_of_last:]))
     return " ".join("".join(parts).split())
 
 
 def _escaped(text: str) -> str:
-    """Return a text in which special signs of Markdown have no effect."""
+    """Return a text with a backslash before each special sign of Markdown."""
     return SPECIAL_SIGNS.sub(r"\\\1", text)
 
 

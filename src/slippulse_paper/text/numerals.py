@@ -1,17 +1,20 @@
-"""Write numbers as plain text with Unicode signs, for the report, the pages and the figures."""
+"""Conversion of numbers to plain text with Unicode signs, for the report, pages and figures."""
 
 import math
 
 # Numbers outside this range are written with a power of ten.
 SMALLEST_PLAIN, LARGEST_PLAIN = 1e-3, 1e5
-# Most significant digits of a number without and with an uncertainty.
+# Largest number of significant digits without and with an uncertainty.
 MAX_DIGITS, MAX_DIGITS_WITH_UNCERTAINTY = 5, 6
 MISSING = "not measured"
 SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """Write a number with at most `MAX_DIGITS` significant digits, and a whole number with all."""
+    """Write a number with some significant digits, at most `MAX_DIGITS`.
+
+    A whole number is written with all its digits.
+    """
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value):
@@ -30,8 +33,10 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 def setting(value: float | None) -> str:
-    """Write a number of the configuration with all its digits and no more."""
-    return MISSING if value is None or math.isnan(value) else _power_of_ten(f"{value:g}")
+    """Write a number of the configuration with at most six digits, without zeros at its end."""
+    if value is None or math.isnan(value):
+        return MISSING
+    return _power_of_ten(f"{value:g}")
 
 
 def rounded(value: float | None, digits: int = 4) -> str:
@@ -40,8 +45,13 @@ def rounded(value: float | None, digits: int = 4) -> str:
 
 
 def percent(value: float | None, digits: int = 2) -> str:
-    """Write a fraction as a percentage, or as it is if that would need a power of ten."""
-    if value is None or math.isnan(value) or 0.0 < 100.0 * abs(value) < SMALLEST_PLAIN:
+    """Write a fraction as a percentage, such as 12 % for 0.12.
+
+    A fraction is written as it is if the percentage would need a power of ten.
+    """
+    if value is None or math.isnan(value):
+        return MISSING
+    if 0.0 < 100.0 * abs(value) < SMALLEST_PLAIN:
         return number(value, digits)
     return f"{number(100.0 * value, digits)} %"
 
@@ -49,9 +59,10 @@ def percent(value: float | None, digits: int = 2) -> str:
 def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
     """Write a value with the uncertainty of its last digits, as in 1.476(13).
 
-    Both are rounded by the rule of the Particle Data Group. An uncertainty below the last of
-    `MAX_DIGITS_WITH_UNCERTAINTY` digits is rounded up to that digit. ``unknown`` is appended to a
-    value without an uncertainty.
+    Value and uncertainty are rounded by the rule of the Particle Data Group, which keeps one or two
+    digits of the uncertainty. A value gets at most `MAX_DIGITS_WITH_UNCERTAINTY` digits: a smaller
+    uncertainty is rounded up to one in the last of them. ``unknown`` is appended to a value without
+    an uncertainty.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
         return number(value, MAX_DIGITS)
@@ -68,18 +79,19 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
 
 
 def short(value: object, longest: int = 80) -> str:
-    """Write any value of the configuration in limited length, and None as a dash."""
+    """Write a value of the configuration in at most ``longest`` characters, and None as a dash."""
     text = "\N{EN DASH}" if value is None else str(value)
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
+# Functions that templates use as filters, by name.
 FILTERS = {
     write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)
 }
 
 
 def _power_of_ten(text: str) -> str:
-    """Replace an exponent as in 1.5e-05 by a true power of ten."""
+    """Replace the exponent of a number such as 1.5e-05 by a power of ten, as in 1.5×10⁻⁵."""
     mantissa, _, exponent = text.partition("e")
     if not exponent:
         return _minus(text)
@@ -88,5 +100,5 @@ def _power_of_ten(text: str) -> str:
 
 
 def _minus(text: str) -> str:
-    """Replace hyphens by true minus signs."""
+    """Replace hyphens by minus signs."""
     return text.replace("-", "\N{MINUS SIGN}")

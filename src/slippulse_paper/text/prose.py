@@ -1,4 +1,4 @@
-"""Evaluate expressions in double braces in Markdown, with the rules of jinja2 templates."""
+"""Evaluation of expressions in double braces in Markdown, as in jinja2 templates."""
 
 from collections.abc import Mapping
 from numbers import Real
@@ -12,7 +12,7 @@ MAX_QUOTED_LENGTH = 100
 
 
 class Prose(Environment):
-    """Rules of the expressions: an attribute or an entry of None is None."""
+    """An environment of jinja2 in which an attribute or an entry of None is None."""
 
     def getattr(self, obj: object, attribute: str) -> object:
         """Return an attribute of an object, or None if the object is None."""
@@ -24,7 +24,11 @@ class Prose(Environment):
 
 
 def _text(value: object) -> object:
-    """Write a number that has no filter with three significant digits, and leave texts alone."""
+    """Return what is shown for the value of an expression.
+
+    A number gets three significant digits, and None is shown as not measured. A text, such as the
+    result of a filter, does not change.
+    """
     if isinstance(value, Real):
         return number(float(value))
     return number(None) if value is None else value
@@ -37,7 +41,8 @@ PROSE.filters |= FILTERS
 def fill(text: str, names: Mapping[str, object]) -> str:
     """Return a text in which each ``{{ expression }}`` is replaced by its value.
 
-    Raises ValueError with the line that fails.
+    ``names`` has the values that the expressions use. Raises ValueError with the line of a wrong
+    expression.
     """
     try:
         return PROSE.from_string(text).render(names)
@@ -48,9 +53,9 @@ def fill(text: str, names: Mapping[str, object]) -> str:
 
 
 def _line_number(error: Exception) -> int:
-    """Return the line of a text, from 1, at which its evaluation has failed."""
+    """Return the number of the line, from 1, at which the evaluation of a text has failed."""
     frames = extract_tb(error.__traceback__)
     numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
-    # An error of syntax has no frame in the template, but knows its line.
-    number = numbers[-1] if numbers else getattr(error, "lineno", None)
-    return number or 1
+    # An error of syntax has no frame in the template, but the number of the line as an attribute.
+    line_number = numbers[-1] if numbers else getattr(error, "lineno", None)
+    return line_number or 1
