@@ -378,11 +378,12 @@ def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
     """Return the fields that a layer needs for its damping; without damping they are the same."""
     if elastic.damping == 0.0:
         return DampedFields(fields, fields, fields)
-    names = ("sxx", "syy", "sxy")
-    earlier, total = (
-        fields._replace(**{name: getattr(fields, name).copy() for name in names}) for _ in range(2)
-    )
-    return DampedFields(fields, earlier, total)
+    return DampedFields(fields, with_own_stresses(fields), with_own_stresses(fields))
+
+
+def with_own_stresses(fields: Fields) -> Fields:
+    """Return fields that share the velocities with others, and have a copy of their stresses."""
+    return fields._replace(sxx=fields.sxx.copy(), syy=fields.syy.copy(), sxy=fields.sxy.copy())
 
 
 class LayerState(NamedTuple):

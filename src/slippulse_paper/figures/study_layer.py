@@ -33,9 +33,8 @@ QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
 # Parameters that identify a pulse.
 PULSE_COLUMNS = ["gamma", "tau0", "fracture_energy"]
 # The paper's formulas, and the pulse in one dimension with the same friction.
-THEORY_COLUMNS = [
-    f"{theory}_{quantity}" for theory in ("paper", "damped") for quantity in QUANTITIES
-]
+THEORY_COLUMNS = [f"paper_{quantity}" for quantity in QUANTITIES]
+THEORY_COLUMNS += [f"damped_{quantity}" for quantity in QUANTITIES]
 # Markers and colours of the elasticity ratios, from the smallest on.
 MARKERS = ("o", "^", "s", "D")
 GAMMA_COLOURS = (BLUE, YELLOW, GREEN, PURPLE)
@@ -169,8 +168,8 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
             value = rows[quantity] / unit
             range_ends = [rows[f"{end}_{quantity}"] / unit for end in ("least", "largest")]
             error = [value - range_ends[0], range_ends[1] - value]
-            line: Look = {"linewidth": 0.8, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
-            axes.errorbar(rows["fracture_energy"], value, error, **look, **line)
+            line = look | {"linewidth": 0.8, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
+            axes.errorbar(rows["fracture_energy"], value, error, **line)
             in_one_dimension = rows[f"damped_{quantity}"] / unit
             axes.plot(rows["fracture_energy"], in_one_dimension, ":", color=look["color"])
             formula = (rows[f"paper_{quantity}"] / unit).iloc[0]

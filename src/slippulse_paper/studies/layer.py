@@ -131,13 +131,13 @@ def pulse_rows(gamma: float) -> Rows:
     rows: Rows = []
     for tau0, energy in cases:
         scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
-        near, far = near_and_far(scene)
+        near_rows, far_rows = near_and_far(scene)
         theory = one_dimensional_theory(scene)
-        rows += [row | theory for row in near] + far
+        rows += [row | theory for row in near_rows] + far_rows
     if gamma == GAMMA:
         # The pulse of the part step in uniform pre-stress is followed, too.
-        _, far = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
-        rows += far
+        _, far_rows = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
+        rows += far_rows
     return rows
 
 
@@ -151,25 +151,32 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     # The run on the coarsest grid shows how long the others must be.
     scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
     run = simulate_layer(scene)
-    near, far = measured("pulse", scene, run, 1, positions), []
+    near_rows, far_rows = measured("pulse", scene, run, 1, positions), []
     short_scene = shortened(scene, run, positions)
-    long_scene = extended(short_scene, near[-1]["speed"])
+    long_scene = extended(short_scene, near_rows[-1]["speed"])
     followed_grids = grids_far_away(short_scene)
     if coarsest in followed_grids:
-        far += followed("far", long_scene, simulate_layer(long_scene), 1)
+        far_rows += followed("far", long_scene, simulate_layer(long_scene), 1)
     for cells in finer_grids(short_scene):
-        has_split = bool(far) and math.isfinite(far[-1]["split_position"])
+        has_split = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed = has_split or cells in followed_grids
         scene = replace(long_scene if is_followed else short_scene, cells=cells)
         run = simulate_layer(scene)
-        near += measured("pulse", scene, run, 1, positions)
+        near_rows += measured("pulse", scene, run, 1, positions)
         if is_followed:
-            far += followed("far", scene, run, 1)
-    if any(math.isfinite(row["split_position"]) for row in far):
-        for cells in followed_grids:
-            scene = replace(long_scene, cells=cells, beta=BETA)
-            far += followed("damped", scene, simulate_layer(scene), 1)
-    return near, far
+            far_rows += followed("far", scene, run, 1)
+    if any(math.isfinite(row["split_position"]) for row in far_rows):
+        far_rows += damped_rows(long_scene, followed_grids)
+    return near_rows, far_rows
+
+
+def damped_rows(scene: LayerScene, grids: Sequence[int]) -> Rows:
+    """Return the rows of a pulse that is followed with the paper's damping, on several grids."""
+    rows: Rows = []
+    for cells in grids:
+        scene = replace(scene, cells=cells, beta=BETA)
+        rows += followed("damped", scene, simulate_layer(scene), 1)
+    return rows
 
 
 def is_brittle(scene: LayerScene) -> bool:
