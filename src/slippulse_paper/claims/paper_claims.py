@@ -148,7 +148,7 @@ def all_claims(
         raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
     # In this simulation pulses enter another pre-stress. Two new columns, which the rules of claims
     # use, show whether each pulse grows or decays.
-    evidence.assign("regimes_beyond", columns=pulses.change_signs)
+    evidence.assign("regimes_beyond", pulses.change_signs)
     places = places_of(evidence.entries, sentences)
     results = []
     for id, entry in evidence.entries.items():

@@ -155,7 +155,11 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
 
 
 def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return deaths on two lattices, and death rates in the near and far half of longer tracks."""
+    """Return numbers that show how accurate the measured death rates are.
+
+    grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
+    near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress
+    """
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
     halves = checks[checks["part"] == "length"].sort_values("stop")

@@ -121,7 +121,7 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
     """Draw one point: the death rate of an ensemble as a function of the predicted rate.
 
     An error bar shows the confidence interval of the death rate. Both rates are numbers of events
-    for each layer thickness that a pulse runs. The predicted one is the rate of fatal barriers.
+    for each layer thickness that a pulse runs. The predicted one counts barriers that stop pulses.
     """
     row = ensemble.row
     # The error bars below and above the mark.
