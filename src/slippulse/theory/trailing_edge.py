@@ -211,7 +211,8 @@ class PartWithEdge(Part):
         # the wave meets the edge.
         delay = (knots.stick - side * knots.x)[:, None] - (start_times - side * marks)
         meets_edge = delay[1:] * delay[:-1] < 0.0
-        # Elsewhere the edge is not interpolated by a cubic, so that its kinks do not matter.
+        # An edge that is slower than the waves is not interpolated by cubics, so that its kinks do
+        # not matter.
         is_fast = knots.outruns_waves(np.arange(knots.x.size - 1))
         k, mark = np.nonzero(meets_edge & is_fast[:, None])
         if not k.size:
