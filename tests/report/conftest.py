@@ -90,7 +90,7 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
         limit |= {f"{name}_ratio": 1.01, f"{name}_limit": "within"}
     tables["stability"] = [limit]
     layer_run = {"part": "pulse", "gamma": 0.3, "tau0": 0.8, "weakening": 0.9, "before": np.nan}
-    tables["layer"] = [layer_run | {"cells": 40, "fracture_energy": 0.42}]
+    tables["layer"] = [layer_run | {"coupling": 0.0, "cells": 40, "fracture_energy": 0.42}]
     study = {"quantity": "front_speed_right", "value": 1.25}
     known = study | {"uncertainty": 0.0013, "observed_order": 1.04}
     for name in write_report.NEEDS["uncertainties"]:

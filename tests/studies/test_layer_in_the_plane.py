@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from slippulse_paper.claims import layer_claims
-from slippulse_paper.claims.rules import CAVEAT, REPRODUCED
+from slippulse_paper.claims.rules import CAVEAT, FAILED, REPRODUCED
 from slippulse_paper.report.report_tables import layer_runs
 from slippulse_paper.studies import layer_healing
 from slippulse_paper.studies.layer_map import outcome
@@ -38,6 +38,53 @@ def test_a_held_displacement_makes_pulses_that_stick_and_settle(study, pulses):
     assert (
         last[["speed", "pulse_slip"]] / before[["speed", "pulse_slip"]] - 1.0
     ).abs().max().max() < 0.02
+
+
+def test_pulses_are_followed_until_some_of_them_split(study):
+    far = study("layer").query("part == 'far' and station == 3")
+    far = far.assign(whole=far["split_position"].isna())
+    # Points slide again behind the tip if and only if the pulse has split.
+    assert ((far["sliding_again"] == 0.0) == far["whole"]).all()
+    # Only pulses that need little fracture energy split, at the largest gamma, and not everywhere
+    # at the same distance.
+    split = far[~far["whole"]].set_index(["fracture_energy", "cells"])["split_position"]
+    assert (far.loc[~far["whole"], "gamma"] == far["gamma"].max()).all()
+    assert split.loc[0.05].to_list() == pytest.approx([20.6, 18.4, 22.4], abs=0.1)
+    assert split.loc[0.3125].loc[40] == pytest.approx(34.0, abs=0.1)
+    assert (0.3125, 20) not in split.index and 0.42 not in split.index.get_level_values(0)
+    # Slip and speed of the others keep their values.
+    table = study("layer").query("part == 'far' and station == 2")
+    values = ["speed", "pulse_slip"]
+    drift = (
+        far.set_index([*CASE, "cells"])[values] / table.set_index([*CASE, "cells"])[values] - 1.0
+    )
+    assert drift[far["whole"].to_numpy()].abs().max().max() < 0.012
+
+
+def test_damping_keeps_pulses_from_splitting(study):
+    damped = study("layer").query("part == 'damped' and station == 3")
+    assert damped["split_position"].isna().all() and (damped["sliding_again"] == 0.0).all()
+    # Among them are all pulses that split without damping on one grid at least.
+    split = study("layer").query("part == 'far'").dropna(subset=["split_position"])
+    assert set(damped["fracture_energy"]) == set(split["fracture_energy"])
+    # Width and slip converge, here from 20 to 40 cells.
+    values = damped.pivot(
+        index="fracture_energy", columns="cells", values=["pulse_width", "pulse_slip"]
+    )
+    assert (
+        values.xs(40, axis="columns", level="cells") / values.xs(20, axis="columns", level="cells")
+        - 1.0
+    ).abs().max().max() < 0.05
+
+
+def test_the_plane_widens_the_pulse_that_friction_has_narrowed(pulses):
+    last = finest(pulses)
+    formula, line = last["paper_pulse_width"], last["damped_pulse_width"]
+    assert (line < 0.3 * formula).all() and (last["pulse_width"] > 1.4 * line).all()
+    assert (last["pulse_width"] < 0.7 * formula).all()
+    # In one dimension the width vanishes with the cube root of the damping, in the limit.
+    ratio = (last["less_damped_pulse_width"] / line).dropna()
+    assert len(ratio) == 3 and ratio.to_list() == pytest.approx([0.1 ** (1 / 3)] * 3, rel=0.01)
 
 
 def test_width_and_speed_come_from_the_plane_and_slip_from_friction(pulses):
@@ -88,32 +135,45 @@ def test_a_held_stress_makes_cracks_and_a_barrier_stops_one_side(study):
     table = study("layer")
     assert not np.isfinite(table.query("part == 'crack'")["first_stick"]).any()
     stops = table.query("part == 'barrier' and side < 0 and station == 3")
-    assert len(stops) == 6 and (stops["end"] > -stops["balance_distance"]).all()
+    assert len(stops) == 4 and (stops["end"] > -stops["balance_distance"]).all()
     assert (stops["end"] < -0.75 * stops["balance_distance"]).all()
     # Less fracture energy, a longer way.
     assert stops.groupby("weakening")["end"].mean().is_monotonic_increasing
+    # The rupture has become a long pulse on the right.
+    passed = table.query("part == 'barrier' and side > 0 and station == 2")
+    assert passed["pulse_width"].between(30.0, 50.0).all()
 
 
 def test_pulses_converge_with_the_grid(pulses):
     last, before, coarse = (finest(pulses, step)[QUANTITIES] for step in range(3))
-    assert ((last / before - 1.0).abs().max() < [0.035, 0.045, 0.045]).all()
+    assert ((last / before - 1.0).abs().max() < [0.045, 0.055, 0.02]).all()
     # Widths change irregularly.
     finer, coarser = ((last - before).abs().median(), (before - coarse).abs().median())
     assert (finer < coarser)[["speed", "pulse_slip"]].all()
 
 
 def test_a_strength_that_follows_the_normal_stress_makes_the_sides_differ(study):
-    coupled = study("layer").query("part == 'coupled'").query("cells == cells.max()")
-    slips = coupled.pivot(index=["coupling", "side"], columns="station", values="pulse_slip")
-    change = (slips.iloc[:, -1] / slips.iloc[:, -2] - 1.0).abs()
-    assert change[0.3, 1.0] < 0.01 and change[0.3, -1.0] > 0.05
-    assert change[0.6, 1.0] > 0.05 and change[0.6, -1.0] > 0.05
+    coupled = study("layer").query("part == 'coupled' and cells == 40")
+    widths = coupled.pivot(index=["coupling", "side"], columns="station", values="pulse_width")
+    right, left = widths.xs(1.0, level="side"), widths.xs(-1.0, level="side")
+    assert (right.max(axis="columns") / right.min(axis="columns") < 1.01).all()
+    assert (left.iloc[:, -1] < 0.5).all() and left.loc[0.1].iloc[0] > 1.6
+    behind = coupled[coupled["station"] == 3].set_index(["coupling", "side"])["sliding_again"]
+    assert (behind.xs(-1.0, level="side") > 0.0).all()
+    assert (behind.xs(1.0, level="side") > 0.0).to_list() == [False, False, True]
+
+
+def test_a_top_that_may_rise_makes_points_slide_for_more_than_two_crossings(study):
+    free = study("layer").query("part == 'free' and station == 3 and cells == 40")
+    crossing = np.sqrt(2.0 * free["speed"] ** 2 / free["gamma"] - 1.0)
+    assert len(free) == 3 and (free["pulse_width"] / crossing).between(2.2, 2.6).all()
 
 
 def test_pulses_are_steady_if_friction_takes_less_than_the_layer_releases_and_die_else(study):
     points = study("layer_map").set_index("fracture_energy")
     assert (points.loc[[0.3, 0.8], "outcome"] == "steady").all()
     assert (points.loc[[1.1], "outcome"] == "dying").all()
+    assert (points["outcome"] == points["coarse_outcome"]).all()
 
 
 SLIPS = {"uniform": (1.0, 1.0), "from_below": (0.99, 0.98), "from_above": (1.01, 1.02)}
@@ -193,20 +253,40 @@ def test_a_run_is_undecided_if_its_two_finest_grids_disagree():
     assert judged.counts() == {"held": 1, "failed": 1, "undecided": 1}
 
 
-def test_held_displacement_and_held_stress_are_counted_apart(evidence):
+def test_a_pulse_that_splits_is_undecided(evidence):
     held = layer_claims.layer_regimes(evidence, "layer_regimes")
-    assert held.verdict() == REPRODUCED and len(held.decided) == 8
+    assert held.counts() == {"held": 6, "failed": 0, "undecided": 1}
+    values = held.template_values
+    assert values["followed"] == 7.0 and values["split_low"] > values["coarse_split_high"]
+
+
+def test_pulses_fail_under_pressure_and_with_a_free_top(evidence):
+    pressure = layer_claims.layer_pressure(evidence, "layer_pressure")
+    assert pressure.counts() == {"held": 2, "failed": 2, "undecided": 2}
+    assert pressure.template_values["steady_left"] == 0.0
+    evidence.tolerance = lambda id: 0.25
+    assert layer_claims.layer_free_top(evidence, "layer_free_top").verdict() == FAILED
+
+
+def test_a_held_stress_is_judged_by_its_cracks_and_barriers(evidence):
     stress = layer_claims.layer_regimes_stress(evidence, "layer_regimes_stress")
     assert list(stress.further.values()) == [1.0, 2.0] and len(stress.decided) == 3
 
 
 def test_a_pulse_that_has_not_settled_behind_a_step_is_a_caveat(evidence):
     judged = layer_claims.layer_stability(evidence, "layer_stability")
-    # From 0.8 into 0.65 the slip is still 3 % above that of the uniform run.
-    assert judged.verdict() == CAVEAT
-    assert 0.02 < judged.template_values["downwards_difference"] < 0.04
-    evidence.tolerance = lambda id: 0.05
-    assert layer_claims.layer_stability(evidence, "layer_stability").verdict() == REPRODUCED
+    assert judged.verdict() == REPRODUCED and judged.template_values["has_settled"]
+    # From 0.8 into 0.65 the slip still differs by more than 1 % from that of the uniform run.
+    assert 0.01 < judged.template_values["downwards_difference"] < 0.02
+    evidence.tolerance = lambda id: 0.01
+    assert layer_claims.layer_stability(evidence, "layer_stability").verdict() == CAVEAT
+
+
+def test_an_outcome_on_which_two_grids_differ_is_undecided(evidence):
+    points = evidence.tables["layer_map"]
+    evidence.tables["layer_map"] = points.assign(coarse_outcome="growing")
+    judged = layer_claims.layer_stability(evidence, "layer_stability")
+    assert judged.counts()["held"] == 0 and judged.counts()["undecided"] == len(judged.decided)
 
 
 def test_energy_limits_the_slip_and_the_crossing_time_limits_the_sliding(evidence, pulses):
@@ -228,5 +308,5 @@ def test_energy_limits_the_slip_and_the_crossing_time_limits_the_sliding(evidenc
 
 def test_the_table_of_runs_has_one_row_for_each_part_and_level(study):
     rows = layer_runs(study("layer")).splitlines()[2:]
-    assert len(rows) == 6
-    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 4 + 1 + 2
+    assert len(rows) == 9
+    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 3 + 3 + 4 + 1 + 2

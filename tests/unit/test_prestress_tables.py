@@ -257,7 +257,7 @@ REFUSED = {
     "points x: 1; allowed: 2 to 100000": lambda: through([0.0], [0.5]),
     "points: 2; allowed: 3 values": lambda: through([0.0, 1.0, 2.0], [0.5, 0.2]),
     "points x in row 3: 0.0; allowed: >= 1": lambda: through([0, 1, 0], [0, 0, 0]),
-    "points x in row 3: 1.0; allowed: one x": lambda: through([1, 1, 1], [0, 0.1, 0.2]),
+    "points x in row 3: 1.0; allowed: at most 2 rows": lambda: through([1, 1, 1], [0, 0.1, 0.2]),
     "points tau in row 2: 'a'": lambda: through([0, 1], [0, "a"]),
     "points tau in row 1: nan": lambda: through([0.0, 1.0], np.array([np.nan, 0.0])),
     "points x: 0; allowed": lambda: through(5.0, [0.1]),

@@ -33,8 +33,9 @@ def test_a_strip_that_slides_as_one_has_the_strength_of_its_velocity():
     h, x = 1.0 / cells, np.arange(10 * cells) / cells
     elastic, fields, fault = layer.layer_at_rest(scene, x, 0.5)
     fault.nucleus[:], fault.sliding[:], fault.strength[:] = False, True, 0.85
+    all_fields = layer.all_fields(elastic, fields)
     everything = layer.Columns(centre=x.size // 2, nucleation=x.size, trail=x.size)
-    layer.advance_layer(elastic, fields, fault, 0.5 * h, (0, 6 * cells), everything)
+    layer.advance_layer(elastic, all_fields, fault, 0.5 * h, (0, 6 * cells), everything)
     # On the grid the velocity still rings a little.
     velocity, middle = fields.vx[0, x.size // 2], x.size // 2
     steady = 1.0 / (1.0 + velocity / (scene.slip_scale * rate))
@@ -42,21 +43,44 @@ def test_a_strip_that_slides_as_one_has_the_strength_of_its_velocity():
     assert level - np.sqrt(GAMMA / 2.0) * velocity == pytest.approx(steady, abs=5e-3)
 
 
-def plane_wave_error(cells: int) -> float:
-    """Return the largest error of a compressional wave after a path of three thicknesses."""
+def gaussian(distance: np.ndarray, width: float = 0.5) -> np.ndarray:
+    """Return a Gaussian wave, as a function of the distance from its middle."""
+    return np.exp(-0.5 * (distance / width) ** 2)
+
+
+def plane_wave(cells: int, width: float = 0.5, beta: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions and velocities of a compressional wave after a path of three thicknesses.
+
+    The wave starts with its middle at x = 3.
+    """
     flat = Prestress(0.0, 0.0, 1.0, 0.0)
-    scene = LayerScene("stress", GAMMA, flat, 1.0, 3.0, nucleation=20.0, cells=cells)
+    scene = LayerScene("stress", GAMMA, flat, 1.0, 3.0, nucleation=20.0, cells=cells, beta=beta)
     h, x = 1.0 / cells, np.arange(10 * cells) / cells
     elastic, fields, fault = layer.layer_at_rest(scene, x, 0.5)
-    wave = lambda position: np.exp(-0.5 * ((position - 3.0) / 0.5) ** 2)
     # Velocities belong to the time half a step before the stresses, which lie half a cell right.
-    fields.vx[:] = wave(x + 0.25 * h)
-    fields.sxx[:] = -wave(x + 0.5 * h + 0.5 * h)
+    fields.vx[:] = gaussian(x + 0.25 * h - 3.0, width)
+    fields.sxx[:] = -gaussian(x + 0.5 * h + 0.5 * h - 3.0, width)
     fields.syy[:] = (1.0 - GAMMA) * fields.sxx
     fault.sliding[:] = True
+    all_fields = layer.all_fields(elastic, fields)
     everything = layer.Columns(centre=x.size // 2, nucleation=x.size, trail=x.size)
-    layer.advance_layer(elastic, fields, fault, 0.5 * h, (0, 6 * cells), everything)
-    return float(np.max(np.abs(fields.vx[cells // 2] - wave(x + 0.25 * h - 3.0))))
+    layer.advance_layer(elastic, all_fields, fault, 0.5 * h, (0, 6 * cells), everything)
+    return x + 0.25 * h - 3.0, fields.vx[cells // 2]
+
+
+def plane_wave_error(cells: int) -> float:
+    """Return the largest error of a wave without damping."""
+    x, velocity = plane_wave(cells)
+    return float(np.max(np.abs(velocity - gaussian(x - 3.0))))
+
+
+def test_damping_spreads_a_plane_wave():
+    """A mode decays at half of beta times the wavenumber squared, so a Gaussian stays one."""
+    width, beta, cells = 0.15, 2.5e-3, 40
+    _, undamped = plane_wave(cells, width)
+    _, damped = plane_wave(cells, width, beta)
+    spread_width = np.sqrt(width**2 + 3.0 * beta)
+    assert damped.max() / undamped.max() == pytest.approx(width / spread_width, abs=0.01)
 
 
 def test_plane_waves_converge_at_second_order():
@@ -150,6 +174,8 @@ def test_a_pulse_below_a_free_top_has_these_numbers(cells):
         ("cells", 3),
         ("coupling", -0.1),
         ("trail", 0.0),
+        ("beta", -1e-3),
+        ("beta", 0.01),
     ],
 )
 def test_a_scene_outside_its_ranges_is_refused(key, value):

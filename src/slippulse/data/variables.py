@@ -13,8 +13,8 @@ VARIABLES |= {
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
-    "profile": "number of the pre-stress in the list `profiles`, from 1; recorded if one of them "
-    "is a table",
+    "profile": "number of the pre-stress profile in the list `profiles`, from 1; recorded only if "
+    "one of the profiles is a table",
     "seed": "seed of a rough pre-stress; NaN if it is not rough",
     "release": "release rule: whether the stress at release includes the damping force (total) or "
     "not (elastic)",

@@ -89,5 +89,5 @@ def check_order(x: np.ndarray) -> None:
     first_of_three = first_true(x[2:] == x[:-2])
     if first_of_three is not None:
         row, position = first_of_three + 3, float(x[first_of_three + 2])
-        allowed = "one x in at most 2 rows, between which the pre-stress jumps"
+        allowed = "at most 2 rows with the same x; the pre-stress jumps between them"
         raise refusal(f"prestress.points x in row {row}", position, allowed)

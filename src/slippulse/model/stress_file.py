@@ -221,7 +221,7 @@ def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
             allowed = f">= {before:.10g}, the position in the row before"
             raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
         if index > 1 and position == before == x[index - 2]:
-            allowed = "a position in at most 2 rows, between which the pre-stress jumps"
+            allowed = "at most 2 rows with the same position; the pre-stress jumps between them"
             raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
 
 

@@ -32,6 +32,8 @@ from .jit import kernel_entry, kernel_function
 
 # Time step as a fraction of the largest stable one, h / sqrt(2).
 COURANT_FRACTION = 0.85
+# Largest stable damping beta, divided by the spacing h.
+MAX_DAMPING_RATIO = 0.11
 # On a grid, small precursors run ahead of the compressional wave. This number of cells is kept for
 # them.
 PRECURSOR_CELLS = 32
@@ -59,16 +61,20 @@ class LayerScene:
     # Columns farther than this behind the compressional wave from x = 0 are no longer advanced. No
     # wave is faster, so this changes no event at x until the time x + trail.
     trail: float = math.inf
+    # Damping: beta times its rate is added to each stress, as to the elastic force in `Scene`.
+    beta: float = 0.0
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, ("displacement", "stress"))
         check_number("gamma", self.gamma, above=0.0, below=1.0)
         for name in ("weakening", "duration"):
             check_number(name, getattr(self, name), above=0.0)
-        for name in ("nucleation", "coupling", "rate"):
+        for name in ("nucleation", "coupling", "rate", "beta"):
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
+        allowed = f"a number <= {MAX_DAMPING_RATIO} divided by the number of cells"
+        check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
         allowed = "a symmetric scene, if the trail is finite"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
@@ -93,7 +99,8 @@ class LayerRun:
     velocity: np.ndarray  # (cells + 1, N) v_x at the end, from the bottom to the top
     release_time: np.ndarray  # (N,) first release, NaN if never released
     stick_time: np.ndarray  # (N,) first stick, NaN if it never sticks
-    # Missing energy divided by the work of the pre-stress; NaN if columns were no longer advanced.
+    # Missing energy divided by the work of the pre-stress; NaN with damping, or if columns were no
+    # longer advanced.
     energy_residual: float
 
 
@@ -107,6 +114,7 @@ class Elastic(NamedTuple):
     coupling: float  # mu
     weakening: float  # d_c in units of H (mu_s - mu_k) sigma_n/(lambda + 2G)
     rate: float  # slip velocity at which the strength is halved, in the unit of vx
+    damping: float  # beta divided by the time step
     # Weights of the values above and below a row, which are (2, 0) and (0, 2) at the outer rows
     above: np.ndarray
     below: np.ndarray
@@ -285,9 +293,28 @@ def advance_node(elastic, fields, fault, i, dt, time):
     fault.work[1] += (fault.tau[i] - friction) * distance
 
 
+@kernel_function()
+def add_damping(elastic, earlier, fields, total, first, last):
+    """Set the total stresses, which are those of ``fields`` plus their rates times beta.
+
+    earlier : stresses one step before, which are replaced by those of ``fields``
+    """
+    pairs = (
+        (earlier.sxx, fields.sxx, total.sxx),
+        (earlier.syy, fields.syy, total.syy),
+        (earlier.sxy, fields.sxy, total.sxy),
+    )
+    for before, now, sum_of_both in pairs:
+        for j in range(now.shape[0]):
+            for i in range(first - 1, last + 1):
+                sum_of_both[j, i] = now[j, i] + elastic.damping * (now[j, i] - before[j, i])
+                before[j, i] = now[j, i]
+
+
 @kernel_entry
-def advance_layer(elastic, fields, fault, dt, steps, columns):
+def advance_layer(elastic, all_fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach."""
+    fields, earlier, total = all_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
         # Number of columns that a compressional wave has crossed since t = 0.
@@ -297,9 +324,11 @@ def advance_layer(elastic, fields, fault, dt, steps, columns):
         # Columns far behind the wave are left out.
         first = max(first, centre + crossed - columns.trail)
         update_stresses(elastic, fields, first, last)
-        update_velocities(elastic, fields, first, last)
+        if elastic.damping > 0.0:
+            add_damping(elastic, earlier, fields, total, first, last)
+        update_velocities(elastic, total, first, last)
         for i in range(first, last):
-            advance_node(elastic, fields, fault, i, dt, number * dt)
+            advance_node(elastic, total, fault, i, dt, number * dt)
 
 
 def simulate_layer(scene: LayerScene) -> LayerRun:
@@ -318,12 +347,13 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # Without a trail, all columns behind the wave are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
-    advance_layer(elastic, fields, fault, dt, (0, steps - 1), columns)
+    every_field = all_fields(elastic, fields)
+    advance_layer(elastic, every_field, fault, dt, (0, steps - 1), columns)
     # The energy is balanced at the time of the velocities that are copied here. The stresses are
     # needed half a step before and half a step after this time.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
-    advance_layer(elastic, fields, fault, dt, (steps - 1, steps), columns)
+    advance_layer(elastic, every_field, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     residual = float(abs(energy - work_without_friction) / work_of_prestress)
     return LayerRun(
@@ -332,8 +362,22 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
         velocity=fields.vx[:, 1:-1] / scene.slip_scale,
         release_time=fault.release_time[1:-1],
         stick_time=fault.stick_time[1:-1],
-        energy_residual=residual if math.isinf(scene.trail) else math.nan,
+        energy_residual=residual if math.isinf(scene.trail) and not scene.beta else math.nan,
     )
+
+
+def all_fields(elastic: Elastic, fields: Fields) -> tuple[Fields, Fields, Fields]:
+    """Return the elastic fields, those one step before, and those that include damping.
+
+    All of them share the velocities. Without damping they also share the stresses.
+    """
+    if elastic.damping == 0.0:
+        return fields, fields, fields
+    names = ("sxx", "syy", "sxy")
+    earlier, total = (
+        fields._replace(**{name: getattr(fields, name).copy() for name in names}) for _ in range(2)
+    )
+    return fields, earlier, total
 
 
 class LayerState(NamedTuple):
@@ -379,6 +423,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
+        damping=scene.beta / (ratio / scene.cells),
         above=above,
         below=below,
         direct=np.where(normal, 1.0, 1.0 - lateral**2),

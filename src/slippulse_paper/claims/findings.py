@@ -82,9 +82,9 @@ def numbers(
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
-    """Return the median factor by which damping changes L_trans, for each boundary condition.
+    """Return the median ratio of L_trans with and without damping, for each boundary condition.
 
-    The factor is L_trans at the largest damping ratio divided by L_trans without damping. Also
+    The ratio is L_trans at the largest damping ratio divided by L_trans without damping. Also
     return the number of scenes, and of those that have both values (runs).
     """
     values: dict[str, float] = {}
@@ -95,10 +95,10 @@ def collapse(evidence: Evidence) -> dict[str, float]:
         lengths = table["transition_length"].unstack()
         if lengths.empty:
             return {}
-        factors = lengths.iloc[:, -1] / lengths.iloc[:, 0]
-        values[f"{boundary}_change"] = float(factors.median())
-        values[f"{boundary}_runs"] = float(factors.count())
-        values[f"{boundary}_scenes"] = float(len(factors))
+        ratios = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        values[f"{boundary}_change"] = float(ratios.median())
+        values[f"{boundary}_runs"] = float(ratios.count())
+        values[f"{boundary}_scenes"] = float(len(ratios))
     return values | {"ratio": float(lengths.columns[-1])}
 
 

@@ -30,6 +30,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     one_way = without_springs[without_springs["regime"].str.startswith("pulse, one-way")]
     # The paper says that pulses are one block wide, so that one block slides at a time.
     fewest_blocks = two_way["sliding_at_once"].min()
+    most_blocks = two_way["sliding_at_once"].max()
+    most_without_springs = one_way["sliding_at_once"].max()
     is_wide = bool(fewest_blocks > 1.0)
     # Each boundary condition counts as one run. It is undecided if no rupture becomes a pulse.
     decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
@@ -37,9 +39,9 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
         decided=decided,
         condition=is_wide,
         further={
-            "fewest blocks at once": fewest_blocks,
-            "most": two_way["sliding_at_once"].max(),
-            "without leaf springs": one_way["sliding_at_once"].max(),
+            "fewest blocks that slide at once, with leaf springs": fewest_blocks,
+            "most blocks that slide at once, with leaf springs": most_blocks,
+            "most blocks that slide at once, without leaf springs": most_without_springs,
         },
         template_values={
             "wide": is_wide,

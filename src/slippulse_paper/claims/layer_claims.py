@@ -2,7 +2,8 @@
 
 The table `layer` has one row for each run, grid and station. A station is a position on the fault
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
-A function that judges a claim takes the evidence and the id of the claim, and returns the result.
+The part far has the same pulses as the part pulse, farther away and on two grids. A function that
+judges a claim takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable
@@ -20,7 +21,9 @@ from .rules import Uncertain
 # outcomes leave this open, because a pulse died early or had not settled.
 STEADY_BY_OUTCOME = {"steady": True, "growing": False, "dying": False}
 CONVERGED_QUANTITIES = ("speed", "pulse_width", "pulse_slip")
-RUN_COLUMNS = ["gamma", "tau0", "weakening", "side"]
+RUN_COLUMNS = ["gamma", "tau0", "weakening", "coupling", "side"]
+# Pulses with a smaller fracture energy, divided by the energy that the layer releases, are brittle.
+BRITTLE_ENERGY = 0.4
 # The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
 # top and back, 2 sqrt(2/gamma).
 CROSSINGS_OF_TRANSITION = np.pi / np.sqrt(8.0)
@@ -54,6 +57,21 @@ def change(rows: pd.DataFrame, part: str, quantity: str) -> pd.Series:
     return (on_finest / on_second_finest - 1.0).abs()
 
 
+def change_with_distance(evidence: Evidence, quantity: str, before_last: int = 1) -> pd.Series:
+    """Return the relative change of a quantity on the way to the last station of the part far.
+
+    before_last : number of stations before the last one at which the change begins
+    """
+    last = finest_rows(rows_at_station(evidence), "far")[quantity]
+    earlier = finest_rows(rows_at_station(evidence, before_last), "far")[quantity]
+    return (last / earlier - 1.0).abs()
+
+
+def crossings(pulses: pd.DataFrame) -> pd.Series:
+    """Return the sliding time divided by the time that a shear front needs to cross the layer."""
+    return pulses["pulse_width"] / crossing_width(pulses)
+
+
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
@@ -67,25 +85,80 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Judge that ruptures under a displacement boundary turn into steady pulses."""
-    tolerance = evidence.tolerance(id)
-    return on_two_grids(lambda coarser: steady_pulses(evidence, tolerance, coarser))
+    pulses = finest_rows(rows_at_station(evidence), "pulse")
+    decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
+    # The part far has one more pulse, which belongs to the part step.
+    decided = decided[decided.index.isin(pulses.index)]
+    values = split_pulses(evidence, evidence.tolerance(id))
+    return Qualitative(decided=list(decided), template_values=values)
+
+
+def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
+    """Judge that pulses are also steady if the strength depends on the normal stress."""
+    decided = steady_on_two_grids(evidence, "coupled", evidence.tolerance(id))
+    coupled = finest_rows(rows_at_station(evidence), "coupled")
+    steady = coupled[[answer is True for answer in decided]]
+    return Qualitative(
+        decided=list(decided),
+        template_values={
+            "steady_right": float((steady.index.get_level_values("side") > 0).sum()),
+            "steady_left": float((steady.index.get_level_values("side") < 0).sum()),
+            "weakest": float(coupled.index.get_level_values("coupling").min()),
+            "strongest": float(coupled.index.get_level_values("coupling").max()),
+            "split_low": float(coupled["split_position"].min()),
+            "split_high": float(coupled["split_position"].max()),
+        },
+    )
+
+
+def layer_free_top(evidence: Evidence, id: str) -> Approximate:
+    """Judge that pulses end after one crossing of the layer also if its top may rise."""
+    rows = rows_at_station(evidence)
+    ratio = crossings(finest_rows(rows, "free"))
+    # Not every pulse has also been simulated with a held top.
+    held_most = float(crossings(finest_rows(rows, "pulse")).reindex(ratio.index).max())
+    deviations = (ratio - 1.0).abs()
+    uncertainty = float((change(rows, "free", "pulse_width") * ratio).max())
+    return Approximate(
+        tolerance=evidence.tolerance(id),
+        deviations=deviations.to_numpy(),
+        median=Uncertain(float(deviations.median()), uncertainty),
+        ratio=Uncertain(float(ratio.median()), uncertainty),
+        further={
+            "crossing times, top free to rise: least": float(ratio.min()),
+            "crossing times, top free to rise: most": float(ratio.max()),
+            "crossing times of the same pulses, top held: most": held_most,
+        },
+    )
 
 
 def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     """Judge ruptures under a stress boundary.
 
     In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
-    stop on this side only.
+    stop on this side and become a pulse on the other.
     """
-    last_station = rows_at_station(evidence)
     is_crack, is_stopped = (
-        on_two_grids(partial(regime, last_station)) for regime in (never_sticks, stops_on_one_side)
+        on_two_grids(partial(regime, evidence)) for regime in (never_sticks, stops_on_one_side)
     )
+    barriers = finest_rows(rows_at_station(evidence), "barrier")
+    left = barriers.xs(-1.0, level="side")
+    relative_path = -left["end"] / left["balance_distance"]
     further = {
         "cracks that do not stick, in uniform pre-stress": float(is_crack.counts()["held"]),
         "stopped on one side by a barrier": float(is_stopped.counts()["held"]),
     }
-    return Qualitative(decided=[*is_crack.decided, *is_stopped.decided], further=further)
+    return Qualitative(
+        decided=[*is_crack.decided, *is_stopped.decided],
+        further=further,
+        template_values={
+            "stop_low": float(relative_path.min()),
+            "stop_high": float(relative_path.max()),
+            "stick_change": float(
+                change(rows_at_station(evidence), "barrier", "first_stick").max()
+            ),
+        },
+    )
 
 
 def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
@@ -97,44 +170,83 @@ def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
     return Qualitative(decided=agreed_answers(holds(0), holds(1)))
 
 
-def steady_pulses(evidence: Evidence, tolerance: float, coarser: int) -> pd.Series:
-    """Return True for each pulse that sticks and is steady.
+def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.Series:
+    """Return whether each pulse is steady on both grids, for the part far, damped or coupled.
 
-    It is steady if its speed and slip change by less than the tolerance between the last two
-    stations.
+    A pulse is steady if speed and slip change by less than the tolerance between the last two
+    stations, and if no point slides again behind it. The answer is None if the pulse splits, since
+    it does so elsewhere on another grid, or if the grids disagree.
+    """
+    last, before = rows_at_station(evidence), rows_at_station(evidence, before_last=1)
+    compared = ["speed", "pulse_slip"]
+    steady, split = [], []
+    for coarser in (0, 1):
+        pulses, pulses_before = (finest_rows(rows, part, coarser) for rows in (last, before))
+        drift = (pulses[compared] / pulses_before[compared] - 1.0).abs()
+        steady.append((drift < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0))
+        split.append(pulses["split_position"].notna())
+    is_decided = (steady[0] == steady[1]) & ~(split[0] | split[1])
+    return steady[0].astype(object).where(is_decided, None)
+
+
+def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
+    """Return how many pulses of the part far split, with which fracture energies, and where.
+
+    Positions are those on the finest grid and on the next coarser one. One more pulse was followed,
+    which belongs to the part step. With damping, all pulses that split are counted again.
+
+    tolerance : see `steady_on_two_grids`
+    """
+    rows = rows_at_station(evidence)
+    pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
+    is_counted = followed.index.isin(pulses.index)
+    counted, step = followed[is_counted], followed[~is_counted]
+    split = counted[counted["split_position"].notna()]
+    coarser = finest_rows(rows, "far", coarser=1).loc[split.index, "split_position"]
+    damped = steady_on_two_grids(evidence, "damped", tolerance)
+    return {
+        "pulses": float(len(pulses)),
+        "followed": float(len(counted)),
+        "split": float(len(split)),
+        "split_gamma": float(split.index.get_level_values("gamma").min()),
+        "split_energy": float(split["fracture_energy"].max()),
+        "split_low": float(split["split_position"].min()),
+        "split_high": float(split["split_position"].max()),
+        "coarse_split_low": float(coarser.min()),
+        "coarse_split_high": float(coarser.max()),
+        "step_energy": float(step["fracture_energy"].min()),
+        "step_split": float(step["split_position"].min()),
+        # Positions are in units of H at the largest gamma, and in longer units at smaller gamma.
+        "distance": float(followed["sample_position"].min()),
+        "damped": float(len(damped)),
+        "damped_steady": float(sum(answer is True for answer in damped)),
+        "near_distance": float(pulses["sample_position"].min()),
+    }
+
+
+def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
+    """Return True for each rupture in uniform pre-stress that never sticks.
 
     coarser : see `finest_rows`
     """
-    pulses = finest_rows(rows_at_station(evidence), "pulse", coarser)
-    pulses_before = finest_rows(rows_at_station(evidence, before_last=1), "pulse", coarser)
-    compared = ["speed", "pulse_slip"]
-    drift = (pulses[compared] / pulses_before[compared] - 1.0).abs()
-    # A width above 0 means that the pulse sticks.
-    return (drift < tolerance).all(axis=1) & (pulses["pulse_width"] > 0.0)
+    cracks = finest_rows(rows_at_station(evidence), "crack", coarser)
+    return ~np.isfinite(cracks["first_stick"])
 
 
-def never_sticks(last_station: pd.DataFrame, coarser: int) -> pd.Series:
-    """Return True for each rupture in uniform pre-stress that never sticks.
+def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
+    """Return True for each rupture that stops at a barrier and has a pulse on the other side.
 
-    last_station, coarser : see `finest_rows`
+    The left front must stop before the balance position. The pulse on the right must have passed
+    the second last station by the end.
+
+    coarser : see `finest_rows`
     """
-    return ~np.isfinite(finest_rows(last_station, "crack", coarser)["first_stick"])
-
-
-def stops_on_one_side(last_station: pd.DataFrame, coarser: int) -> pd.Series:
-    """Return True for each rupture with a barrier on the left that stops there and only there.
-
-    The left front must stop before the balance position, and the blocks must stick. The right front
-    must run farther than twice the distance of the balance position.
-
-    last_station, coarser : see `finest_rows`
-    """
-    ruptures = finest_rows(last_station, "barrier", coarser)
-    left, right = ruptures.xs(-1.0, level="side"), ruptures.xs(1.0, level="side")
-    balance_distance = left["balance_distance"]
-    left_stops = left["end"] > -balance_distance
-    right_runs_on = right["end"] > 2.0 * balance_distance
-    return left_stops & right_runs_on & np.isfinite(left["first_stick"])
+    last, before = (
+        finest_rows(rows_at_station(evidence, before_last), "barrier", coarser)
+        for before_last in (0, 1)
+    )
+    left, passed = last.xs(-1.0, level="side"), before.xs(1.0, level="side")
+    return (left["end"] > -left["balance_distance"]) & np.isfinite(passed["pulse_width"])
 
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
@@ -143,8 +255,8 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     pulses = finest_rows(rows, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
-    # The uncertainty is the change from the second finest to the finest grid.
-    uncertainty = float((change(rows, "pulse", "pulse_width") * ratio).median())
+    # The uncertainty is the largest change of a run from the second finest to the finest grid.
+    uncertainty = float((change(rows, "pulse", "pulse_width") * ratio).max())
     speed_ratio = pulses["speed"] / pulses["paper_speed"]
     slip_ratio = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     energies = pulses["fracture_energy"]
@@ -163,8 +275,12 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         template_values={
             "least": float(energies.min()),
             "most": float(energies.max()),
-            "spread": largest_spread(pulses),
-            "largest_change": float(change(rows, "pulse", "pulse_width").max()),
+            "one_dimension_low": float(
+                (pulses["pulse_width"] / pulses["damped_pulse_width"]).min()
+            ),
+            "one_dimension_high": float(
+                (pulses["pulse_width"] / pulses["damped_pulse_width"]).max()
+            ),
         },
     )
 
@@ -173,10 +289,13 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are steady if the fracture energy is below the energy that is released.
 
     Fracture energies are divided by the largest energy that the layer can release, so the limit is
-    1. Above the limit no pulse can exist. The claim has a caveat if a pulse that enters a very
-    different pre-stress has not become steady at the last station.
+    1. Above the limit no pulse can exist. An outcome counts if two grids agree on it. The claim has
+    a caveat if a pulse that enters a very different pre-stress has not become steady at the last
+    station.
     """
     points = evidence.tables["layer_map"]
+    agrees = points["outcome"] == points["coarse_outcome"]
+    points = points.assign(outcome=points["outcome"].where(agrees, "grids differ"))
     brittle = points[points["fracture_energy"] < 1.0]
     tough = points[points["fracture_energy"] > 1.0]
     # These outcomes are reported even if no point has them.
@@ -188,31 +307,25 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
+    has_settled = max(differences) < evidence.tolerance(id)
     return Qualitative(
         decided=decided,
-        condition=not max(differences) < evidence.tolerance(id),
+        condition=not has_settled,
         further=further,
-        template_values=step | {"elasticity_ratios": float(brittle["gamma"].nunique())},
+        template_values=step
+        | {
+            "elasticity_ratios": float(brittle["gamma"].nunique()),
+            "has_settled": has_settled,
+        },
     )
 
 
-def largest_spread(pulses: pd.DataFrame) -> float:
-    """Return the largest relative difference between widths if only the fracture energy differs.
-
-    This is the largest width divided by the smallest, minus 1.
-    """
-    widths = pulses["pulse_width"].groupby(level=["gamma", "tau0"]).agg(["max", "min", "count"])
-    with_several_energies = widths[widths["count"] > 1]
-    spread = with_several_energies["max"] / with_several_energies["min"] - 1.0
-    return float(spread.max())
-
-
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
-    """Return the numbers for the section on the premise, which averages the layer over its height.
+    """Return the numbers for the section on the layer in two dimensions.
 
     Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high),
     which are defined in `pulse_quantities`. Others are changes from the second finest to the finest
-    grid (NAME_change), and final slips from `across_a_step`.
+    grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers` and `across_a_step`.
     """
     rows = rows_at_station(evidence)
     pulses = finest_rows(rows, "pulse")
@@ -223,17 +336,19 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "pulses": float(len(pulses)),
         "level": float(varied.index.get_level_values("tau0")[0]),
         "crossings": CROSSINGS_OF_TRANSITION,
-        "spread": largest_spread(varied),
+        "brittle_energy": BRITTLE_ENERGY,
+        "level_spread": spread_with_level(pulses),
         "formula_speed": float(varied["paper_speed"].max()),
         "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
     }
     quantities = pulse_quantities(pulses)
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
+    quantities["free"] = crossings(finest_rows(rows, "free"))
     for name, values in quantities.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in CONVERGED_QUANTITIES:
         numbers[f"{quantity}_change"] = float(change(rows, "pulse", quantity).max())
-    return numbers | across_a_step(evidence)
+    return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
 
 
 def with_varied_energy(pulses: pd.DataFrame) -> pd.DataFrame:
@@ -257,14 +372,19 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
 
     width, slip : compared with the paper's formulas
     brittle_... : for pulses with the smallest fracture energy
-    crossing : pulse width divided by `crossing_width`
+    line_... : pulses in one dimension with the same friction, compared with the paper's formulas
+    wider : pulse width divided by the width in one dimension
+    less_damped : width in one dimension divided by the one with more damping
+    crossing : pulse width divided by `crossing_width`; brittle_crossing for all fracture energies
+        below BRITTLE_ENERGY
     sliding : time for which a point slides, divided by the time in which a shear wave crosses the
         layer
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
     """
     varied = with_varied_energy(pulses)
-    brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
+    brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
+    most_brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
     gamma = pulses.index.get_level_values("gamma")
     # A slip of s times the formula releases the static energy 4 s (1 - s), in units of G_0.
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
@@ -274,11 +394,17 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
         "tau0": pulses.index.get_level_values("tau0"),
         "energy": varied["fracture_energy"],
         "speed": varied["speed"],
-        "brittle_speed": brittle["speed"],
+        "brittle_speed": most_brittle["speed"],
         "width": varied["paper_pulse_width"] / varied["pulse_width"],
         "slip": varied["pulse_slip"] / varied["paper_pulse_slip"],
-        "brittle_slip": brittle["pulse_slip"] / brittle["paper_pulse_slip"],
-        "crossing": pulses["pulse_width"] / crossing_width(pulses),
+        "brittle_slip": most_brittle["pulse_slip"] / most_brittle["paper_pulse_slip"],
+        "line_speed": varied["damped_speed"],
+        "line_width": varied["damped_pulse_width"] / varied["paper_pulse_width"],
+        "line_slip": varied["damped_pulse_slip"] / varied["paper_pulse_slip"],
+        "wider": pulses["pulse_width"] / pulses["damped_pulse_width"],
+        "less_damped": varied["less_damped_pulse_width"] / varied["damped_pulse_width"],
+        "crossing": crossings(pulses),
+        "brittle_crossing": crossings(brittle),
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
         "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
@@ -286,27 +412,68 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     }
 
 
+def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
+    """Return the largest speed of a pulse, on a coarse and on the finest grid of its run."""
+    rows = rows_at_station(evidence).query("part == 'pulse'")
+    fastest = rows.loc[rows["speed"].idxmax()]
+    runs = rows[(rows[RUN_COLUMNS] == fastest[RUN_COLUMNS]).all(axis=1)].sort_values("cells")
+    coarsest, finest = runs.iloc[0], runs.iloc[-1]
+    return {
+        "coarse_cells": float(coarsest["cells"]),
+        "coarse_speed": float(coarsest["speed"]),
+        "fine_cells": float(finest["cells"]),
+        "fine_speed": float(finest["speed"]),
+    }
+
+
+def far_numbers(evidence: Evidence) -> dict[str, float]:
+    """Return the numbers of pulses that were followed farther, and of those that split.
+
+    The largest changes are those of pulses that are steady: of speed and slip between the last two
+    stations (far_speed, far_slip), and of the slip from the first station on (from_near_slip).
+    """
+    numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
+    is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", np.inf)]
+    for name, quantity, before_last in (
+        ("far_speed", "speed", 1),
+        ("far_slip", "pulse_slip", 1),
+        ("from_near_slip", "pulse_slip", 2),
+    ):
+        changes = change_with_distance(evidence, quantity, before_last)
+        numbers[name] = float(changes[is_steady].max())
+    return numbers
+
+
+def spread_with_level(pulses: pd.DataFrame) -> float:
+    """Return by which factor the level changes the width, at one gamma and fracture energy."""
+    # Fracture energies that are equal may differ by rounding.
+    energies = pulses["fracture_energy"].round(6)
+    widths = pulses["pulse_width"].groupby([pulses.index.get_level_values("gamma"), energies])
+    return float((widths.max() / widths.min()).max())
+
+
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
 
     upwards, downwards : final slip of the pulse that enters a higher or a lower pre-stress
     uniform_higher, uniform_lower : final slip in these two levels of pre-stress from the start
-    upwards_difference, downwards_difference : relative difference between the two slips
+    upwards_difference, downwards_difference : relative difference between the two slips, on the
+        grid where it is larger
     """
-    rows = evidence.tables["layer"].query("part == 'step'")
-    rows = rows[rows["cells"] == rows["cells"].max()].sort_values("station")
-    # The slip at the last station, by the level before the step and the level beyond it.
-    final_slip = rows.groupby(["before", "tau0"])["pulse_slip"].last()
+    rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
-    upwards, uniform_higher = float(final_slip[low, high]), float(final_slip[high, high])
-    downwards, uniform_lower = float(final_slip[high, low]), float(final_slip[low, low])
+    # The slip at the last station, by grid, level before the step and level beyond it.
+    final_slip = rows.groupby(["cells", "before", "tau0"])["pulse_slip"].last()
+    grids = [final_slip[cells] for cells in sorted(rows["cells"].unique())]
+    finest = grids[-1]
     return {
         "lower": low,
         "higher": high,
-        "upwards": upwards,
-        "downwards": downwards,
-        "uniform_lower": uniform_lower,
-        "uniform_higher": uniform_higher,
-        "upwards_difference": abs(upwards / uniform_higher - 1.0),
-        "downwards_difference": abs(downwards / uniform_lower - 1.0),
+        "step_distance": float(rows["sample_position"].max()),
+        "upwards": float(finest[low, high]),
+        "downwards": float(finest[high, low]),
+        "uniform_lower": float(finest[low, low]),
+        "uniform_higher": float(finest[high, high]),
+        "upwards_difference": max(abs(slip[low, high] / slip[high, high] - 1.0) for slip in grids),
+        "downwards_difference": max(abs(slip[high, low] / slip[low, low] - 1.0) for slip in grids),
     }

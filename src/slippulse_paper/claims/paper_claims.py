@@ -94,6 +94,8 @@ JUDGES_BY_CLAIM: dict[str, Callable[[Evidence, str], Claim]] = {
     "layer_regimes_stress": layer.layer_regimes_stress,
     "layer_width": layer.layer_width,
     "layer_stability": layer.layer_stability,
+    "layer_pressure": layer.layer_pressure,
+    "layer_free_top": layer.layer_free_top,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
     "published_space_time_figure": space_time_figure.left,

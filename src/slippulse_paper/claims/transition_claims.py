@@ -439,7 +439,10 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
         evidence.approximate(id, tables, measured, predicted),
         # The argument is the tolerance of the claim, which does not limit the gap or the exponent.
         extra_verdict=lambda _tolerance: verdict_on_both,
-        further={"median gap in H, over all sweeps": gap, "exponent": power},
+        further={
+            "median gap in H between the last release and x_minus, over all sweeps": gap,
+            "exponent": power,
+        },
         template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
     )
 

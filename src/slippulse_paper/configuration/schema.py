@@ -1,7 +1,8 @@
 """Definition of every key of the configuration: type, range, default, meaning, [unit] and (origin).
 
 Refusals follow from these definitions (`refusals`), and docs/describe.py writes the JSON Schema and
-the tables of config/README.md from them. Classes whose key has a description have no docstring.
+the tables of config/README.md from them. A class without a docstring is explained by the
+description of its key.
 """
 
 from collections.abc import Iterable, Mapping
@@ -38,11 +39,11 @@ class Block(BaseModel):
     )
 
     def given(self) -> dict[str, Any]:
-        """Return the values that were given, as plain data."""
+        """Return the values that the configuration sets, without defaults, as plain data."""
         return self.model_dump(mode="json", exclude_unset=True)
 
     def plain(self) -> dict[str, Any]:
-        """Return given values and defaults as plain data, without keys that are None."""
+        """Return the values that are set, and the defaults, as plain data without None."""
         return self.model_dump(mode="json", exclude_none=True)
 
 
@@ -57,7 +58,10 @@ def key(description: str, default: Any = ..., words: str | None = None, **limits
 
 
 def require(condition: bool, given: str, allowed: str) -> None:
-    """Raise ValueError with a key, its value and what is allowed, unless a condition holds."""
+    """Raise ValueError unless a condition holds.
+
+    ``given`` names the key and its value, and ``allowed`` states the allowed values.
+    """
     if not condition:
         raise ValueError(f"{given}; allowed: {allowed}")
 
@@ -129,13 +133,17 @@ RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
 ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "friction law of sliding blocks, explained below; by default that of `model`"
-IN_SI = "properties of a layer in SI units; all keys of the scene are then in SI units too"
+IN_SI = (
+    "properties of a layer in SI units; lengths, stresses and times of the scene"
+    " are then in SI units too"
+)
 # Quantities of the numbers of a scene that are in SI units if the scene has a layer.
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
 KEPT = (
-    "recorded data: fronts are release and stick times, fields are slip, velocity and acceleration"
-    " at the end, samples are explained below"
+    "recorded data: fronts are release and stick times; fields are slip, slip"
+    " velocity and slip acceleration at the end; samples are slip and slip velocity"
+    " at the times and positions given under `samples`"
 )
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
@@ -190,9 +198,15 @@ class Profile(Block):
     """One pre-stress profile."""
 
     left: float | None = key(
-        "level of the pre-stress far to the left, if there is no table [S]", None
+        "level of the pre-stress far to the left; required unless `points`, `file` or"
+        " `rough` is given [S]",
+        None,
     )
-    right: float | None = key("level far to the right, if there is no table [S]", None)
+    right: float | None = key(
+        "level of the pre-stress far to the right; required unless `points`, `file` or"
+        " `rough` is given [S]",
+        None,
+    )
     width: Positive | None = key(
         "standard deviation W of the Gaussian at x = 0, at least dx; with `points` or `file` there"
         " is a Gaussian only if `width` is given [H] (paper)",
@@ -200,17 +214,21 @@ class Profile(Block):
     )
     peak: float = key("pre-stress at x = 0; somewhere the pre-stress must reach 1 [S] (paper)", 1.0)
     steps: list[Step] = key(
-        "new levels of the pre-stress, each from a position on, away from x = 0 [H, S]", [], STEPS
+        "changes of the pre-stress: from each position on, away from x = 0, it has a"
+        " new level [H, S]",
+        [],
+        STEPS,
     )
     bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: table of points, with linear interpolation between them and constant"
-        " values outside; a position that appears twice is a jump [H, S]",
+        "instead of levels: points of the pre-stress, which is linear between them and"
+        " constant outside; a position that appears twice is a jump [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: path of a CSV or netCDF file with such points, relative to the overlay",
+        "instead of levels: path of a CSV or netCDF file with such points, relative to the folder"
+        " of the overlay",
         None,
     )
     rough: Rough | None = key(
@@ -225,7 +243,7 @@ class Profile(Block):
         """
         tables = self._given_keys("file", "points", "rough")
         if tables == ["file", "points"]:
-            # The points were read from the file.
+            # The key points then contains the points that were read from the file.
             tables = ["file"]
         levels = self._given_keys("left", "right")
         if not tables:
@@ -247,7 +265,7 @@ class Profile(Block):
         return self
 
     def _given_keys(self, *names: str) -> list[str]:
-        """Return those of some keys that have a value."""
+        """Return the names, among ``names``, of keys that have a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
@@ -266,9 +284,11 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position, not 0, from which on (away from x = 0) the level is replaced [H]"
+        "position where the second level begins, not 0; it extends away from x = 0 [H]"
     )
-    levels: Distinct[float] = key("new levels, one for each run [S]")
+    levels: Distinct[float] = key(
+        "values of the second level, combined with all values of the other lists [S]"
+    )
 
 
 class Duration(Block):
@@ -277,7 +297,8 @@ class Duration(Block):
         "the duration in units of pi/sqrt(gamma); only with `boundary: displacement`", None
     )
     balance_distances: Positive | None = key(
-        "the duration in units of |x_minus|; only if the left level is < 0 and the right one is 0",
+        "the duration in units of the balance distance |x_minus|; only if the left"
+        " level is < 0 and the right level is 0",
         None,
     )
 
@@ -286,7 +307,9 @@ class SpacingRule(Block):
     """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
 
     fixed: Spacing | None = key(
-        "one spacing for all presets and for the grid study; give no other key with it [H]", None
+        "one spacing for all presets and for the grid study; no other key of `spacing`"
+        " may be given with it [H]",
+        None,
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
     width_power: float = key(
@@ -302,7 +325,7 @@ class Recording(Block):
     positions: int = key(
         "number of positions, evenly spaced; 1 means x = 0 alone", ge=1, le=100_000
     )
-    extent: NonNegative = key("largest distance of positions from x = 0 [H]")
+    extent: NonNegative = key("largest distance of these positions from x = 0 [H]")
 
 
 class Physics(Block):
@@ -311,14 +334,16 @@ class Physics(Block):
     boundary: Boundary = key(
         "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
-    scheme: Scheme | None = key("scheme; by default that of `model`", None)
+    scheme: Scheme | None = key("numerical scheme; by default that of `model`", None)
     resolved_blocks: int | None = key(
-        "a run is flagged if a pulse is narrower than this; by default as in `model` [dx]",
+        "smallest pulse width; a run with a narrower pulse is flagged; by default that"
+        " of `model` [dx]",
         None,
         ge=1,
     )
     max_step: Positive | None = key(
-        "largest time step; by default that of the preset, or the stable one if it is smaller [dx]",
+        "largest time step; by default that of the preset, or the largest stable step"
+        " if this is smaller [dx]",
         None,
     )
 
@@ -384,9 +409,13 @@ class Simulation(PhysicsOfSweep):
         "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
     )
     profiles: Distinct[Profile] | None = key(
-        "instead of the three keys above: complete profiles", None
+        "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
-    beyond: Beyond | None = key("a second level on one side, given by the next two keys", None)
+    beyond: Beyond | None = key(
+        "second level of the pre-stress, which replaces the first one on one side from"
+        " a position on",
+        None,
+    )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key(
         "damping ratio beta/dx; by default that of `model`", None
@@ -401,13 +430,15 @@ class Simulation(PhysicsOfSweep):
         "release rule; by default that of `model`", None, RELEASED
     )
     friction_ratio: NonNegative | None = key(
-        "r = mu_k/(mu_s - mu_k); by default that of `model`", None
+        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; by default that of `model`", None
     )
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
         "times and positions of the samples, if `record` contains samples", None
     )
-    chunks: int = key("number of jobs that share the sweep, at most one per run", 1, ge=1, le=1000)
+    chunks: int = key(
+        "number of jobs among which the runs are split, at most one per run", 1, ge=1, le=1000
+    )
 
     @model_validator(mode="after")
     def _check_together(self) -> Self:
@@ -450,7 +481,9 @@ class LayerKeys(Block):
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
     top: Top | None = key(
-        "what is held on top: held (the displacement) or stress; by default as `boundary`", None
+        "what is held on top: `held` means the displacement, `stress` means the stress;"
+        " by default that of `boundary`",
+        None,
     )
 
     @model_validator(mode="after")
@@ -579,14 +612,22 @@ class NamedScene(Profile, PhysicsOfScene):
 
 
 class Preset(Block):
-    dx: Spacing = key("block spacing of simulations that do not scale it [H]")
-    max_step: Positive = key("largest time step; strong damping may need a smaller one [dx]")
-    order: int = key("order of the Taylor step", ge=3, le=8)
+    dx: Spacing = key("block spacing; a simulation can change it with `spacing` or `dx` [H]")
+    max_step: Positive = key(
+        "largest time step; with strong damping a smaller step may be used [dx]"
+    )
+    order: int = key(
+        "order of the Taylor series with which the scheme `localised` computes a time step",
+        ge=3,
+        le=8,
+    )
     coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
         "factors by which the spacing is multiplied on the two coarser lattices of a grid study",
         words=FACTORS,
     )
-    whole: bool = key("true if studies, claims and report are made by default", True)
+    whole: bool = key(
+        "true if studies, claims and report are made by default, false if only figures are", True
+    )
 
     @model_validator(mode="after")
     def _check_factors(self) -> Self:
@@ -603,46 +644,58 @@ class Model(Block):
         "damping ratio beta/dx; the paper has beta = 1e-3, and its figure 4 agrees with dx = 0.01"
     )
     release: Release = key(
-        "force that is compared with the threshold of release: `total` includes the damping, as in "
-        "the authors' code; `elastic` does not include it, as printed"
+        "stress that must reach 1 to release a block: `total` includes the damping"
+        " force, as in the authors' code; `elastic` does not include it, as in the"
+        " printed paper"
     )
     scheme: Scheme = key(
-        "`localised` computes the time of every release and stick; `fixed_step` is the textbook"
-        " scheme; `continuum` is the exact continuum limit, without `max_step` and `order`"
+        "`localised` computes the exact time of every release and stick; `fixed_step`"
+        " is the textbook scheme; `continuum` is the exact solution without a lattice,"
+        " which needs no `max_step` and no `order`"
     )
     friction: Friction | None = key(
-        "friction law; by default coulomb, that of the paper", None, LAW
+        "friction law; by default `coulomb`, the law of the paper", None, LAW
     )
     friction_ratio: NonNegative = key(
-        "r = mu_k/(mu_s - mu_k); a run is flagged if a stress falls below -(1 + 2 r)"
+        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; at the stress -(1 + 2"
+        " r) a block would slide backwards, and its run is flagged"
     )
     resolved_blocks: int = key(
-        "a run is flagged if a pulse (under a stress boundary, the Gaussian) is narrower than"
-        " this [dx]",
+        "smallest width of a pulse (under a stress boundary, of the Gaussian); a run"
+        " with a smaller width is flagged [dx]",
         ge=1,
     )
 
 
 class Measure(Block):
     fraction: Fraction = key(
-        "fraction of |x_minus| that the left front has covered at T_trans, if the stress is held"
+        "if the stress is held, T_trans is the time at which the left front has covered"
+        " this fraction of the balance distance |x_minus|"
     )
     front_window: float = key(
-        "fraction of the path, at its end, over which the front speed is measured", ge=0.05, lt=1.0
+        "the front speed is measured over this last fraction of the path of the front",
+        ge=0.05,
+        lt=1.0,
     )
     steady_tolerance: Fraction = key(
-        "largest relative change of the peak velocity of a steady pulse in the last third of a run"
+        "a pulse is steady if its peak velocity changes by at most this fraction in the"
+        " last third of a run"
     )
     trailing_times: Distinct[Positive] = key(
-        "times at which the trailing edge is tabulated [H/c] (figure)"
+        "times at which the position of the trailing edge is measured [H/c] (figure)"
     )
     still: Fraction = key(
-        "fraction of the largest slip velocity below which the interface counts as at rest"
+        "a point counts as at rest if its slip velocity is below this fraction of the"
+        " largest slip velocity"
     )
 
 
 class Sketch(Block):
-    strip_width: float = key("width of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
+    strip_width: float = key(
+        "width of the strip in the sketch over which the momentum balance is integrated [H]",
+        ge=0.01,
+        le=2.0,
+    )
 
 
 class Steps(Block):
@@ -658,15 +711,31 @@ class Steps(Block):
 
 
 class DamageZone(Block):
-    stiffness_ratios: Steps = key("values of G/G_r")
-    thickness_ratios: Distinct[Ratio] = key("values of H_r/H, each of which is a curve")
+    stiffness_ratios: Steps = key(
+        "values of G/G_r, the shear modulus of the damage zone divided by that of the host rock"
+    )
+    thickness_ratios: Distinct[Ratio] = key(
+        "values of H_r/H, the thickness of the host rock divided by that of the damage"
+        " zone; each value is drawn as a curve"
+    )
 
 
 class LayerMap(Block):
     gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
-    fracture_energy: Distinct[Positive] = key("fracture energies [tau_0^2/(2 gamma)]")
-    cells: int = key("number of grid cells over the height of the layer", ge=10, le=200)
-    chunks: int = key("number of jobs that share the map, at most one per point", 1, ge=1, le=1000)
+    fracture_energy: Distinct[Positive] = key(
+        "fracture energies of slip weakening [tau_0^2/(2 gamma)]"
+    )
+    cells: int = key(
+        "number of grid cells over the height of the layer; a second grid has half as many",
+        ge=10,
+        le=200,
+    )
+    chunks: int = key(
+        "number of jobs among which the points of the map are split, at most one per point",
+        1,
+        ge=1,
+        le=1000,
+    )
 
     @model_validator(mode="after")
     def _check_chunks(self) -> Self:
@@ -677,27 +746,30 @@ class LayerMap(Block):
 
 
 class Figures(Block):
-    fig01_system_sketch: Sketch = key("the sketch of the system")
-    fig07_damage_zone: DamageZone = key("the damage zone")
-    study_layer: LayerMap = key("the stability map of the two-dimensional layer")
+    fig01_system_sketch: Sketch = key("settings of the sketch of the system")
+    fig07_damage_zone: DamageZone = key("settings of the figure of the damage zone")
+    study_layer: LayerMap = key("settings of the stability map of the two-dimensional layer")
 
 
 class Claim(Block):
     tolerance: NonNegative | None = key("largest deviation that counts as agreement", None)
-    tolerance_exponent: Positive | None = key("largest distance of an exponent from 1", None)
+    tolerance_exponent: Positive | None = key(
+        "largest difference between an exponent and 1 that counts as agreement", None
+    )
 
 
 class Reading(Block):
     simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number: a column of the tables in results/measurements")
     statement: Statement = key("description of what was read off (figure)", min_length=1)
-    value: float = key("the number (figure)")
+    value: float = key("the number that was read off (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
-        "part of this uncertainty that all readings with a shared error have in common", 0.0
+        "part of `reading_error` that is the same for all readings with a `shared_error`", 0.0
     )
     arrow: bool = key(
-        "true if this is a drawn arrow, for which fits are made with it and without it", False
+        "true if the number comes from a drawn arrow; fits are then made both with and without it",
+        False,
     )
 
 
@@ -709,20 +781,24 @@ class Configuration(Block):
         "compromises between speed and accuracy, by name", min_length=1
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error; replaces the spacing and the step of the preset", None
+        "largest relative numerical error; the spacing and the time step are chosen for"
+        " it, and those of the preset are ignored",
+        None,
     )
     # Make and the command line may say yes, on or 1.
     allow_large: Switch = key("true if simulations above the limits of cost are allowed", False)
-    model: Model = key("default values for all simulations")
+    model: Model = key("values for all simulations and scenes that do not set their own")
     simulations: dict[Name, Simulation] = key(
         "sweeps by name, with one run for each combination of values"
     )
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
-    measure: Measure = key("settings for the measured numbers")
+    measure: Measure = key("settings that define the measured numbers")
     figures: Figures = key("settings of figures that show no simulation")
     claims: dict[str, Claim] = key("tolerances that replace those of manuscript/claims.yaml", {})
     published: dict[Label, Reading] = key("numbers read off a published figure, by name")
-    studies: Distinct[Name] | None = key("studies that are run; by default all", None, STUDIES)
+    studies: Distinct[Name] | None = key(
+        "names of the studies that are run; by default all studies", None, STUDIES
+    )
 
     def key_of(self, name: str) -> str:
         """Return the key of a simulation or a scene."""

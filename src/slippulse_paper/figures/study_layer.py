@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from slippulse.plotting import style
 from slippulse.plotting.style import (
     BLACK,
+    BLUE,
     GREEN,
     GREY,
     OPEN_MARKER,
@@ -21,6 +22,7 @@ from slippulse.plotting.style import (
     PAGE_WIDTH,
     PURPLE,
     SMALL_TEXT,
+    YELLOW,
     Look,
     entry,
 )
@@ -30,8 +32,15 @@ NEEDS = {"studies": ["layer", "layer_map"]}
 QUANTITIES = ["speed", "pulse_width", "pulse_slip"]
 # Parameters that identify a pulse.
 PULSE_COLUMNS = ["gamma", "tau0", "fracture_energy"]
-FORMULA_COLUMNS = [f"paper_{quantity}" for quantity in QUANTITIES]
+# The paper's formulas, and the pulse in one dimension with the same friction.
+THEORY_COLUMNS = [
+    f"{theory}_{quantity}" for theory in ("paper", "damped") for quantity in QUANTITIES
+]
+# Markers and colours of the elasticity ratios, from the smallest on.
 MARKERS = ("o", "^", "s", "D")
+GAMMA_COLOURS = (BLUE, YELLOW, GREEN, PURPLE)
+# Colours of the friction coefficients, from the smallest on.
+COUPLING_COLOURS = (BLUE, ORANGE, BLACK)
 # Colours end at this fraction of the largest velocity, which only the tip of the pulse has.
 BRIGHTEST_FRACTION = 0.6
 # Markers of what the pulses of a point of the map do.
@@ -46,54 +55,60 @@ OUTCOMES: dict[str, Look] = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the rows of four parts of the figure, which the column part names.
+    """Return the rows of five parts of the figure, which the column part names.
 
     field : velocity in the layer at one time
-    pulse : one row for each pulse, from `drawn_pulses`
-    step : slip of pulses that enter another pre-stress
+    pulse : one row for each pulse on its finest grid, measured at the last station (see
+        `drawn_pulses`)
+    free : the same for pulses in a layer whose top is free to rise
+    coupled : width along the path of pulses whose strength depends on the normal stress
     map : what a pulse does (column outcome) for each gamma and fracture energy
     """
     study = tables["layer"]
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
-    steps = study[study["part"] == "step"]
+    coupled = study[study["part"] == "coupled"]
     # A grid is named by its number of cells over the height of the layer.
-    steps = steps[steps["cells"] == steps["cells"].max()]
-    steps = steps[["part", "gamma", "tau0", "before", "sample_position", "pulse_slip"]]
+    coupled = coupled[coupled["cells"] == coupled["cells"].max()]
+    numbers = ["coupling", "side", "sample_position", "pulse_width"]
+    coupled = coupled[["part", "gamma", "tau0", *numbers]]
     points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")
-    pulses = drawn_pulses(study[study["part"] == "pulse"])
-    return pd.concat([field, pulses.assign(part="pulse"), steps, points], ignore_index=True)
+    pulses = [drawn_pulses(study[study["part"] == part]) for part in ("pulse", "free")]
+    return pd.concat([field, *pulses, coupled, points], ignore_index=True)
 
 
 def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the pulses at one level of pre-stress: their quantities on the finest grid.
+    """Return the pulses of one part on their finest grids, with the range over all grids.
 
-    The columns change_of_QUANTITY have the absolute changes from the second finest grid.
+    A station is a position on the fault at which a pulse is measured. The last one counts. Columns
+    least_QUANTITY and largest_QUANTITY have the range. The column crossings has the sliding time in
+    units of the time that the shear front of the tip needs to come down from the top.
 
-    rows : rows of the part pulse of the study, for all levels, grids and stations
+    rows : rows of the part, for all grids and stations
     """
-    rows = rows.sort_values("cells")
-    # The level at which most fracture energies have been run.
-    level = rows["tau0"].mode().iloc[0]
-    rows = rows[rows["tau0"] == level]
-    # A station is a position on the fault at which a pulse is measured. The last one is used.
-    at_last_station = rows[rows["station"] == rows["station"].max()]
-    # The rows of a pulse are in the order of their grids, the finest last.
+    at_last_station = rows[rows["station"] == rows["station"].max()].sort_values("cells")
     by_pulse = at_last_station.groupby(PULSE_COLUMNS)
     finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS)
-    second_finest = by_pulse.nth(-2).set_index(PULSE_COLUMNS)
-    changes = (finest[QUANTITIES] - second_finest[QUANTITIES]).abs().add_prefix("change_of_")
-    return finest[[*QUANTITIES, "cells", *FORMULA_COLUMNS]].join(changes).reset_index()
+    crossing_width = np.sqrt(
+        2.0 * finest["speed"] ** 2 / finest.index.get_level_values("gamma") - 1.0
+    )
+    finest["crossings"] = finest["pulse_width"] / crossing_width
+    drawn = finest[["part", *QUANTITIES, "cells", "crossings", *THEORY_COLUMNS]]
+    least = by_pulse[QUANTITIES].min().add_prefix("least_")
+    largest = by_pulse[QUANTITIES].max().add_prefix("largest_")
+    return drawn.join([least, largest]).reset_index()
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) velocity, (b to d) speed, width and slip, (e) pulses across a step, (f) a map."""
-    figure, panels = style.new_panels(
-        PAGE_WIDTH, 5.6, "aaaaaa;bbccdd;eeefff", height_ratios=(1.0, 2.3, 2.1)
-    )
+    """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f) and a map (g)."""
+    figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
+    pulses = table[table["part"] == "pulse"]
     _draw_field(figure, panels[0], table[table["part"] == "field"])
-    _draw_pulses(panels[1:4], table[table["part"] == "pulse"])
-    _draw_steps(panels[4], table[table["part"] == "step"])
-    _draw_map(panels[5], table[table["part"] == "map"])
+    # The level at which most fracture energies have been run.
+    level = pulses["tau0"].mode().iloc[0]
+    _draw_pulses(panels[1:4], pulses[pulses["tau0"] == level])
+    _draw_sliding_times(panels[4], pulses, table[table["part"] == "free"], level)
+    _draw_coupled(panels[5], table[table["part"] == "coupled"])
+    _draw_map(panels[6], table[table["part"] == "map"])
     return figure
 
 
@@ -119,71 +134,111 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     gamma = first["gamma"]
     title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
     axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
-    # The tip is the foremost point of the fault that moves. It runs almost at the speed of the
-    # longitudinal wave.
-    velocity_on_fault = grid.to_numpy()[0]
-    tip = grid.columns[np.flatnonzero(velocity_on_fault > 0.0)[-1]]
+    # The fault moves fastest at the tip, which runs almost at the speed of the longitudinal wave.
+    tip = grid.columns[np.argmax(grid.to_numpy()[0])]
     shear_front = [tip, tip - _crossing_width(gamma)]
     axes.plot(shear_front, [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
+
+
+def _gamma_looks(pulses: pd.DataFrame) -> dict[float, Look]:
+    """Return colour and marker for each elasticity ratio."""
+    looks = zip(GAMMA_COLOURS, MARKERS, strict=True)
+    ratios = sorted(pulses["gamma"].unique())
+    return {
+        gamma: {"color": colour, "marker": marker}
+        for gamma, (colour, marker) in zip(ratios, looks, strict=False)
+    }
 
 
 def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     """Draw speed, width and slip as functions of the fracture energy.
 
-    Error bars are changes from a coarser grid, and dashed lines are formulas of the paper.
+    Dotted lines are the pulse in one dimension with the same friction, and dashed lines the paper's
+    formulas.
     """
     speed_axes, width_axes, slip_axes = panels
-    for marker, (gamma, rows) in zip(MARKERS, pulses.groupby("gamma"), strict=False):
-        rows = rows.sort_values("fracture_energy")
-        colour = style.colour("gamma", gamma)
-        look: Look = {"color": colour, "capsize": 1.5, "linewidth": 0.8}
-        look |= {"fmt": f"{marker}-", "label": rf"$\gamma = {gamma:.2g}$"}
-        crossing_width = _crossing_width(gamma)
-        # In its panel, each quantity is divided by this unit.
+    for gamma, look in _gamma_looks(pulses).items():
+        rows = pulses[pulses["gamma"] == gamma].sort_values("fracture_energy")
+        # Each quantity is divided by a unit of its own.
         units = {
             "speed": 1.0,
-            "pulse_width": crossing_width,
+            "pulse_width": _crossing_width(gamma),
             "pulse_slip": rows["paper_pulse_slip"],
         }
         for axes, (quantity, unit) in zip(panels, units.items(), strict=True):
-            value, error = rows[quantity] / unit, rows[f"change_of_{quantity}"] / unit
-            axes.errorbar(rows["fracture_energy"], value, error, **look)
-        formula_width = rows["paper_pulse_width"].iloc[0] / crossing_width
-        width_axes.axhline(formula_width, linestyle="--", color=colour, linewidth=0.8)
-    dashed: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": "--"}
-    speed_axes.axhline(pulses["paper_speed"].iloc[0], **dashed)
-    slip_axes.axhline(1.0, **dashed)
+            value = rows[quantity] / unit
+            range_ends = [rows[f"{end}_{quantity}"] / unit for end in ("least", "largest")]
+            error = [value - range_ends[0], range_ends[1] - value]
+            line: Look = {"linewidth": 0.8, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
+            axes.errorbar(rows["fracture_energy"], value, error, **look, **line)
+            in_one_dimension = rows[f"damped_{quantity}"] / unit
+            axes.plot(rows["fracture_energy"], in_one_dimension, ":", color=look["color"])
+            formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
+            axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
         axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", xlim=(0.0, 1.0))
         axes.set_ylim(0.0, None)
     speed_axes.set_ylabel(r"front speed $v$")
-    width_axes.set_ylabel(r"$W_\mathrm{p}/H\sqrt{2/\gamma-1}$")
+    width_axes.set_ylabel(r"width / $H\sqrt{2/\gamma-1}$")
     slip_axes.set_ylabel(r"slip / $(2\tau_0/\gamma)$")
     handles, _ = speed_axes.get_legend_handles_labels()
-    formula = entry("formula of the paper", **dashed)
-    speed_axes.legend(handles=[*handles, formula], loc="lower left", fontsize=SMALL_TEXT)
+    speed_axes.legend(handles=handles, loc="lower left", fontsize=SMALL_TEXT)
+    lines = [
+        entry("formulas of the paper", color=BLACK, linestyle="--", linewidth=0.8),
+        entry("1D, same friction", color=BLACK, linestyle=":"),
+    ]
+    slip_axes.legend(handles=lines, loc="lower left", fontsize=SMALL_TEXT)
 
 
-def _draw_steps(axes: Axes, steps: pd.DataFrame) -> None:
-    """Draw the slip that pulses leave behind, as a function of position.
+def _draw_sliding_times(
+    axes: Axes, pulses: pd.DataFrame, free_pulses: pd.DataFrame, level: float
+) -> None:
+    """Draw the sliding time of all pulses in units of one crossing of the layer.
 
-    A pulse with a solid line runs in the same pre-stress tau_0 all the way. A pulse with a dotted
-    line begins in another pre-stress, ``before``.
+    Markers are filled at one level of pre-stress. Crosses are pulses whose top is free to rise.
     """
-    for (tau0, before), rows in steps.groupby(["tau0", "before"]):
-        rows = rows.sort_values("sample_position")
-        look: Look = {"color": style.colour("tau_0", tau0), "marker": "o"}
-        if tau0 == before:
-            look |= {"linestyle": "-", "label": rf"$\tau_0 = {tau0:g}$"}
-        else:
-            look |= {"linestyle": ":", "label": rf"${before:g}$, then ${tau0:g}$"} | OPEN_MARKER
-        axes.plot(rows["sample_position"], rows["pulse_slip"], **look)
-    axes.set(xlabel=r"position $x/H$", ylabel=r"slip left behind")
-    axes.set_title(style.conditions(held=True, gamma=round(float(steps["gamma"].iloc[0]), 3)))
-    axes.set_ylim(0.8 * steps["pulse_slip"].min(), 1.02 * steps["pulse_slip"].max())
-    axes.legend(loc="lower right", fontsize=SMALL_TEXT, ncols=2)
+    for gamma, look in _gamma_looks(pulses).items():
+        rows = pulses[pulses["gamma"] == gamma]
+        at_level = rows["tau0"] == level
+        axes.plot(
+            rows["fracture_energy"][at_level], rows["crossings"][at_level], linestyle="none", **look
+        )
+        others = rows[~at_level]
+        axes.plot(
+            others["fracture_energy"], others["crossings"], linestyle="none", **look | OPEN_MARKER
+        )
+    axes.plot(free_pulses["fracture_energy"], free_pulses["crossings"], "x", color=BLACK)
+    axes.axhline(1.0, color=GREY, linewidth=0.6)
+    axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylabel="sliding time / crossing time")
+    axes.set(xlim=(0.0, 1.0), ylim=(0.9, None))
+    entries = [
+        entry(rf"$\tau_0 = {level:g}$", color=GREY, marker="o"),
+        entry(r"other $\tau_0$", color=GREY, marker="o", **OPEN_MARKER),
+        entry("top free to rise", color=BLACK, marker="x"),
+    ]
+    axes.legend(handles=entries, loc="center left", fontsize=SMALL_TEXT)
+
+
+def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
+    """Draw the width of pulses whose strength depends on the normal stress, on both sides."""
+    for colour, (coupling, rows) in zip(
+        COUPLING_COLOURS, coupled.groupby("coupling"), strict=False
+    ):
+        for side, line in ((1.0, "o-"), (-1.0, "o:")):
+            on_side = rows[rows["side"] == side]
+            look: Look = {"color": colour} | (OPEN_MARKER if side < 0.0 else {})
+            axes.plot(on_side["sample_position"].abs(), on_side["pulse_width"], line, **look)
+        axes.plot([], [], color=colour, label=rf"$\mu = {coupling:g}$")
+    handles, _ = axes.get_legend_handles_labels()
+    handles += [
+        entry("right", color=GREY, marker="o"),
+        entry("left", color=GREY, marker="o", **OPEN_MARKER),
+    ]
+    axes.set(xlabel=r"distance $|x|/H$", ylabel=r"pulse width $W_\mathrm{p}/H$")
+    axes.set_ylim(0.0, 2.6)
+    axes.legend(handles=handles, loc="upper center", fontsize=SMALL_TEXT, ncols=2)
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
@@ -200,4 +255,4 @@ def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
     axes.set(yscale="log", ylim=(0.7 * narrowest, 1.9 * widest), xlim=(0.0, None))
     axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylabel=r"width $\sqrt{2/\gamma-1}$")
     style.few_ticks(axes.yaxis, (1.0, 2.0, 5.0))
-    axes.legend(loc="upper left", fontsize=SMALL_TEXT, ncols=2)
+    axes.legend(loc="upper left", fontsize=SMALL_TEXT)

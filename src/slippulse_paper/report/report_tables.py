@@ -5,7 +5,7 @@ Most functions return one table. The manuscript calls them.
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import pandas as pd
 
@@ -34,6 +34,8 @@ STUDIED_QUANTITIES = (
 # Parts of the study of the two-dimensional layer, by their name in the table of its runs.
 LAYER_PARTS = {
     "pulse": "displacement held",
+    "coupled": "displacement held, strength follows pressure",
+    "free": "top free to rise",
     "step": "displacement held, step of pre-stress",
     "crack": "stress held",
     "barrier": "stress held, barrier on the left",
@@ -49,33 +51,33 @@ FLUSH = "`````{=typst}\n#place.flush()\n`````"
 BELOW = "`````{=typst}\n#show figure.where(kind: image): set figure(placement: bottom)\n`````"
 
 
-class _Column(NamedTuple):
-    """The head of a column: its title, its alignment ("l" or "r") and its relative width."""
+class Column(NamedTuple):
+    """The head of a column: its title, its relative width, and its alignment."""
 
     title: str
-    alignment: str
     width: int
-
-    @classmethod
-    def read(cls, text: str) -> Self:
-        """Return the head that is described by a text such as "claim l34"."""
-        title, _, layout = text.strip().rpartition(" ")
-        return cls(title, alignment=layout[0], width=int(layout[1:]))
+    is_left_aligned: bool
 
 
-def table(head: str, rows: Iterable[Sequence[object]]) -> str:
-    """Return a pipe table in Markdown.
+def text_column(title: str, width: int) -> Column:
+    """Return the head of a column of texts, which are aligned on the left."""
+    return Column(title, width, is_left_aligned=True)
 
-    head : the heads of all columns as `_Column` reads them, such as "claim l34 | runs r10"
-    """
-    columns = [_Column.read(text) for text in head.split("|")]
+
+def number_column(title: str, width: int) -> Column:
+    """Return the head of a column of numbers, which are aligned on the right."""
+    return Column(title, width, is_left_aligned=False)
+
+
+def table(columns: Sequence[Column], rows: Iterable[Sequence[object]]) -> str:
+    """Return a pipe table in Markdown."""
     total_width = sum(column.width for column in columns)
     titles = [column.title for column in columns]
     # Below the titles, dashes give the widths, and a colon on one side gives the alignment.
     dashes_and_colons = []
     for column in columns:
         dashes = "-" * max(3, round(LINE_LENGTH * column.width / total_width))
-        dashes_and_colons.append(f":{dashes}" if column.alignment == "l" else f"{dashes}:")
+        dashes_and_colons.append(f":{dashes}" if column.is_left_aligned else f"{dashes}:")
     lines = []
     for row in (titles, dashes_and_colons, *rows):
         # A cell of several lines becomes one line.
@@ -106,7 +108,12 @@ def verdicts(lines: Iterable[Line]) -> str:
             link = f"[{claim.verdict}](../claims.html#{claim.id})"
             links.append(f"{link} {subjects}".strip())
         rows.append((line.topic, "; ".join(links), line.text))
-    return table("what the paper says l28 | verdict l16 | what was found l56", rows)
+    columns = [
+        text_column("what the paper says", 28),
+        text_column("verdict", 16),
+        text_column("what was found", 56),
+    ]
+    return table(columns, rows)
 
 
 def failures(ledger: Ledger) -> str:
@@ -117,7 +124,8 @@ def failures(ledger: Ledger) -> str:
     worst_first = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
     failed = [claim for claim in worst_first if claim.verdict not in WITHOUT_RESERVATION]
     rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
-    return table("claim l34 | verdict l13 | why l53", rows)
+    columns = [text_column("claim", 34), text_column("verdict", 13), text_column("why", 53)]
+    return table(columns, rows)
 
 
 def whole_ledger(ledger: Ledger) -> str:
@@ -133,8 +141,15 @@ def whole_ledger(ledger: Ledger) -> str:
             claim.evidence_text(),
         )
         rows.append(row)
-    head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
-    return table(f"{head} | verdict l9 | evidence l29", rows)
+    columns = [
+        text_column("claim (section) `id`", 32),
+        number_column("predicted", 8),
+        number_column("measured", 12),
+        text_column("deviation, tolerance", 14),
+        text_column("verdict", 9),
+        text_column("evidence", 29),
+    ]
+    return table(columns, rows)
 
 
 def tolerances(ledger: Ledger) -> str:
@@ -151,7 +166,13 @@ def tolerances(ledger: Ledger) -> str:
         cells = (claim.kind, tolerance, plain(claim.reason))
         ids_by_cells.setdefault(cells, []).append(claim.id)
     rows = [(*cells, code(ids)) for cells, ids in ids_by_cells.items()]
-    return table("kind l11 | tolerance r11 | reason l42 | claims l36", rows)
+    columns = [
+        text_column("kind", 11),
+        number_column("tolerance", 11),
+        text_column("reason", 42),
+        text_column("claims", 36),
+    ]
+    return table(columns, rows)
 
 
 def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
@@ -165,7 +186,13 @@ def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     for id, entry in entries.items():
         test = entry.get("checked", f"`test_algebra[{id}]`")
         rows.append((entry["statement"], places[id], test, code([id])))
-    return table("what the paper says l44 | section l16 | checked l22 | id l18", rows)
+    columns = [
+        text_column("what the paper says", 44),
+        text_column("section", 16),
+        text_column("checked", 22),
+        text_column("id", 18),
+    ]
+    return table(columns, rows)
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
@@ -181,7 +208,12 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
         statement = reading["statement"]
         drawn = with_uncertainty(reading["value"], reading["reading_error"])
         rows.append((statement, drawn, number(ours.get(statement), 5)))
-    return table("quantity l50 | published r20 | this run r20", rows)
+    columns = [
+        text_column("quantity", 50),
+        number_column("published", 20),
+        number_column("this run", 20),
+    ]
+    return table(columns, rows)
 
 
 def found_list(ledger: Ledger) -> str:
@@ -194,7 +226,8 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
     """Return a table of how many sentences are tested, and how many are not for each reason."""
     titles = REASONS | {"all": "all"}
     rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
-    return table("sentences l60 | how many r15", rows)
+    columns = [text_column("sentences", 60), number_column("how many", 15)]
+    return table(columns, rows)
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
@@ -207,7 +240,12 @@ def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping
             # The column is narrow. Of "paragraph 2, sentence 3" it has "¶ 2, 3".
             position = paragraph.sub(r", ¶ \1, \2", sentence["place"])
             rows.append((position, sentence["paraphrase"], code(claims)))
-    return table("section l22 | what it says l45 | claims l33", rows)
+    columns = [
+        text_column("section", 22),
+        text_column("what it says", 45),
+        text_column("claims", 33),
+    ]
+    return table(columns, rows)
 
 
 def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
@@ -219,8 +257,14 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
     rows = []
     for entry in entries:
         rows.append([fill(entry[key]) for key in ERRATUM])
-    head = "where l13 | printed l25 | right l31 | what shows it l22 | alters l9"
-    return table(head, rows)
+    columns = [
+        text_column("where", 13),
+        text_column("printed", 25),
+        text_column("right", 31),
+        text_column("what shows it", 22),
+        text_column("alters", 9),
+    ]
+    return table(columns, rows)
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
@@ -240,7 +284,14 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
         order = number(orders.median(), 2) if orders.notna().any() else DASH
         median, largest = percent(relative.median()), percent(relative.max())
         rows.append((name, len(relative), order, median, largest))
-    return table("quantity l40 | runs r10 | order r12 | median uncertainty r20 | largest r18", rows)
+    columns = [
+        text_column("quantity", 40),
+        number_column("runs", 10),
+        number_column("order", 12),
+        number_column("median uncertainty", 20),
+        number_column("largest", 18),
+    ]
+    return table(columns, rows)
 
 
 def sticking(examples: pd.DataFrame) -> str:
@@ -248,15 +299,20 @@ def sticking(examples: pd.DataFrame) -> str:
 
     Returns an empty text if the study has no exact rupture.
     """
-    columns = ["release_time", "stick_time", "final_slip"]
-    examples = examples[examples["quantity"].isin(columns)]
+    quantities = ["release_time", "stick_time", "final_slip"]
+    examples = examples[examples["quantity"].isin(quantities)]
     if examples["value"].isna().all():
         return ""
-    numbers = examples.pivot(index="x", columns="quantity", values="value")[columns]
+    numbers = examples.pivot(index="x", columns="quantity", values="value")[quantities]
     texts = numbers.map(lambda value: number(value, 5))
     rows = [(setting(x), *row) for x, *row in texts.itertuples()]
-    head = r"$x$ r10 | release $T$ r15 | stick $t_\mathrm{s}$ r15 | slip $u(x,t_\mathrm{s})$ r15"
-    return table(head, rows)
+    columns = [
+        number_column("$x$", 10),
+        number_column("release $T$", 15),
+        number_column(r"stick $t_\mathrm{s}$", 15),
+        number_column(r"slip $u(x,t_\mathrm{s})$", 15),
+    ]
+    return table(columns, rows)
 
 
 def layer_runs(study: pd.DataFrame) -> str:
@@ -271,7 +327,9 @@ def layer_runs(study: pd.DataFrame) -> str:
     rows = []
     for part, title in LAYER_PARTS.items():
         runs = study[study["part"] == part].sort_values("cells", kind="stable")
-        finest = runs.drop_duplicates(["gamma", "tau0", "weakening", "before"], keep="last")
+        finest = runs.drop_duplicates(
+            ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
+        )
         for tau0, group in finest.groupby("tau0"):
             # The column cells has the number of cells over the height of the layer.
             lengths = group["gamma"] * group["weakening"] * group["cells"]
@@ -286,9 +344,16 @@ def layer_runs(study: pd.DataFrame) -> str:
                 len(group),
             )
             rows.append(row)
-    head = r"top l28 | $\tau_0$ r8 | $\gamma$ l22 | $G_\mathrm{c}/G_0$ l28"
-    head += r" | $\gamma d_\mathrm{c}/\Delta x$ r16 | $H/\Delta x$ r10 | runs r6"
-    return table(head, rows)
+    columns = [
+        text_column("top", 28),
+        number_column(r"$\tau_0$", 8),
+        text_column(r"$\gamma$", 22),
+        text_column(r"$G_\mathrm{c}/G_0$", 28),
+        number_column(r"$\gamma d_\mathrm{c}/\Delta x$", 16),
+        number_column(r"$H/\Delta x$", 10),
+        number_column("runs", 6),
+    ]
+    return table(columns, rows)
 
 
 def _listed_numbers(values: pd.Series) -> str:
@@ -312,8 +377,15 @@ def edges(study: pd.DataFrame) -> str:
         tolerance = "" if pd.isna(row["tolerance"]) else number(row["tolerance"], 2)
         value, quantity = plain(row["value"]), plain(row["quantity"])
         rows.append((row["family"], value, quantity, error, tolerance, outcome))
-    head = "edge l16 | value l28 | compared l18 | error r12 | tolerance r12 | outcome l24"
-    return table(head, rows)
+    columns = [
+        text_column("edge", 16),
+        text_column("value", 28),
+        text_column("compared", 18),
+        number_column("error", 12),
+        number_column("tolerance", 12),
+        text_column("outcome", 24),
+    ]
+    return table(columns, rows)
 
 
 def stability_limits(study: pd.DataFrame) -> str:
@@ -331,8 +403,9 @@ def stability_limits(study: pd.DataFrame) -> str:
             in_rupture = _measured_limit(row, "measured_rupture")
             cells.append(f"{number(row['derived'], 3)} ({in_chain}, {in_rupture})")
         rows.append(cells)
-    head = " | ".join(f"$b$ = {setting(ratio)} l16" for ratio in ratios)
-    return table(f"scheme l16 | {head}", rows)
+    columns = [text_column("scheme", 16)]
+    columns += [text_column(f"$b$ = {setting(ratio)}", 16) for ratio in ratios]
+    return table(columns, rows)
 
 
 def _measured_limit(row: Mapping, name: str) -> str:

@@ -305,7 +305,9 @@ def negative_levels() -> Iterator[Case]:
     """Yield cases of arrests of the left front in strongly negative pre-stress.
 
     If the pre-stress is too negative for the friction ratio, blocks would slide back. Without
-    damping the ringing of the lattice stalls such fronts, and on coarse lattices they are late.
+    damping the ringing of the lattice stalls such fronts, and on coarse lattices they are late. A
+    label states the level on the left, the block spacing, the damping ratio b and the friction
+    ratio r.
     """
     for level, dx, friction_ratio, damping_ratio, verdict in (
         (-1.0, 0.005, 5.0, 0.1, RIGHT),

@@ -39,39 +39,47 @@ NUCLEATION_HALF_LENGTH = 2.0
 DURATION = 48.0
 # Stations of the part pulse at GAMMA. A pulse is steady if it is the same at the last two.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
+# Stations at which the same pulses are followed farther, on two grids. A pulse has split where a
+# point slides for less than this fraction of the time at the first of these stations.
+FAR_STATIONS = (16.0, 28.0, 40.0)
+SPLIT_FRACTION = 0.5
+# The front may become slower beyond the last of STATION_POSITIONS, by this fraction.
+SLOWER_FRONT = 0.01
 # Stations of most other parts, as fractions of the path of the front.
 FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
-# Numbers of cells over the height. The run on the coarsest grid determines how long those on the
-# finer grids must be.
-CELLS = (10, 20, 40)
-FINE_CELLS = (20, 40, 80)
-# The finer grids are used below this fracture energy and above this gamma: small fracture energies
-# need them, but at small gamma they would take too long.
-FINE_GRID_MAX_ENERGY = 0.3
-FINE_GRID_MIN_GAMMA = 0.2
+# Numbers of cells over the height. Pulses are brittle, and have finer grids, if the length
+# gamma d_c, over which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA,
+# grids are coarser. Runs in which the product of the duration and the length of the solved part is
+# larger than LONG_RUN have the two coarsest grids only, and are not followed farther.
+CELLS = (10, 20, 40, 80)
+BRITTLE_LENGTH = 0.19
+SMALL_GAMMA = 0.2
+LONG_RUN = 5000.0
 # On a finer grid the last stick may be later, by at most this fraction of its time plus this time.
 LATER_RELATIVE, LATER_ABSOLUTE = 0.03, 1.0
-# The paper's damping.
-BETA = 1e-3
-# Pre-stress and weakening of a pulse in a layer whose top may rise, and of a crack.
-FREE_TOP_LEVEL, FREE_TOP_WEAKENING = 0.5, 0.225
+# The paper's damping, and a smaller one that shows its influence at GAMMA and LEVEL.
+BETA, SMALLER_BETA = 1e-3, 1e-4
+# Pre-stress and relative fracture energy of pulses whose top may rise.
+FREE_TOP_PULSES = ((0.5, 0.42), (0.5, 0.6), (0.8, 0.42))
+# Pre-stress and weakening of a crack under a stress boundary.
 CRACK_LEVEL, CRACK_WEAKENING = 0.8, 0.8
-# Duration of all parts except pulse and step.
+# Duration of the parts free and crack.
 OTHER_DURATION = 30.0
 # Part barrier: the level that stops the left front under a stress boundary, the width of the
 # Gaussian at the nucleation, weakening distances, and the duration divided by OTHER_DURATION.
 BARRIER_LEVEL = -0.75
 GAUSSIAN_WIDTH = 5.0
-WEAKENINGS = (0.05, 0.2, 0.8)
-BARRIER_RELATIVE_DURATION = 1.8
-# Friction coefficients of a strength that depends on the normal stress.
-COUPLINGS = (0.3, 0.6)
+WEAKENINGS = (0.05, 0.8)
+BARRIER_RELATIVE_DURATION = 4.0
+# Friction coefficients of a strength that depends on the normal stress, and the duration.
+COUPLINGS = (0.1, 0.3, 0.6)
+COUPLED_DURATION = 48.0
 # Part step: a pulse enters another pre-stress at STEP_POSITION, with this weakening and these
 # levels at GAMMA. Its stations lie before and beyond the step.
 STEP_POSITION = 10.0
 STEP_WEAKENING = 0.3
 STEP_LEVELS = (0.65, 0.8)
-STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0)
+STEP_STATIONS = (9.0, 11.0, 12.0, 13.5, 15.0, 18.0, 21.0, 24.0, 30.0)
 # Part patch: its duration, divided by the time at which a strip that slides uniformly sticks.
 PATCH_RELATIVE_DURATION = 1.2
 # Part field: fracture energy of the pulse that is drawn, and time of the picture. Along each axis,
@@ -89,9 +97,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     Under a displacement boundary:
 
     pulse : pulses at several fracture energies and levels
+    far : the same pulses, farther away
+    damped : those that split, with the paper's damping
     patch : short runs, until the region in which the rupture starts has stuck
     step : pulses that enter another pre-stress
-    free : a pulse in a layer whose top is free to rise
+    free : pulses in a layer whose top is free to rise
     coupled : pulses with a strength that depends on the normal stress
 
     Under a stress boundary:
@@ -105,7 +115,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for gamma in GAMMAS:
         rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
-        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:])
+        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
     rows += free_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
     drawn = uniform("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
     field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
@@ -113,17 +123,123 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return the rows of the part pulse, with the numbers of `one_dimensional_theory`."""
+    """Return the rows of the parts pulse, far and damped.
+
+    Those of the part pulse also have the numbers of `one_dimensional_theory`.
+    """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, STANDARD_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
     for tau0, energy in cases:
         scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
-        needs_fine_grid = energy < FINE_GRID_MAX_ENERGY and gamma > FINE_GRID_MIN_GAMMA
-        grids = FINE_CELLS if needs_fine_grid else CELLS
+        near, far = near_and_far(scene)
         theory = one_dimensional_theory(scene)
-        rows += [row | theory for row in at_stations("pulse", scene, grids, STATION_POSITIONS)]
+        rows += [row | theory for row in near] + far
+    if gamma == GAMMA:
+        # The pulse of the part step in uniform pre-stress is followed, too.
+        _, far = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
+        rows += far
     return rows
+
+
+def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
+    """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS.
+
+    A pulse that splits is followed on all finer grids, too, and on two grids with damping.
+    """
+    positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
+    coarsest = CELLS[0]
+    # The run on the coarsest grid shows how long the others must be.
+    scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
+    run = simulate_layer(scene)
+    near, far = measured("pulse", scene, run, 1, positions), []
+    short_scene = shortened(scene, run, positions)
+    long_scene = extended(short_scene, near[-1]["speed"])
+    followed_grids = grids_far_away(short_scene)
+    if coarsest in followed_grids:
+        far += followed("far", long_scene, simulate_layer(long_scene), 1)
+    for cells in finer_grids(short_scene):
+        has_split = bool(far) and math.isfinite(far[-1]["split_position"])
+        is_followed = has_split or cells in followed_grids
+        scene = replace(long_scene if is_followed else short_scene, cells=cells)
+        run = simulate_layer(scene)
+        near += measured("pulse", scene, run, 1, positions)
+        if is_followed:
+            far += followed("far", scene, run, 1)
+    if any(math.isfinite(row["split_position"]) for row in far):
+        for cells in followed_grids:
+            scene = replace(long_scene, cells=cells, beta=BETA)
+            far += followed("damped", scene, simulate_layer(scene), 1)
+    return near, far
+
+
+def is_brittle(scene: LayerScene) -> bool:
+    """Return whether the length gamma d_c, over which the strength falls, is short."""
+    return scene.gamma * scene.weakening < BRITTLE_LENGTH
+
+
+def is_long(scene: LayerScene) -> bool:
+    """Return whether the run of a scene takes long, given its duration and its trail."""
+    return scene.duration * scene.trail > LONG_RUN
+
+
+def finer_grids(scene: LayerScene) -> Sequence[int]:
+    """Return the numbers of cells of all grids for a pulse except the coarsest.
+
+    Brittle pulses need finer grids. At small gamma pulses are wide and runs are long.
+
+    scene : a scene of the pulse with the duration and the trail that it needs
+    """
+    if scene.gamma < SMALL_GAMMA:
+        return CELLS[1:3] if is_brittle(scene) and not is_long(scene) else CELLS[1:2]
+    return CELLS[1:] if is_brittle(scene) and scene.gamma == GAMMA else CELLS[1:3]
+
+
+def grids_far_away(scene: LayerScene) -> Sequence[int]:
+    """Return the numbers of cells of the two grids on which a pulse is followed farther.
+
+    Brittle pulses that are narrow, and those at GAMMA, need the finer ones. There is none for long
+    runs.
+    """
+    if is_long(scene):
+        return ()
+    needs_fine_grids = is_brittle(scene) and scene.gamma > SMALL_GAMMA
+    return CELLS[1:3] if needs_fine_grids or scene.gamma == GAMMA else CELLS[:2]
+
+
+def extended(scene: LayerScene, speed: float) -> LayerScene:
+    """Return a scene whose pulse passes the last of FAR_STATIONS, not of STATION_POSITIONS.
+
+    speed : front speed of the pulse
+    """
+    way = (FAR_STATIONS[-1] - STATION_POSITIONS[-1]) * stretch(scene.gamma)
+    more_time = (1.0 + SLOWER_FRONT) * way / speed
+    trail = scene.trail + max(0.0, more_time - way)
+    return replace(scene, duration=scene.duration + more_time, trail=trail)
+
+
+def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
+    """Return the rows of one run at FAR_STATIONS, and tell whether the pulse has split.
+
+    Behind the tip of a split pulse points stick early and slide again. The columns are
+
+    split_position : distance at which a point first sticks early, between the first and the last
+        station; NaN if none does
+    sliding_again : length of the fault beyond the first station that slides again at the end
+    """
+    positions = [side * station * stretch(scene.gamma) for station in FAR_STATIONS]
+    rows = measured(part, scene, run, side, positions)
+    first_sliding_time = rows[0]["pulse_width"] / rows[0]["speed"]
+    sticks_early = run.stick_time - run.release_time < SPLIT_FRACTION * first_sliding_time
+    distance = side * run.x
+    is_beyond = distance > abs(positions[0])
+    is_split = is_beyond & (distance < abs(positions[-1])) & sticks_early
+    slides_again = is_beyond & np.isfinite(run.stick_time) & (run.velocity[0] > 0.0)
+    behaviour = {
+        "split_position": float(distance[is_split].min()) if is_split.any() else math.nan,
+        "sliding_again": float(slides_again.sum()) / scene.cells,
+    }
+    return [row | behaviour for row in rows]
 
 
 def patch_rows(gamma: float) -> Rows:
@@ -138,21 +254,24 @@ def patch_rows(gamma: float) -> Rows:
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform("displacement", gamma, LEVEL, weakening_of(STANDARD_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
-    rows = along_path("patch", scene, CELLS)
+    rows = along_path("patch", scene, CELLS[:3])
     # There is one row for each station of a grid, but the region sticks only once in each run.
     first_stations = rows[:: len(FRACTIONS_OF_PATH)]
     return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
 
 
 def free_top_rows() -> Rows:
-    """Return the rows of a pulse in a layer whose top is free to rise."""
-    scene = uniform("displacement", GAMMA, FREE_TOP_LEVEL, FREE_TOP_WEAKENING)
-    return along_path("free", replace(scene, top="free"), CELLS)
+    """Return the rows of pulses in a layer whose top is free to rise."""
+    rows: Rows = []
+    for tau0, energy in FREE_TOP_PULSES:
+        scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
+        rows += along_path("free", replace(scene, top="free"), CELLS[:3])
+    return rows
 
 
 def crack_rows() -> Rows:
     """Return the rows of a crack in uniform pre-stress under a stress boundary."""
-    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS)
+    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS[:3])
 
 
 def coupled_rows() -> Rows:
@@ -162,11 +281,12 @@ def coupled_rows() -> Rows:
     """
     weakening = weakening_of(STANDARD_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
-    two_grids = FINE_CELLS[:2]
+    scene = replace(scene, duration=COUPLED_DURATION)
     rows: Rows = []
-    for coupling in COUPLINGS:
-        coupled = replace(scene, coupling=coupling)
-        rows += along_path("coupled", coupled, two_grids, sides=(1, -1))
+    for coupling, cells in product(COUPLINGS, CELLS[1:3]):
+        coupled = replace(scene, coupling=coupling, cells=cells)
+        run = simulate_layer(coupled)
+        rows += followed("coupled", coupled, run, 1) + followed("coupled", coupled, run, -1)
     return rows
 
 
@@ -186,7 +306,7 @@ def barrier_rows() -> Rows:
     rows: Rows = []
     for weakening in WEAKENINGS:
         with_weakening = replace(scene, weakening=weakening)
-        stopped = along_path("barrier", with_weakening, CELLS, sides=(1, -1))
+        stopped = along_path("barrier", with_weakening, CELLS[:2], sides=(1, -1))
         rows += [row | balance for row in stopped]
     return rows
 
@@ -353,6 +473,7 @@ def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
         "first_stick": first_stick,
         "earliest_stick": float(stick_times.min()),
         "earliest_stick_position": float(abs(run.x[np.argmin(stick_times)])),
+        "largest_velocity": float(run.velocity[0].max()),
         "energy_residual": run.energy_residual,
         "end": side * path_length(run, side),
     }
@@ -388,12 +509,16 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
 
     paper_... : by the paper's formulas, without weakening and damping
     damped_... : with the weakening of the scene and the damping BETA
+    less_damped_pulse_width : width with the damping SMALLER_BETA, at GAMMA and LEVEL only
     balance_pulse_slip : final slip with weakening and without damping, from the energy balance
     """
     tau0, gamma = scene.prestress.right, scene.gamma
     weakening = scene.weakening
     paper = paper_pulse(tau0, gamma)
     damped = weakening_pulse(tau0, gamma, BETA, weakening)
+    less_damped_width = math.nan
+    if (gamma, tau0) == (GAMMA, LEVEL):
+        less_damped_width = weakening_pulse(tau0, gamma, SMALLER_BETA, weakening).width
     return {
         "paper_speed": paper.speed,
         "paper_pulse_width": paper.width,
@@ -401,6 +526,7 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
         "damped_speed": damped.speed,
         "damped_pulse_width": damped.width,
         "damped_pulse_slip": damped.slip,
+        "less_damped_pulse_width": less_damped_width,
         "balance_pulse_slip": undamped_weakening_slip(tau0, gamma, weakening),
     }
 

@@ -5,7 +5,7 @@ final pre-stress, one comes into it from a lower pre-stress, and one from a high
 pulse width divided by the height of the layer is about sqrt(2/gamma - 1).
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
 
@@ -22,14 +22,15 @@ RELATIVE_LEVELS_BEFORE = {"uniform": 1.0, "from_below": 0.9, "from_above": 1.1}
 # Positions at which pulses are measured: just before the pre-stress changes (at 10), halfway, and
 # far beyond. These are the positions at `layer.GAMMA`.
 STATION_POSITIONS = (9.0, 18.0, 24.0)
-# Cells of the grid whose run determines the duration of the other runs.
-COARSEST_CELLS = 10
 # Slips count as equal if their relative difference is smaller than this.
 EQUAL_SLIP_TOLERANCE = 0.02
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each point of the map, with the slips of its three runs and the outcome.
+
+    Slips are those on the finer of two grids. The column coarse_outcome has the outcome on the
+    other one.
 
     The settings may have a chunk, such as [3, 8] for the third of eight chunks. The table then has
     only the rows of this chunk.
@@ -48,24 +49,35 @@ def row_of_point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
     """Return the row of one point of the map; slips are 0 if the pulse has died.
 
     energy : fracture energy divided by the energy that the layer releases, G_0
-    cells : number of cells over the height of the layer
+    cells : number of cells over the height of the layer on the finer grid; the other has half as
+        many
     """
-    grids = sorted({COARSEST_CELLS, cells})
-    weakening = weakening_of(energy, LEVEL, gamma)
+    coarse, fine = slips_on_grids(gamma, energy, (cells // 2, cells))
     row = {"gamma": gamma, "tau0": LEVEL, "fracture_energy": energy, "cells": cells}
+    return row | fine | {"outcome": outcome(fine), "coarse_outcome": outcome(coarse)}
+
+
+def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[dict[str, float]]:
+    """Return speed, width and slips of the three pulses of one point, for each grid.
+
+    The parameters are those of `row_of_point`.
+    """
+    weakening = weakening_of(energy, LEVEL, gamma)
+    numbers: list[dict[str, float]] = [{} for _ in grids]
     for name, relative_level in RELATIVE_LEVELS_BEFORE.items():
         before = relative_level * LEVEL
-        measured = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
-        # The last rows are the three stations on the finest grid.
-        before_step, halfway, last = measured[-len(STATION_POSITIONS) :]
-        if name == "uniform":
-            row |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
-        row |= {
-            f"{name}_slip_before": before_step["pulse_slip"],
-            f"{name}_slip_halfway": halfway["pulse_slip"],
-            f"{name}_slip": last["pulse_slip"],
-        }
-    return row | {"outcome": outcome(row)}
+        rows = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
+        stations = len(STATION_POSITIONS)
+        for grid, numbers_on_grid in enumerate(numbers):
+            before_step, halfway, last = rows[grid * stations : (grid + 1) * stations]
+            if name == "uniform":
+                numbers_on_grid |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
+            numbers_on_grid |= {
+                f"{name}_slip_before": before_step["pulse_slip"],
+                f"{name}_slip_halfway": halfway["pulse_slip"],
+                f"{name}_slip": last["pulse_slip"],
+            }
+    return numbers
 
 
 def outcome(slips: Mapping[str, float]) -> str:
