@@ -136,6 +136,14 @@ class Fields(NamedTuple):
     sxy: np.ndarray  # (cells, N)
 
 
+class DampedFields(NamedTuple):
+    """Fields of a damped layer. All share the velocities; without damping also the stresses."""
+
+    elastic: Fields  # stresses of the strain
+    earlier: Fields  # the same one step before
+    total: Fields  # stresses that include damping
+
+
 class Fault(NamedTuple):
     """State of the nodes at the bottom, where slip has the unit of `Elastic.weakening`.
 
@@ -312,9 +320,9 @@ def add_damping(elastic, earlier, fields, total, first, last):
 
 
 @kernel_entry
-def advance_layer(elastic, all_fields, fault, dt, steps, columns):
+def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach."""
-    fields, earlier, total = all_fields
+    fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
         # Number of columns that a compressional wave has crossed since t = 0.
@@ -347,13 +355,13 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # Without a trail, all columns behind the wave are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
-    every_field = all_fields(elastic, fields)
-    advance_layer(elastic, every_field, fault, dt, (0, steps - 1), columns)
+    damped = damped_fields(elastic, fields)
+    advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
     # The energy is balanced at the time of the velocities that are copied here. The stresses are
     # needed half a step before and half a step after this time.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
-    advance_layer(elastic, every_field, fault, dt, (steps - 1, steps), columns)
+    advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     residual = float(abs(energy - work_without_friction) / work_of_prestress)
     return LayerRun(
@@ -366,18 +374,15 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     )
 
 
-def all_fields(elastic: Elastic, fields: Fields) -> tuple[Fields, Fields, Fields]:
-    """Return the elastic fields, those one step before, and those that include damping.
-
-    All of them share the velocities. Without damping they also share the stresses.
-    """
+def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
+    """Return the fields that a layer needs for its damping; without damping they are the same."""
     if elastic.damping == 0.0:
-        return fields, fields, fields
+        return DampedFields(fields, fields, fields)
     names = ("sxx", "syy", "sxy")
     earlier, total = (
         fields._replace(**{name: getattr(fields, name).copy() for name in names}) for _ in range(2)
     )
-    return fields, earlier, total
+    return DampedFields(fields, earlier, total)
 
 
 class LayerState(NamedTuple):
