@@ -15,7 +15,7 @@ from .files import UnreadableFile
 
 # Attributes that HDF5 and netCDF-4 use internally. They are not part of a Dataset.
 INTERNAL_ATTRIBUTES = {"CLASS", "DIMENSION_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
-# A dimension without a coordinate variable is stored as a scale whose name begins like this.
+# The attribute NAME of a dimension without a coordinate begins with this text.
 BARE_DIMENSION = b"This is a netCDF dimension"
 
 
@@ -29,10 +29,11 @@ def load_dataset(path: str | Path) -> xr.Dataset:
             dimensions = _take_dimensions(file, items, attributes)
             variables = {}
             for name, item in items.items():
+                # The file also has an item for each dimension without a coordinate. Such an item is
+                # not a variable, and its attribute NAME says so.
                 scale_name = attributes[name].pop("NAME", b"")
                 if not scale_name.startswith(BARE_DIMENSION):
-                    values = _values(item, h5py.h5s.ALL, h5py.h5s.ALL)
-                    variables[name] = dimensions[name], values, attributes[name]
+                    variables[name] = dimensions[name], _values(item), attributes[name]
             return xr.Dataset(variables, attrs=file.attrs)
     except (OSError, ValueError, LookupError, RuntimeError) as error:
         raise UnreadableFile(path, error) from error
@@ -66,13 +67,14 @@ def _attributes(item: h5py.h5d.DatasetID) -> dict[str, Any]:
     return attributes
 
 
-def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceID) -> np.ndarray:
-    """Return the values of a variable or an attribute, with bytes decoded to text.
-
-    spaces : for a variable, the parts of the memory and of the file, each of which is all of it
-    """
+def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID) -> np.ndarray:
+    """Return all values of a variable or an attribute, with bytes decoded to text."""
     values = np.empty(item.shape, item.dtype)
-    item.read(*spaces, values)
+    if isinstance(item, h5py.h5d.DatasetID):
+        # The first two arguments select parts of the memory and of the file.
+        item.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
+    else:
+        item.read(values)
     if values.dtype.kind == "O":
         # An array of fixed-width texts would need the memory of the longest text for every run.
         texts = [text.decode() for text in values.flat]

@@ -72,6 +72,7 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     """
     data = xr.load_dataset(path)
     check_that(is_sweep(data), "path", str(path), "the data file of a sweep, such as results/data")
+    # A file that was written by ``to_netcdf`` contains variables that `with_parameters` adds again.
     return with_parameters(data.drop_vars(["row_start", "point"], errors="ignore"))
 
 

@@ -181,8 +181,11 @@ class Layer(LayerMaterial):
 
         Parameters
         ----------
-        prestress_in_pascal, width_in_metres, peak_in_pascal
-            As in `scene`.
+        prestress_in_pascal : float, pair of sequences, or path
+            Shear stress along the interface: a number for the same stress everywhere, a pair of
+            positions (m) and stresses (Pa), or the path of a file with such a table. See `scene`.
+        width_in_metres, peak_in_pascal : float, optional
+            Standard deviation and peak of a Gaussian at x = 0, as in `scene`.
 
         Returns
         -------

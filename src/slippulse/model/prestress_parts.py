@@ -59,21 +59,21 @@ def convert_column(name: str, values: Any) -> list[float]:
 
     name : "x" or "tau"
     """
-    key, listed = f"prestress.points {name}", values
+    key = f"prestress.points {name}"
+    is_array = hasattr(values, "__array__")
     try:
-        is_array = hasattr(values, "__array__")
-        listed = np.asarray(values).tolist() if is_array else list(values)
-        size = len(listed)
+        column = list(np.asarray(values).tolist() if is_array else values)
     except TypeError:
-        # The value is not a sequence, so that the check below refuses it.
-        size = 0
+        # A single number is not a column. It counts as an empty one, which the check refuses.
+        column = []
+    size = len(column)
     check_that(2 <= size <= MAX_TABLE_POINTS, key, size, f"2 to {MAX_TABLE_POINTS} numbers")
     # A check of the whole list is much faster than one of each value.
-    if all(type(value) is float for value in listed) and np.all(np.isfinite(listed)):
-        return listed
-    for row, value in enumerate(listed, start=1):
+    if all(type(value) is float for value in column) and np.all(np.isfinite(column)):
+        return column
+    for row, value in enumerate(column, start=1):
         check_number(f"{key} in row {row}", value)
-    return [float(value) for value in listed]
+    return [float(value) for value in column]
 
 
 def check_order(x: np.ndarray) -> None:

@@ -158,8 +158,8 @@ def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
     x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
     profile = prestress_from(run.attrs)
     if profile.points:
-        # The pre-stress is piecewise linear, so its corners are drawn. It may jump at a point, so
-        # the values closely before and after each point are drawn, too.
+        # The pre-stress is piecewise linear, so up to TABLE_POINTS of its corners are drawn. It may
+        # jump at a corner, so the values closely before and after each of them are drawn, too.
         positions = np.unique([position for position, _ in profile.points])
         positions = positions[(positions > lower) & (positions < upper)]
         positions = positions[spaced_indices(positions.size, TABLE_POINTS)]

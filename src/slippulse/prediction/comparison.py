@@ -131,7 +131,8 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
 
     The velocity of the paper's pulse is a half wave of a cosine, equations (9) and (C10). Its peak
     is put at the measured peak. NaN under a stress boundary, with an extra term of the equation, if
-    there is no pulse, or if the pulse has too few blocks.
+    the level ahead is not between 0 and 1, if there is no pulse, or if the pulse has too few
+    blocks.
 
     level_ahead : pre-stress in front of the pulse; by default the level on the right of the profile
     """
@@ -141,7 +142,9 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
         return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
-    distance_to_peak = fields["xi"] - (pulse.peak_distance - pulse.front)
+    # Positions are relative to the front here: xi of the blocks, and that of the peak.
+    xi_of_peak = pulse.peak_distance - pulse.front
+    distance_to_peak = fields["xi"] - xi_of_peak
     # The two outermost blocks are left out, because the lattice rounds the corners of the cosine.
     is_compared = np.abs(distance_to_peak) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(is_compared) < 4:

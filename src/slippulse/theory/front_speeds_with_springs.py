@@ -161,15 +161,17 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
 def _least_prestress(tau0: float, front_law: FrontLaw) -> tuple[float, float]:
     """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress.
 
-    If tau0 is above the pre-stress of the slowest front, these are the values of the slowest front.
+    Usually it is the slowest front. With strong damping a faster front can have less pre-stress.
+    It is searched only if tau0 is not above the pre-stress of the slowest front. Otherwise exactly
+    one faster front has the pre-stress tau0, and the values of the slowest front are returned.
     If no front outruns the waves, the pre-stress is 1.
     """
     if front_law.gamma_dx2 > MAX_GAMMA_DX2:
         return 0.0, 1.0
+    # ln(v - 1) and the pre-stress of the slowest front.
     slowest = _slowest_log_excess(front_law)
     (log_tau,) = front_law.log_prestress(np.array([slowest]), front_law.damping_ratios)
     prestress_of_slowest = float(np.exp(log_tau))
-    # Usually the slowest front has the least pre-stress, and each higher pre-stress has one speed.
     if tau0 > prestress_of_slowest:
         return slowest, prestress_of_slowest
     return _search_least_prestress(front_law, slowest)

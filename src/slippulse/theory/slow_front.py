@@ -485,26 +485,31 @@ class SlowFront:
         return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, 1.0)
 
     def skip_entries(self, entry: Entry, skipped_motion: float, negligible: float) -> Skipped:
-        """Return which entries are skipped on a panel, from a given one to the left.
+        """Return the entries to skip on a panel, from a given one to the left.
 
-        Entries are skipped if they move the front by no more than the fraction ``negligible`` of
-        the size of the rupture. skipped_motion is the motion by entries on other panels that were
-        skipped before.
+        Entries are skipped as long as all of them together move the front by no more than the
+        fraction ``negligible`` of the size of the rupture. skipped_motion is the motion by entries
+        on other panels that were skipped before.
         """
-        # Samples from the entry to the left end of its panel.
+        # The entries are sampled from the given one to the left end of its panel. A motion is that
+        # by all entries up to a sample.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
-        # Only entries with negative pre-stress can move the front back. Of their motions only
-        # rounding errors are negligible.
+        # Only entries in negative pre-stress can move the front back. On a panel with such entries
+        # a motion is negligible only if it is as small as rounding errors.
         is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
         largest_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if is_negative else negligible)
-        # The last sample before the first one whose motion is too large, or the entry itself.
-        is_negligible = np.append(np.abs(motions) <= largest_motion, False)
-        last = max(0, int(np.argmin(is_negligible)) - 1)
+        is_negligible = np.abs(motions) <= largest_motion
+        # The first sample whose motion is too large, or the number of samples if there is none.
+        first_too_large = motions.size if is_negligible.all() else int(np.argmin(is_negligible))
+        # The last skipped sample is the one before it, but at least the first, the entry itself.
+        last = max(0, first_too_large - 1)
         motion = float(motions[last])
-        is_end_of_panel = last == ENTRY_FRACTIONS.size - 1
-        moves_on = not is_negative or is_end_of_panel or motions[last + 1] >= motion
-        return Skipped(last, s=float(s[last]), motion=motion, moves_on=bool(moves_on))
+        moves_on = True
+        if is_negative and last + 1 < motions.size:
+            # The entries that follow move the front back if they reduce the motion.
+            moves_on = bool(motions[last + 1] >= motion)
+        return Skipped(last, s=float(s[last]), motion=motion, moves_on=moves_on)
 
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
         """Return how far the front moves by the waves that entered on a part of a panel.

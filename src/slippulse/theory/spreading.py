@@ -57,7 +57,8 @@ class Stretch:
     # Reason why a front is not followed further: "stops" (for good), "duration" (the time is over),
     # "met" (another front), or a key of REASONS_UNKNOWN. None if it is followed further.
     end_reason: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
-    # Positions where a slow front became faster than the waves again, by side.
+    # Positions where a slow front became faster than the waves again, by side. A position where it
+    # met another front is in both lists.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     # Positions where two fronts met.
     joins: list[float] = field(default_factory=list)
@@ -265,14 +266,15 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
         """Return how much later the left stretch reaches x than the right one."""
         return float(left_curve.arrival(x) - right_curve.arrival(x))
 
-    # Both stretches have reached the positions between these two. The left one is first at the low
-    # end, and the right one at the high end.
+    # Both stretches have reached the positions from low to high. If their fronts have met, the left
+    # stretch arrived first at low, and the right one at high.
     low = max(right.ends[LEFT].x, float(left_curve.edges[0]))
     high = min(left.ends[RIGHT].x, float(right_curve.edges[-1]))
     if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
-    # If one of the fronts is slow where they meet, the curve has a restart there.
+    # If one of the fronts is slow where they meet, the curve has a restart there. A slow front
+    # takes longer for the last distance than a wave, whose speed is 1.
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))

@@ -82,8 +82,8 @@ class StickSearch:
             time = np.append(kept_times[sliding], batch.time, axis=1)
             velocity = np.append(kept_velocities[sliding], batch.velocity, axis=1)
             samples = VelocitySamples(x[sliding], time, velocity)
-            # The column of the first sample at or below 0, not counting the two kept samples. If
-            # there is none, it is the number of columns.
+            # The column of the first sample at or below 0, or the number of columns if there is no
+            # such sample. The two kept samples, in columns 0 and 1, are not searched.
             is_stuck = batch.velocity <= 0.0
             has_stuck = is_stuck.any(axis=1)
             first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])

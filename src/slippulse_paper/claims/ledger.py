@@ -217,13 +217,16 @@ class Ledger:
         return SimpleNamespace(**numbers) if numbers else None
 
     def deviation_at(self, id: str, **choices: float | str) -> float | None:
-        """Return the deviation of a claim at some choices; None if no combination has them.
+        """Return the deviation of a claim for given values of the open choices of the paper.
 
-        choices : values of choices, by name
+        The claim was judged at many combinations of values. The first combination with the given
+        values counts. None if there is no such combination.
+
+        choices : values by name of the choice, such as ``release="total"``
         """
-        for row in self(id).choices:
-            if choices.items() <= row.items():
-                return row["deviation"]
+        for combination in self(id).choices:
+            if choices.items() <= combination.items():
+                return combination["deviation"]
         return None
 
     def listed(self, id: str, words: str) -> str:

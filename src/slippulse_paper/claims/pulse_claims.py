@@ -87,14 +87,16 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
 
 
 def change_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
-    """Return for each pulse if it grows (1), decays (-1) or keeps its size (0).
+    """Return signs that show if each pulse grows (1), decays (-1) or keeps its size (0).
 
-    The pulse enters the level of pre-stress in the column beyond. In the level 0 a pulse keeps its
-    size, by theory. So each pulse is compared with a reference, which began in the same pre-stress
-    and entered the level 0.
+    The pulse formed at the level 0 and enters the level in the column beyond. By theory a pulse
+    keeps its size if it stays at the level 0. So each pulse is compared with a reference, the pulse
+    that stays at the level 0 in a run with the same level on the left.
 
-    changed : sign of the change of velocity; 0 if the velocity of the reference changes more
+    changed : sign of the velocity change; 0 if it is not larger than the change of the reference
     widened : sign of the half-width minus that of the reference
+
+    Both are -1 if the pulse has died, and 0 if they are unknown.
     """
     reference = table[table["beyond"] == 0.0].set_index("left")
     change = table[VELOCITY_CHANGE]

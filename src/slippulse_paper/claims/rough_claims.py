@@ -121,19 +121,25 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
-    """Return the range of measured death rates, divided by the predicted rates of fatal barriers.
+    """Return how much measured death rates differ from the predicted rates of fatal barriers.
 
-    The range goes over the ensembles with at least LEAST_DEATHS deaths. The ends of the confidence
-    intervals of the measured rates have such a range, too (low and high).
+    The first four numbers are about the ensembles in which deaths are frequent.
+
+    frequent_deaths : least number of deaths in such an ensemble
+    frequent_least, frequent_largest : range of the measured rate divided by the predicted rate
+    frequent_low, frequent_high : this range from the lower to the upper ends of the confidence
+        intervals of the measured rates
+    highest_level : highest level of all ensembles
     """
-    dying = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
-    ratio = dying["rate"] / dying["barrier_rate"]
+    frequent = ensembles[ensembles["deaths"] >= LEAST_DEATHS]
+    predicted = frequent["barrier_rate"]
+    ratio = frequent["rate"] / predicted
     return {
         "frequent_deaths": LEAST_DEATHS,
         "frequent_least": ratio.min(),
         "frequent_largest": ratio.max(),
-        "frequent_low": (dying["rate_low"] / dying["barrier_rate"]).min(),
-        "frequent_high": (dying["rate_high"] / dying["barrier_rate"]).max(),
+        "frequent_low": (frequent["rate_low"] / predicted).min(),
+        "frequent_high": (frequent["rate_high"] / predicted).max(),
         "highest_level": ensembles["level"].max(),
     }
 

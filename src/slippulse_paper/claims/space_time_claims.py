@@ -26,14 +26,14 @@ def left(evidence: Evidence, id: str) -> Reading:
         chi_square=best["chi2"],
         degrees_of_freedom=best["dof"],
         further=values_of_our_figure(evidence, "space_time_displacement"),
-        template_values=best | split_errors(evidence, best["pulls"]),
+        template_values=best | numbers_on_shared_errors(evidence, best["pulls"]),
     )
 
 
-def split_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
-    """Return what the sentences say about the shared errors of the trailing edge.
+def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
+    """Return the numbers for sentences about the errors of the trailing edge.
 
-    The readings of the trailing edge have a part of their errors in common.
+    The readings of the trailing edge share a part of their errors.
 
     own_edge_error : the other part, which is independent in each of these readings
     independent_chi_square : chi-square if all errors were independent

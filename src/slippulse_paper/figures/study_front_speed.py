@@ -54,7 +54,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     )
     is_steady = runs["pulse_state"] == "steady"
     is_wide = runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
+    # Only the theory of fronts with leaf springs needs a steady and wide pulse.
     has_no_springs = runs["panel"] == "prestress"
+    # The lattice law includes leaf springs. Where it has no speed, because leaf springs are absent
+    # or hardly matter, the exact law without leaf springs is used.
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     rows = runs[COLUMNS].assign(
         role="simulation",

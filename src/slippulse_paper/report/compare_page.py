@@ -139,19 +139,21 @@ def shown_table(runs: TableRuns, numbers: pd.DataFrame) -> ShownTable:
 
 
 def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
-    """Return the numbers that differ, in the order of their differences, the largest first.
+    """Return the numbers that differ, sorted by their difference, the largest first.
 
-    A difference counts relative to the allowed difference. Numbers without an uncertainty come
-    last.
+    The difference is divided by the allowed difference. It counts as infinite if only one of the
+    two numbers is known. Numbers without an uncertainty come last.
     """
     may_differ = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
     differing = numbers[may_differ & (numbers["new"] != numbers["old"])]
-    has_study = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
+    has_uncertainty = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     difference = (differing["new"] - differing["old"]).abs()
-    excess = difference / differing["allowed"].clip(lower=1e-300)
-    # If one of the numbers is missing, the difference is NaN. It counts as the largest.
-    ranks = pd.DataFrame({"has_study": has_study, "excess": excess.fillna(float("inf"))})
-    ranks = ranks.sort_values(["has_study", "excess"], ascending=False, kind="stable")
+    # The tiny lower bound avoids a division by 0.
+    relative = difference / differing["allowed"].clip(lower=1e-300)
+    ranks = pd.DataFrame(
+        {"has_uncertainty": has_uncertainty, "relative": relative.fillna(float("inf"))}
+    )
+    ranks = ranks.sort_values(["has_uncertainty", "relative"], ascending=False, kind="stable")
     return differing.loc[ranks.index]
 
 

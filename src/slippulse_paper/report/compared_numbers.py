@@ -111,16 +111,16 @@ def compare_numbers(
     """
     numbers = _list_numbers(new, old, parameters)
     is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))
-    has_study = numbers[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
+    has_uncertainty = numbers[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     # Equal lattices should give equal numbers, even if no study gives their uncertainty.
-    is_exact = is_same_lattice & ~has_study
+    is_exact = is_same_lattice & ~has_uncertainty
     size = numbers["new"].abs()
     tolerance = EQUAL_LATTICE_TOLERANCE * size.clip(lower=1.0)
     numbers["allowed"] = numbers["allowed"].mask(is_exact, tolerance)
 
     is_within = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
     numbers["outcome"] = DIFFERS
-    numbers.loc[~has_study & ~is_same_lattice, "outcome"] = UNKNOWN
+    numbers.loc[~has_uncertainty & ~is_same_lattice, "outcome"] = UNKNOWN
     numbers.loc[is_within, "outcome"] = AGREES
 
     is_known = numbers[["new", "old"]].notna()

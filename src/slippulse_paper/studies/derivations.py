@@ -50,8 +50,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     Only the release time, the stick time and the final slip depend on the position x.
     """
-    scenes = {name: expand(sweep)[0] for name, sweep in settings["sweeps"].items()}
-    # All numbers are for the damping ratio and the release rule of the published space-time figure.
+    scenes = {}
+    for name, sweep in settings["sweeps"].items():
+        scenes[name], _samples = expand(sweep)
+    # Most numbers are for the damping ratio and release rule of the published space-time figure.
     published = scenes["space_time_displacement"][0]
     damping_ratio, release = published.damping_ratio, published.release
     # In this simulation pulses enter another pre-stress at a step. Most numbers are for its gamma,

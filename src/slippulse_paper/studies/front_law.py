@@ -50,6 +50,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     tables_by_sweep = {
         name: pd.DataFrame(parameters(sweep)) for name, sweep in settings["sweeps"].items()
     }
+    # While dx varies along a line, either b = beta/dx or beta is fixed. The column held names the
+    # fixed one, and the column fixed has its value.
     fixed_ratio = tables_by_sweep["continuum_fixed_ratio"]
     refined = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     for name in ("continuum_fixed_beta", "front_speed_fixed_beta"):
