@@ -152,16 +152,18 @@ def _distance_reached(ends: np.ndarray, speeds: np.ndarray, start: float, durati
 def _bound_scene_reach(scene: Scene) -> float:
     """Return an upper bound on the distance from x = 0 that a front reaches on either side.
 
-    The fronts begin at t = 0 beyond all Gaussians of the pre-stress, as if they crossed them in no
-    time.
+    Both fronts are assumed to begin at t = 0 beyond all Gaussians and all positions where the
+    rupture may nucleate, as if they had crossed them in no time.
     """
     profile = scene.prestress
     end_of_bumps = max(
         (abs(centre) + GAUSSIAN_END_IN_WIDTHS * width for centre, _, width in profile.bumps),
         default=0.0,
     )
-    width = profile.width or 0.0
-    start = max(end_of_bumps, profile.nucleation_reach) + GAUSSIAN_END_IN_WIDTHS * width
+    # The width is None if there is no Gaussian at x = 0.
+    end_of_peak = GAUSSIAN_END_IN_WIDTHS * (profile.width or 0.0)
+    # The sum is at least as large as each of these distances.
+    start = max(end_of_bumps, profile.nucleation_reach) + end_of_peak
 
     def bound_speeds(levels: np.ndarray) -> np.ndarray:
         """Return upper bounds on the front speeds at levels of pre-stress.

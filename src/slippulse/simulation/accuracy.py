@@ -167,7 +167,7 @@ def settings_for(
 
 
 def _levels(prestress: Prestress) -> list[float]:
-    """Return the levels of a pre-stress on both sides, of its steps, and some of its table."""
+    """Return the levels of a pre-stress on both sides and beyond steps, and some of a table."""
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     if prestress.points:
         levels += _levels_of_table(prestress)

@@ -198,9 +198,11 @@ def take_samples(recorder, motion, tally, end):
         time_to_end = end - times[n]
         for p in range(blocks.shape[0]):
             i = blocks[p]
-            if i >= 0:
-                recorder.slip[n, p] = motion.w[SLIP, i] - time_to_end * motion.w[VELOCITY, i]
-                recorder.velocity[n, p] = motion.w[VELOCITY, i]
+            # Positions outside the lattice have no block.
+            if i < 0:
+                continue
+            recorder.slip[n, p] = motion.w[SLIP, i] - time_to_end * motion.w[VELOCITY, i]
+            recorder.velocity[n, p] = motion.w[VELOCITY, i]
         tally.samples_taken += 1
 
 

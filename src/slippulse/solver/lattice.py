@@ -152,17 +152,21 @@ class Lattice:
         old_blocks : array positions of the present blocks in the new arrays
         """
         old_motion = self.motion
-        self.motion = arrays.make_motion(old_motion.w.shape[0], size)
+        derivative_count = old_motion.w.shape[0]
+        self.motion = arrays.make_motion(derivative_count, size)
         for new_array, old_array in zip(self.motion, old_motion, strict=True):
             new_array[..., old_blocks] = old_array
         distance = np.abs(np.arange(size) + self.first_block) * self.scene.dx
         nucleation_half_length = self.scene.friction.traits.nucleation_half_length
+        # The friction of a block is multiplied by its factor. It is 0 in the region around x = 0
+        # where a rupture may be nucleated without friction, and 1 elsewhere.
         self.motion.law_factor[:] = distance >= nucleation_half_length
         # The new blocks are those before and behind the old ones.
         for first, last in ((0, old_blocks.start), (old_blocks.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
         if self.is_mirrored:
+            # Block 1 lies at x = 0. The ghost block before it is the mirror image of block 2.
             self.motion.tau[0] = self.motion.tau[2]
 
     def _bound_force(self) -> None:

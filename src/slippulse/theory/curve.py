@@ -72,8 +72,9 @@ def with_slopes(powers: np.ndarray) -> np.ndarray:
     """Return coefficients of polynomials and of their derivatives, as `value_and_slope` needs them.
 
     powers has one row for each power and one column for each polynomial. The number of rows is a
-    multiple of 4. The result has the shape [group, row, polynomial], where a group has four powers.
-    A power has two rows in it: the coefficient of the polynomial, and that of the derivative.
+    multiple of 4. The result has the shape [group, row, polynomial]. The first group has the rows
+    p_0, d_0, p_1, d_1, p_2, d_2, p_3 and d_3, where p_m is the coefficient of the power m in the
+    polynomial, and d_m that in its derivative. The next group goes on with p_4 and d_4.
     """
     exponents = np.arange(1.0, len(powers))
     slopes = powers[1:] * exponents[:, None]
@@ -296,15 +297,16 @@ class Curve:
 
     @cached_property
     def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """For each panel, the lowest exit value of this panel and of those beyond it.
+        """Lowest exit values, which show on which panel a characteristic leaves the rupture.
 
-        These values show on which panel a characteristic leaves the rupture. The first list is for
-        characteristics that are traced to the right. They leave a panel at its right end, and the
-        exit value is T + x there. The second list is for those traced to the left, whose exit value
-        is T - x at the left end. A list has one array for each region (`_lowest_exit_beyond`).
+        A characteristic that is traced to the right leaves a panel at its right end. The exit value
+        of the panel is T + x there. If it is traced to the left, the exit value is T - x at the
+        left end. For each panel, the lowest exit value of this panel and of all panels beyond it is
+        computed (`_lowest_exit_beyond`), first to the right and then to the left.
         """
-        _, _, t_plus_x, t_minus_x = np.split(self.end_values, 4, axis=1)
-        exits_at_right_ends, exits_at_left_ends = t_plus_x[1], t_minus_x[0]
+        left_end, right_end = 0, 1
+        exits_at_right_ends = self.time_ends[:, right_end] + self.x_ends[:, right_end]
+        exits_at_left_ends = self.time_ends[:, left_end] - self.x_ends[:, left_end]
         # T + x has a maximum at the restarts of left fronts, and T - x at those of right fronts.
         left_restarts, right_restarts = self.restarts
         to_right = _lowest_exit_beyond(exits_at_right_ends, self.edges, left_restarts)
@@ -384,12 +386,15 @@ def _solve_by_newton(
 def _lowest_exit_beyond(
     exits: np.ndarray, edges: np.ndarray, restarts: Sequence[float]
 ) -> list[np.ndarray]:
-    """Return, for each panel, the lowest exit value of this panel and of those beyond it.
+    """Return, for each panel, the lowest exit value of this panel and of later ones in its region.
 
-    exits are the exit values of the panels, see `Curve._lowest_exits`. Only panels of the same
-    region count, and the result has one array for each region. A region ends at a restart, where
-    exit values have a maximum: a characteristic that leaves the rupture before this maximum is not
-    followed beyond it.
+    The result has one array for each region. A region ends at a restart, because exit values have a
+    maximum there. A characteristic that leaves the rupture before this maximum is not followed
+    beyond it, so that panels of later regions do not count.
+
+    exits : exit value of each panel, in the order in which a characteristic crosses the panels
+    edges : ends of the panels, in the same order
+    restarts : positions where the regions end
     """
     region_ends = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
     lowest = []

@@ -101,7 +101,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     The zone lies between the fault and stiffer rock. A displacement is imposed on the rock, far
     away from the fault. Source: section IV C 2 of the paper.
-    Raises ValueError: outside these ranges.
+    Raises ValueError: outside the ranges below.
 
     Parameters
     ----------

@@ -22,8 +22,8 @@ def exact_transition_displacement(
 ) -> ExactTransition:
     """Return T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
 
-    Raises ValueError: outside these ranges; if the rupture also nucleates away from x = 0; or if a
-    front needs more than 20000 panels. This does not happen if gamma times the square of the
+    Raises ValueError: outside the ranges below; if the rupture also nucleates away from x = 0; or
+    if a front needs more than 20000 panels. This does not happen if gamma times the square of the
     Gaussian width is between 1e-17 and 1e6.
     Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
     `Rupture.transition` examines all positions.
@@ -45,6 +45,7 @@ def exact_transition_displacement(
     """
     check_kind("prestress", prestress, Prestress)
     check_domains(gamma=gamma)
+    # The level far away, beyond all steps.
     level = float(prestress.level(np.asarray(1e300)))
     if not prestress.symmetric or level <= 0.0:
         allowed = "equal levels > 0 on both sides"
@@ -56,7 +57,8 @@ def exact_transition_displacement(
     # Half of the period of the leaf springs, after which uniform slip would stick.
     half_period = float(np.pi / np.sqrt(gamma))
     # The stick is searched for until the time 2 half_period. Until then only fronts at a distance
-    # below 2 half_period influence x = 0, because waves have the speed 1.
+    # below 2 half_period influence x = 0, because waves have the speed 1. The fronts are computed a
+    # little farther.
     fronts = fronts_up_to(reach=2.5 * half_period)
     part = Part(fronts, gamma, until=2.0 * half_period)
     stick = float(part.find_stick_times(np.zeros(1))[0])

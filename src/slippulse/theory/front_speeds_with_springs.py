@@ -48,7 +48,7 @@ def lattice_front_speed(
     has a closed form without damping, and tends to `front_speed` as gamma dx^2 -> 0. Blocks that
     stick behind the front are neglected. The relative error is below 1e-6 next to tau_0 = 1 for
     gamma dx^2 (1 + beta/dx) up to 10.
-    Raises ValueError: outside these ranges, or if tau0 is not above the least pre-stress. Only
+    Raises ValueError: outside the ranges below, or if tau0 is not above the least pre-stress. Only
     fronts faster than sqrt(4 + gamma dx^2)/pi count, which is the phase velocity of the shortest
     waves. If friction weakens with slip velocity, only fronts count behind which slip does not run
     away.
@@ -129,7 +129,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
 
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}, where tau is tau0. It follows
     by the method of Wiener and Hopf, as on the lattice (`wiener_hopf`).
-    Raises ValueError: outside these ranges, or where the front would not outrun the waves.
+    Raises ValueError: outside the ranges below, or where the front would not outrun the waves.
 
     Parameters
     ----------

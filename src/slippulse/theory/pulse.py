@@ -21,7 +21,7 @@ def steady_pulse(
     beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0, with U(0) = U'(0) = 0. In the
     solution, an exponential that grows with the distance from the front is left out. With
     alpha = beta = 0 it is the pulse of appendix C of the paper, but for any front speed v.
-    Raises ValueError: outside these ranges, or where the numbers of the pulse are too large or
+    Raises ValueError: outside the ranges below, or where the numbers of the pulse are too large or
     small for a float.
 
     Parameters

@@ -201,12 +201,16 @@ def _must_be_corrected(event: Event, corrections: int) -> bool:
     """Return True if there is an event on a chunk of entries, but the chunk does not end there yet.
 
     corrections is the number of times that the end of the chunk was moved to an event. It is moved
-    at least once, even if the event is at the end already.
+    at least once, even if the event is at the end already. After many corrections the event may be
+    a little farther from the end.
     """
     if event.name == "none":
         return False
-    tolerance = EVENT_AT_END if corrections <= MAX_EXACT_CORRECTIONS else EVENT_NEAR_END
-    return corrections == 0 or abs(event.s - 1.0) >= tolerance
+    has_many_corrections = corrections > MAX_EXACT_CORRECTIONS
+    tolerance = EVENT_NEAR_END if has_many_corrections else EVENT_AT_END
+    # The parameter s of the chunk is 1 at its end.
+    distance_to_end = abs(event.s - 1.0)
+    return corrections == 0 or distance_to_end >= tolerance
 
 
 def _runs_back(x: np.ndarray) -> bool:

@@ -147,7 +147,9 @@ class StickSearch:
         # the column of the sample before the minimum.
         rows, before = np.nonzero(is_minimum & is_before_stick)
         start, end = samples.time[rows, before], samples.time[rows, before + 2]
-        for _ in range(2 if rows.size else 0):
+        if not rows.size:
+            return first_zeros
+        for _ in range(2):
             fine = self._sample(samples.x[rows], np.linspace(start, end, FINE_PARTS + 1, axis=1))
             # The column of the first fine sample at or below 0. It is 0 if there is none, since the
             # first fine sample is positive.

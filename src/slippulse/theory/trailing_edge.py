@@ -201,27 +201,36 @@ class PartWithEdge(Part):
         return np.concatenate([self._positions_near_waves_to(knots, side) for side in sides])
 
     def _positions_near_waves_to(self, knots: Knots, side: float) -> np.ndarray:
-        """Return `_positions_near_waves` for waves to one side, -1 (left) or +1 (right)."""
+        """Return positions on both sides of each point where a wave to one side meets the edge.
+
+        The waves start at the marks, and run to the left (side = -1) or to the right (side = +1).
+        """
         marks = np.array(self.marks)
         start_times = self.curve.arrival(marks)
         # Time from the passage of each wave to the stick, [knot, mark]. It changes its sign where
         # the wave meets the edge.
         delay = (knots.stick - side * knots.x)[:, None] - (start_times - side * marks)
+        meets_edge = delay[1:] * delay[:-1] < 0.0
+        # An edge that is slower than the waves is not interpolated by cubics, so that its kinks do
+        # not matter.
         is_fast = knots.outruns_waves(np.arange(knots.x.size - 1))
-        k, mark = np.nonzero((delay[1:] * delay[:-1] < 0.0) & is_fast[:, None])
+        k, mark = np.nonzero(meets_edge & is_fast[:, None])
+        if not k.size:
+            return np.zeros(0)
         at_left, at_right = delay[k, mark], delay[k + 1, mark]
         left, right = knots.x[k], knots.x[k + 1]
         # By linear interpolation of the delay, the wave meets the edge near this position.
         x = left + (right - left) * at_left / (at_left - at_right)
-        # Two steps of Newton's method find where du/dt is 0 on the wave. If x on it changes by dx,
-        # the time changes by side dx. So t + x changes by 2 dx on a wave to the right, and t - x by
-        # -2 dx on a wave to the left. The other one does not change.
-        for _ in range(2 if x.size else 0):
+        # Two steps of Newton's method find the position on the wave where du/dt is 0. They need the
+        # derivative of du/dt along the wave. On a wave to the right, t = x + const, so that t - x
+        # is constant and t + x changes by 2 dx. On a wave to the left, t = -x + const, so that
+        # t + x is constant and t - x changes by -2 dx.
+        for _ in range(2):
             time = start_times[mark] + side * (x - marks[mark])
             domains = self.domains(x, time)
             by_xi, by_eta = domains.velocity_slopes()
-            slope_on_wave = by_eta if side > 0.0 else by_xi
-            x = x - 0.5 * side * domains.slip_velocity() / slope_on_wave
+            slope_on_wave = 2.0 * by_eta if side > 0.0 else -2.0 * by_xi
+            x = x - domains.slip_velocity() / slope_on_wave
             x = x.clip(left, right)
         offset = LANDING_OFFSET * self.scale
         return np.clip([x - offset, x + offset], left, right).ravel()
@@ -262,7 +271,7 @@ class PartWithEdge(Part):
         interval is refined if the edge jumps or reaches the final time in it. Both halves of a
         halved interval are refined if the interpolation did not predict the middle.
         """
-        k = self._not_behind_jumps(knots, np.searchsorted(knots.x, left_ends))
+        k = self._not_in_future_of_jumps(knots, np.searchsorted(knots.x, left_ends))
         cut, halved = self._intervals_to_divide(knots, k)
         # The left ends of the pieces, [piece, interval].
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
@@ -275,7 +284,7 @@ class PartWithEdge(Part):
         new_middles = new_knots.select(np.s_[between_pieces.size :])
         is_predicted = knots.predicts_middle(halved, new_middles)
         refined = knots.joined(new_knots)
-        self._mark_steep_pieces(refined, pieces)
+        self._mark_slow_intervals(refined, pieces)
         halves = np.append(knots.x[halved], middles)
         unresolved_halves = halves[~np.tile(is_predicted, 2)]
         k = np.searchsorted(refined.x, pieces.ravel())
@@ -302,49 +311,56 @@ class PartWithEdge(Part):
         """Length of the part: the distance between its two fronts at the end."""
         return self.curve.edges[-1] - self.curve.edges[0]
 
-    def _not_behind_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
-        """Return the intervals of k that are not completely in the future of a jump.
+    def _not_in_future_of_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
+        """Return the intervals of k, except those that lie completely in the future of a jump.
 
-        The future of a jump is where a wave from the jump has arrived. Nothing is known there.
+        A knot is in the future of a jump if a wave from the jump arrives there before the knot
+        sticks. Nothing is known about the edge there.
         """
-        before_jumps, lengths = knots.ends_before_jumps(k)
-        # The axes are [left or right end, interval, jump].
+        knots_before_jumps, lengths = knots.ends_before_jumps(k)
+        # The axes are [left or right end of the interval, interval, jump].
         ends = np.array([k, k + 1])[..., None]
-        travel_time = np.abs(knots.x[ends] - knots.x[before_jumps])
-        # A wave from a jump arrives at an end before its stick if it starts before this time. One
-        # end is not in the future of the jump if the smaller of both times is before the jump.
-        latest_start = (knots.stick[ends] - travel_time).min(axis=0)
-        # The jump is somewhere in its interval, so that twice the interval length is added to its
-        # time.
-        is_before_jump = latest_start < knots.stick[before_jumps] + 2.0 * lengths
-        return k[is_before_jump.all(axis=1)]
+        # A wave that starts at the knot before a jump arrives at an end before its stick if it
+        # starts before this time.
+        travel_time = np.abs(knots.x[ends] - knots.x[knots_before_jumps])
+        latest_start = knots.stick[ends] - travel_time
+        # From that knot the edge runs to the jump in less time than a wave, which takes at most the
+        # length of the interval. A wave from the jump may have to run back by the same distance. So
+        # an end is certainly in the future of the jump if its latest start is two lengths later
+        # than the stick of that knot.
+        is_outside = latest_start < knots.stick[knots_before_jumps] + 2.0 * lengths
+        has_end_outside = is_outside.any(axis=0)
+        return k[has_end_outside.all(axis=1)]
 
-    def _mark_steep_pieces(self, knots: Knots, pieces: np.ndarray) -> None:
-        """Set the kind SLOWER_THAN_WAVES at knots of intervals all of whose pieces are steep.
+    def _mark_slow_intervals(self, knots: Knots, pieces: np.ndarray) -> None:
+        """Mark knots of intervals that were cut because of a jump, but have a slow edge instead.
 
-        pieces has the left ends of the pieces, [piece, interval]. If the edge jumps in an interval,
-        only one of its pieces contains the jump. If the edge takes longer than a wave in all
-        pieces, it is slower than the waves, although its slopes at the knots are just below 1.
+        A jump lies in only one piece of its interval. If the edge takes longer than a wave in every
+        piece, it does not jump. It is slower than the waves, although its slopes at the knots are
+        just below 1, and all knots of the interval get the kind SLOWER_THAN_WAVES.
+
+        pieces has the left ends of the pieces of each interval, [piece, interval].
         """
         k = np.searchsorted(knots.x, pieces)
+        takes_longer = knots.has_jump(k).all(axis=0)
+        # Shorter pieces are left as they are, because several of them may have a jump.
         is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
-        is_steep = knots.has_jump(k).all(axis=0)
-        steep_pieces = k[:, is_steep & is_long]
-        knots.kind[steep_pieces] = SLOWER_THAN_WAVES
+        pieces_of_slow_edge = k[:, takes_longer & is_long]
+        knots.kind[pieces_of_slow_edge] = SLOWER_THAN_WAVES
         # The right end of the last piece of each interval.
-        knots.kind[steep_pieces[-1] + 1] = SLOWER_THAN_WAVES
+        knots.kind[pieces_of_slow_edge[-1] + 1] = SLOWER_THAN_WAVES
 
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times that are interpolated between knots, without further computation.
 
-        They are accurate to a fraction of the knot spacing. For blocks that do not stick it is the
-        final time.
+        They are accurate to a fraction of the knot spacing. The stick time of a block that does not
+        stick is the final time.
         """
         knots = self.knots
         k = knots.interval_of(x)
-        return np.where(
-            knots.outruns_waves(k), knots.interpolate(k, x), np.interp(x, knots.x, knots.stick)
-        )
+        by_cubic, by_line = knots.interpolate(k, x), np.interp(x, knots.x, knots.stick)
+        # The cubic is right only where the edge is faster than the waves.
+        return np.where(knots.outruns_waves(k), by_cubic, by_line)
 
     def _stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
         """Return the exact stick times of positions; NaN if a block does not stick.

@@ -129,7 +129,7 @@ def never_arrives(evidence: Evidence) -> dict[str, float]:
     """
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
-    for fraction, median in transition.medians(judged.combinations).items():
+    for fraction, median in transition.median_ratios(judged.combinations).items():
         # Lattices are measured at their last release. They have a text instead of a fraction.
         if isinstance(fraction, float):
             medians[f"median_{100.0 * fraction:.0f}"] = median

@@ -139,7 +139,7 @@ def all_claims(
 
     Raises ValueError if a claim exists only in the texts or only in the code.
 
-    explanations : sentences that explain each verdict, for claims that are judged at all
+    explanations : for each verdict a sentence that explains it, for claims that are judged at all
         combinations of open choices
     sentences : sentences of the paper with their places, from manuscript/statements.yaml
     """
@@ -148,6 +148,8 @@ def all_claims(
     if in_only_one:
         names = ", ".join(sorted(in_only_one))
         raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
+    # In this simulation pulses enter another pre-stress. Two new columns, which the rules of claims
+    # use, show whether each pulse grows or decays.
     evidence.assign("regimes_beyond", pulses.change_signs)
     places = places_of(evidence.entries, sentences)
     results = []

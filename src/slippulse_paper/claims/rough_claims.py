@@ -155,7 +155,11 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
 
 
 def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return deaths on two lattices, and death rates in the near and far half of longer tracks."""
+    """Return numbers that show how accurate the measured death rates are.
+
+    grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
+    near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress
+    """
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
     halves = checks[checks["part"] == "length"].sort_values("stop")
@@ -177,9 +181,13 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
     short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
         among those with recorded slip
-    ..._local, ..._mean : deviation of the slip from that of a steady pulse at the local pre-stress,
-        and at the mean pre-stress
-    forgotten : largest change of the slip by a bump that is farther away than the memory
+    ..._correlation_length, ..._deviation : of the rough pre-stress
+    ..._local, ..._mean : median relative deviation of the slip from that of a steady pulse at the
+        local pre-stress, and at the mean pre-stress
+    ..._slowness : largest relative deviation of the slowness (time per distance) of a front from
+        the mean slowness of steady fronts at the local pre-stress
+    memory : distance after which a pulse has forgotten a change of the pre-stress
+    forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
@@ -192,6 +200,7 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
             f"{name}_mean": ensemble["off_mean"],
             f"{name}_slowness": ensemble["slowness_off"],
         }
+    # The distance from the bump is in units of the memory. The column high has the largest change.
     beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
     return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
 

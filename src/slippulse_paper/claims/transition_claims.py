@@ -162,26 +162,29 @@ def arrests(evidence: Evidence) -> list[Runs]:
 def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> pd.DataFrame:
     """Return the run with the widest nucleation at each level, with the paper's estimates.
 
-    The estimates are those for the distance that the left front has covered.
+    The estimates are those of the time at which the left front has covered its distance, and of the
+    distance between the fronts at this time. The paper assumes that both fronts run at speed 1.
 
     new_names : new names of the columns, by their names in the table
     """
-    # The width of the nucleation is the only length, so all runs of a level are alike in their
-    # ratios, and one of them is enough.
+    # The width of the nucleation is the only length. So the ratios of measured and estimated
+    # numbers are equal in all runs of a level, and one of the runs is enough.
     widest = table.sort_values("width").drop_duplicates("left", keep="last")
     widest = widest.rename(columns=new_names)
     if "covered" not in widest:
-        # The estimated time to cover the whole distance is equal to the distance, since the paper
-        # assumes the speed 1.
+        # An exact solution is measured at a fraction of the whole distance. At speed 1 the whole
+        # distance is equal to the estimated time.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
+    # At speed 1 the left front needs a time equal to its distance. Since the right front has run
+    # equally far, the distance between the fronts is twice as long.
     covered = widest["covered"]
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
 
-def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
+def median_ratios(combinations: Sequence[Combination]) -> dict[float | str, float]:
     """Return the median of measured/estimated for each covered fraction.
 
-    All other choices are those of the first combination.
+    It is NaN if no run has a number. All other choices are those of the first combination.
     """
     first = combinations[0].choice
     fixed_names = ("release", "damping_ratio", "nucleation")
@@ -189,6 +192,7 @@ def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
     for combination in combinations:
         choice = combination.choice
         if all(choice.get(name) == first[name] for name in fixed_names):
+            # The entry "measured" of an estimate is its median ratio.
             by_fraction[choice["fraction"]] = combination.claim.fields().get("measured", NAN)
     return by_fraction
 
@@ -196,7 +200,7 @@ def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
     """Return the median ratio for each covered fraction, with words for the table of claims."""
     by_words = {}
-    for fraction, median in medians(combinations).items():
+    for fraction, median in median_ratios(combinations).items():
         by_words[f"median ratio: at {named(fraction)}"] = median
     return dict(sorted(by_words.items()))
 

@@ -118,10 +118,10 @@ def finish_survival(axes: Axes, stop: float) -> None:
 
 
 def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the death rate of an ensemble, with its confidence interval, by the predicted rate.
+    """Draw one point: the death rate of an ensemble as a function of the predicted rate.
 
-    Both are numbers of events for each layer thickness that a pulse runs. The predicted rate is
-    that of barriers which stop pulses.
+    An error bar shows the confidence interval of the death rate. Both rates are numbers of events
+    for each layer thickness that a pulse runs. The predicted one counts barriers that stop pulses.
     """
     row = ensemble.row
     # The error bars below and above the mark.

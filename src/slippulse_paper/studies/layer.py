@@ -26,11 +26,12 @@ NEEDS = {"settings": ()}
 # Value of gamma if both Lamé constants are equal, and smaller values, at which pulses are wider.
 GAMMA = 2.0 / 3.0
 GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
-# Fracture energies divided by G_0 at the pre-stress LEVEL, and other levels at one fracture energy.
+# Fracture energies divided by G_0 at the pre-stress LEVEL. Pulses at other levels, and those of the
+# parts patch and coupled, have the standard energy.
 LEVEL = 0.8
 FRACTURE_ENERGIES = (0.05, 0.09, 0.21, 0.42, 0.7, 0.9)
 OTHER_LEVELS = (0.5, 0.65, 0.95)
-OTHER_LEVELS_ENERGY = 0.42
+STANDARD_ENERGY = 0.42
 # Half-length of the region without friction, in which the rupture starts, and the duration. They
 # are the values at GAMMA. At other gamma all lengths and times are multiplied by sqrt(GAMMA/gamma),
 # because the width of the paper's pulses is proportional to 1/sqrt(gamma).
@@ -127,7 +128,7 @@ def pulse_rows(gamma: float) -> Rows:
     Those of the part pulse also have the numbers of `one_dimensional_theory`.
     """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
-    cases += [(tau0, OTHER_LEVELS_ENERGY) for tau0 in OTHER_LEVELS]
+    cases += [(tau0, STANDARD_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
     for tau0, energy in cases:
         scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
@@ -258,7 +259,7 @@ def patch_rows(gamma: float) -> Rows:
     shear_wave_speed = math.sqrt(0.5 * gamma)
     # The layer has the height 1.
     strip_first_stick = 2.0 / shear_wave_speed
-    scene = uniform("displacement", gamma, LEVEL, weakening_of(OTHER_LEVELS_ENERGY, LEVEL, gamma))
+    scene = uniform("displacement", gamma, LEVEL, weakening_of(STANDARD_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
     rows = along_path("patch", scene, CELLS[:3])
     # There is one row for each station of a grid, but the region sticks only once in each run.
@@ -281,8 +282,11 @@ def crack_rows() -> Rows:
 
 
 def coupled_rows() -> Rows:
-    """Return the rows of pulses whose strength depends on the normal stress, on both sides."""
-    weakening = weakening_of(OTHER_LEVELS_ENERGY, LEVEL, GAMMA)
+    """Return the rows of pulses under a strength that depends on the normal stress.
+
+    The pulse on the right and the pulse on the left differ, so both are measured.
+    """
+    weakening = weakening_of(STANDARD_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
     scene = replace(scene, duration=COUPLED_DURATION)
     rows: Rows = []
@@ -308,7 +312,8 @@ def barrier_rows() -> Rows:
     balance = {"balance_distance": paper_transition_stress(prestress)[0]}
     rows: Rows = []
     for weakening in WEAKENINGS:
-        stopped = along_path("barrier", replace(scene, weakening=weakening), CELLS[:2], (1, -1))
+        with_weakening = replace(scene, weakening=weakening)
+        stopped = along_path("barrier", with_weakening, CELLS[:2], sides=(1, -1))
         rows += [row | balance for row in stopped]
     return rows
 

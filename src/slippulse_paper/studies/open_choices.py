@@ -28,8 +28,9 @@ NEEDS = {
 # Upper bound of the time of the first stick, divided by pi/sqrt(gamma).
 LATEST_FIRST_STICK = 1.7
 # Beyond this number of its widths a Gaussian is smaller than rounding errors.
-GAUSSIAN_REACH = 12.0
-# Nodes (between -1 and 1) and weights of Gauss-Legendre integration over a tent (see `stress`).
+GAUSSIAN_END_IN_WIDTHS = 12.0
+# Nodes (between -1 and 1) and weights of Gauss-Legendre integration over a tent (see
+# `stress_arrests`).
 TENT_NODES, TENT_WEIGHTS = np.polynomial.legendre.leggauss(24)
 # Columns of the paper's estimates.
 PAPER_COLUMNS = ["paper_transition_time", "paper_transition_length"]
@@ -73,14 +74,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts = []
     for damping_ratio, release in damping_choices.values:
         for rows in (
-            displacement(with_springs, damping_ratio, release),
-            stress(without_springs, damping_ratio, release, fractions),
+            displacement_transitions(with_springs, damping_ratio, release),
+            stress_arrests(without_springs, damping_ratio, release, fractions),
         ):
             parts.append(rows.assign(damping_ratio=damping_ratio, release=release))
     return pd.concat(parts, ignore_index=True)
 
 
-def displacement(runs: pd.DataFrame, damping_ratio: float, release: str) -> pd.DataFrame:
+def displacement_transitions(
+    runs: pd.DataFrame, damping_ratio: float, release: str
+) -> pd.DataFrame:
     """Return the transitions under a displacement boundary, where x = 0 is the first to stick.
 
     runs : left (the level on both sides), width of the Gaussian, and gamma of each run
@@ -90,13 +93,15 @@ def displacement(runs: pd.DataFrame, damping_ratio: float, release: str) -> pd.D
     for (level, width), group in runs.groupby(["left", "width"]):
         gammas = group["gamma"].to_numpy()
         latest_sticks = LATEST_FIRST_STICK * np.pi / np.sqrt(gammas)
+        # Beyond this position the pre-stress is uniform, and the front has a constant speed.
+        uniform_from = GAUSSIAN_END_IN_WIDTHS * width
+        speed = float(front_speed(level, damping_ratio, release))
         # Waves run at speed 1, so up to the time t only the positions |x| < t influence x = 0.
-        reach = max(float(latest_sticks.max()), 2.0 * GAUSSIAN_REACH * width)
+        reach = max(float(latest_sticks.max()), 2.0 * uniform_from)
         prestress = Prestress(level, level, width)
         fronts = fast_fronts(prestress, damping_ratio, release, reach, gammas.max())
         times = stick_times_of_centre(fronts, gammas, latest_sticks)
-        speed = float(front_speed(level, damping_ratio, release))
-        positions = front_positions(fronts, times, speed, GAUSSIAN_REACH * width)
+        positions = front_positions(fronts, times, speed=speed, uniform_from=uniform_from)
         rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
         rows["gamma"] = gammas
         rows["transition_time"] = times
@@ -136,7 +141,7 @@ def front_positions(
     return positions
 
 
-def stress(
+def stress_arrests(
     runs: pd.DataFrame, damping_ratio: float, release: str, fractions: list[float]
 ) -> pd.DataFrame:
     """Return arrests under a stress boundary, for nucleation by a Gaussian and by a tent.

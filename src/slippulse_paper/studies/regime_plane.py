@@ -58,7 +58,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     line : ends of a line along which one level is 0
     profile : slip velocity as a function of the position, for a nucleation of width W = 1
     """
-    still_fraction, model = settings["measure"]["still"], settings["model"]
+    # A rupture is a pulse if its velocity at x = 0 falls below this fraction of its largest one.
+    still_fraction = settings["measure"]["still"]
+    model = settings["model"]
     damping_ratio, release = model["damping_ratio"], model["release"]
     all_series = [
         *areas_and_lines(damping_ratio, release, still_fraction),

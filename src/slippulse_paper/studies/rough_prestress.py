@@ -2,8 +2,11 @@
 
 An ensemble is a set of runs whose pre-stress is drawn from the same random field with different
 seeds. Under a displacement boundary, pulses run to both sides, and their deaths are compared with
-the rate of fatal barriers. Under a stress boundary, only the right pulse runs on; it dies where the
-integral of the pre-stress behind it has fallen to 0, like a random walk (`rough_theory`).
+the rate of fatal barriers.
+
+Under a stress boundary, only the right pulse runs on. The push of this pulse is the integral of the
+pre-stress from x_*, where the left front stopped, to the pulse. As the pulse advances, its push
+makes a random walk, and the pulse dies where the push has fallen to 0 (`rough_theory`).
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -218,7 +221,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     Only the right pulse counts. Its death and its velocity are compared with the integral of the
     pre-stress of its own run. The survival curve is compared with that of a random walk.
 
-    smooth_push : push of the pulse without roughness (see `push_at`)
+    smooth_push : push that a pulse would have far away without roughness
     """
     parameters = ensemble.parameters
     fates = [fate_of_pulse(run, 1, parameters["stop"]) for run in ensemble.runs]
@@ -234,13 +237,12 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     curve = survival(fates).assign(part="survival")
     curve["predicted"] = predicted_survival(curve["distance"].to_numpy(), pushes, parameters)
 
+    # Variance of the push per distance.
     variance_rate = diffusivity(parameters)
     row = {"part": "ensemble"} | death_rate(fates, START)
-    row |= {
-        "push": smooth_push,
-        "diffusivity": variance_rate,
-        "death_scale": float(np.mean(pushes)) ** 2 / variance_rate,
-    }
+    # Distance over which the random walk of the push spreads by the mean push at START.
+    death_scale = float(np.mean(pushes)) ** 2 / variance_rate
+    row |= {"push": smooth_push, "diffusivity": variance_rate, "death_scale": death_scale}
     # Survival at the largest distance.
     row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
     row |= velocity_numbers(pulses[~pulses["died"]], variance_rate)

@@ -23,18 +23,17 @@ class Prose(Environment):
         return None if obj is None else super().getitem(obj, argument)
 
 
-def _text(value: object) -> object:
-    """Return what is shown for the value of an expression.
+def _without_filter(value: object) -> object:
+    """Return the text of an expression whose value is not written by a filter.
 
-    A number gets three significant digits, and None is shown as not measured. A text, such as the
-    result of a filter, does not change.
+    A number gets three significant digits, None becomes "not measured", and a text stays as it is.
     """
     if isinstance(value, Real):
         return number(float(value))
     return number(None) if value is None else value
 
 
-PROSE = Prose(undefined=StrictUndefined, finalize=_text)
+PROSE = Prose(undefined=StrictUndefined, finalize=_without_filter)
 PROSE.filters |= FILTERS
 
 
