@@ -305,7 +305,7 @@ CALLS = {
     "beta: 0.1; allowed: none, since damping_ratio is given": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, beta=0.1, damping_ratio=0.1
     ),
-    "order: 99; allowed: 3, 4, 5, 6, 7, 8 (in units of the layer: 0.02 m": lambda: BLOCK.scene(
+    "order: 99; allowed: 3, 4, 5, 6, 7, 8 (lengths are in units of 0.02 m": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, order=99
     ),
     "peak_in_pascal: 3000000.0; allowed: none without width_in_metres": lambda: BLOCK.scene(

@@ -167,8 +167,9 @@ class LayerMaterial:
     def units_in_words(self) -> str:
         """Text with the units of the model, for messages about non-dimensional numbers."""
         length, time = f"{self.scales.length:.4g} m", f"{self.scales.time:.4g} s"
-        stress = f"0 at {self.kinetic_strength:.6g} and 1 at {self.static_strength:.6g} Pa"
-        return f"in units of the layer: {length}, {time}; stress is {stress}"
+        units = f"lengths are in units of {length}, times in units of {time}"
+        zero, one = f"{self.kinetic_strength:.6g} Pa", f"{self.static_strength:.6g} Pa"
+        return f"{units}; the stress 0 means {zero}, and 1 means {one}"
 
     def convert_to_si(self, values: Any, quantity: str) -> Any:
         """Convert non-dimensional numbers to SI units.

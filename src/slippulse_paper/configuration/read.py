@@ -102,7 +102,7 @@ def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
         is_shipped = text == shipped.get(name, {}).get("statement")
         if not is_shipped and not is_readable(text):
             problem = f"published.{name}.statement: {short_repr(text)}"
-            problems.append(f"{problem}; allowed: text with formulas that pandoc reads")
+            problems.append(f"{problem}; allowed: text with LaTeX formulas that pandoc can convert")
     return problems
 
 

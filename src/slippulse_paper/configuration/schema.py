@@ -446,7 +446,7 @@ class Simulation(PhysicsOfSweep):
         "times and positions of the samples, if `record` contains samples", None
     )
     chunks: int = key(
-        "number of jobs among which the runs are split, at most one per run", 1, ge=1, le=1000
+        "number of jobs among which the runs are split, at most one job per run", 1, ge=1, le=1000
     )
 
     @model_validator(mode="after")
@@ -748,7 +748,8 @@ class LayerMap(Block):
         le=200,
     )
     chunks: int = key(
-        "number of jobs among which the points of the map are split, at most one per point",
+        "number of jobs among which the points of the map (pairs of gamma and fracture_energy) are"
+        " split, at most one job per point",
         1,
         ge=1,
         le=1000,
@@ -798,8 +799,8 @@ class Configuration(Block):
         "compromises between speed and accuracy, by name", min_length=1
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error; the spacing and the time step are chosen for"
-        " it, and those of the preset are ignored",
+        "largest relative numerical error that measured numbers may have; the program chooses"
+        " the spacing and the time step for this error, and ignores those of the preset",
         None,
     )
     # Make and the command line may say yes, on or 1.
