@@ -120,10 +120,11 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> float(damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0)) / 1e6
     5.0
     """
-    zone_modulus = as_numbers("shear_modulus", shear_modulus, above=0.0)
-    rock_modulus = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
+    # Shear moduli of the zone and of the rock.
+    zone = as_numbers("shear_modulus", shear_modulus, above=0.0)
+    rock = as_numbers("rock_shear_modulus", rock_shear_modulus, above=0.0)
     zone_height = as_numbers("thickness", thickness, above=0.0)
     rock_height = as_numbers("rock_thickness", rock_thickness, at_least=0.0)
     # The height of an equally stiff zone without rock.
-    total_height = zone_height + zone_modulus / rock_modulus * rock_height
-    return zone_modulus * as_numbers("slip", slip) / total_height
+    total_height = zone_height + zone / rock * rock_height
+    return zone * as_numbers("slip", slip) / total_height
