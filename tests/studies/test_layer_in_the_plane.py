@@ -193,6 +193,9 @@ def test_pulses_are_steady_if_friction_takes_less_than_the_layer_releases_and_di
     assert (points.loc[[0.3, 0.8], "outcome"] == "steady").all()
     assert (points.loc[[1.1], "outcome"] == "dying").all()
     assert (points["outcome"] == points["coarse_outcome"]).all()
+    conditions = points[["level_below", "level_above", "coarse_cells"]].drop_duplicates()
+    assert conditions.to_numpy() == pytest.approx(np.array([[0.72, 0.88, 10.0]]))
+    assert (points["last_position"] / points["step_position"]).to_numpy() == pytest.approx(2.4)
 
 
 SLIPS = {"uniform": (1.0, 1.0), "from_below": (0.99, 0.98), "from_above": (1.01, 1.02)}
@@ -231,6 +234,11 @@ def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
         assert distances.is_monotonic_decreasing and distances.iloc[0] > 0.4 * runs.iloc[0, 0]
         assert distances.iloc[-1] < 0.03 * runs.iloc[-1].min()
     assert thin.groupby("tau0").max().iloc[:, -1].is_monotonic_increasing
+    ends = study("layer_healing").query("part == 'run'")
+    assert (ends["grid_change"] < 0.1).all() and (ends["gamma"] == ends["gamma"].iloc[0]).all()
+    assert ends.groupby("thickness")["cells_in_weakening"].max().to_list() == pytest.approx(
+        [8 / 3, 4 / 3]
+    )
     # In the thick layer a narrow pulse fades and a wide one grows, on both grids.
     runs = (
         study("layer_healing")
