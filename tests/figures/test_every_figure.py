@@ -2,6 +2,7 @@
 
 from itertools import combinations, product
 from pathlib import Path
+from string import ascii_lowercase
 
 import numpy as np
 import pandas as pd
@@ -60,7 +61,7 @@ def test_it_fits_a_page_is_labelled_and_finite_and_no_two_texts_overlap(draw, tm
     # Panels beside others have letters in the order of reading.
     letters = [*filter(None, (axes.get_title(loc="left") for axes in figure.axes))]
     assert letters or len(figure.axes) == 1
-    assert letters == [f"({letter})" for letter in "abcdef"[: len(letters)]]
+    assert letters == [f"({letter})" for letter in ascii_lowercase[: len(letters)]]
     assert len(table) > 0 and not np.isinf(table.select_dtypes("number").to_numpy()).any()
     # The resolution is not what is tested, and the layout is found: both take most of the time.
     figure.set_layout_engine("none")
