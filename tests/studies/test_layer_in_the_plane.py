@@ -9,7 +9,7 @@ import pytest
 from slippulse_paper.claims import layer_claims
 from slippulse_paper.claims.rules import CAVEAT, FAILED, REPRODUCED
 from slippulse_paper.report.report_tables import layer_runs
-from slippulse_paper.studies import layer_healing
+from slippulse_paper.studies import layer, layer_healing
 from slippulse_paper.studies.layer_map import outcome
 
 CASE = ["gamma", "tau0", "fracture_energy"]
@@ -59,6 +59,19 @@ def test_pulses_are_followed_until_some_of_them_split(study):
         far.set_index([*CASE, "cells"])[values] / table.set_index([*CASE, "cells"])[values] - 1.0
     )
     assert drift[far["whole"].to_numpy()].abs().max().max() < 0.012
+
+
+def test_pulses_at_a_smaller_gamma_split_on_the_finest_grid_only():
+    gamma = 0.3
+    rows = layer.near_and_far(
+        layer.uniform("displacement", gamma, 0.8, layer.weakening_of(0.09, 0.8, gamma))
+    )[1]
+    far = pd.DataFrame(rows).query("station == 3").set_index(["part", "cells"])
+    split = far["split_position"] / layer.stretch(gamma)
+    assert split["far"][[20, 40]].isna().all() and split["damped"].isna().all()
+    assert split["far"][80] == pytest.approx(24.3, abs=0.1)
+    assert layer.is_very_brittle(layer.uniform("displacement", 0.3, 0.8, 0.1))
+    assert not layer.is_very_brittle(layer.uniform("displacement", 0.12, 0.8, 0.1))
 
 
 def test_damping_keeps_pulses_from_splitting(study):
@@ -167,6 +180,12 @@ def test_a_top_that_may_rise_makes_points_slide_for_more_than_two_crossings(stud
     free = study("layer").query("part == 'free' and station == 3 and cells == 40")
     crossing = np.sqrt(2.0 * free["speed"] ** 2 / free["gamma"] - 1.0)
     assert len(free) == 3 and (free["pulse_width"] / crossing).between(2.2, 2.6).all()
+    # Fronts under a held top are faster, so that points slide less than twice as long.
+    held = study("layer").query("part == 'held' and station == 3 and cells == 40")
+    times = [rows.set_index(CASE).eval("pulse_width / speed") for rows in (free, held)]
+    ratio = (times[0] / times[1]).droplevel(0)
+    assert ratio.index.get_level_values(0).to_list() == [0.5, 0.5, 0.8]
+    assert ratio.to_list() == pytest.approx([1.38, 1.14, 1.86], abs=0.01)
 
 
 def test_pulses_are_steady_if_friction_takes_less_than_the_layer_releases_and_die_else(study):
@@ -174,6 +193,9 @@ def test_pulses_are_steady_if_friction_takes_less_than_the_layer_releases_and_di
     assert (points.loc[[0.3, 0.8], "outcome"] == "steady").all()
     assert (points.loc[[1.1], "outcome"] == "dying").all()
     assert (points["outcome"] == points["coarse_outcome"]).all()
+    conditions = points[["level_below", "level_above", "coarse_cells"]].drop_duplicates()
+    assert conditions.to_numpy() == pytest.approx(np.array([[0.72, 0.88, 10.0]]))
+    assert (points["last_position"] / points["step_position"]).to_numpy() == pytest.approx(2.4)
 
 
 SLIPS = {"uniform": (1.0, 1.0), "from_below": (0.99, 0.98), "from_above": (1.01, 1.02)}
@@ -212,6 +234,11 @@ def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
         assert distances.is_monotonic_decreasing and distances.iloc[0] > 0.4 * runs.iloc[0, 0]
         assert distances.iloc[-1] < 0.03 * runs.iloc[-1].min()
     assert thin.groupby("tau0").max().iloc[:, -1].is_monotonic_increasing
+    ends = study("layer_healing").query("part == 'run'")
+    assert (ends["grid_change"] < 0.1).all() and (ends["gamma"] == ends["gamma"].iloc[0]).all()
+    assert ends.groupby("thickness")["cells_in_weakening"].max().to_list() == pytest.approx(
+        [8 / 3, 4 / 3]
+    )
     # In the thick layer a narrow pulse fades and a wide one grows, on both grids.
     runs = (
         study("layer_healing")
@@ -258,6 +285,21 @@ def test_a_pulse_that_splits_is_undecided(evidence):
     assert held.counts() == {"held": 6, "failed": 0, "undecided": 1}
     values = held.template_values
     assert values["followed"] == 7.0 and values["split_low"] > values["coarse_split_high"]
+    # Of the steady ones, that with the smallest gamma and fracture energy has the coarsest grid.
+    assert values["unresolved"] == 1.0 and values["unresolved_cells"] == pytest.approx(0.64)
+
+
+def test_a_split_on_a_coarse_grid_alone_makes_a_pulse_undecided(evidence):
+    table = evidence.tables["layer"]
+    is_coarse = (
+        (table["part"] == "far")
+        & np.isclose(table["fracture_energy"], 0.9)
+        & (table["gamma"] > 0.6)
+    )
+    extra = table[is_coarse & (table["cells"] == 20)].assign(cells=10, split_position=20.0)
+    evidence.tables["layer"] = pd.concat([table, extra])
+    counts = layer_claims.layer_regimes(evidence, "layer_regimes").counts()
+    assert counts == {"held": 5, "failed": 0, "undecided": 2}
 
 
 def test_pulses_fail_under_pressure_and_with_a_free_top(evidence):
@@ -275,7 +317,13 @@ def test_a_held_stress_is_judged_by_its_cracks_and_barriers(evidence):
 
 def test_a_pulse_that_has_not_settled_behind_a_step_is_a_caveat(evidence):
     judged = layer_claims.layer_stability(evidence, "layer_stability")
-    assert judged.verdict() == REPRODUCED and judged.template_values["has_settled"]
+    assert judged.verdict() == CAVEAT and judged.template_values["has_settled"]
+    # A pulse that needs a little more fracture energy than one of the points splits farther away.
+    assert judged.template_values["splitting_points"] == 1.0
+    assert judged.template_values["splitting_from"] > judged.template_values["last_position"]
+    table = evidence.tables["layer"]
+    evidence.tables["layer"] = table.assign(split_position=np.nan)
+    assert layer_claims.layer_stability(evidence, "layer_stability").verdict() == REPRODUCED
     # From 0.8 into 0.65 the slip still differs by more than 1 % from that of the uniform run.
     assert 0.01 < judged.template_values["downwards_difference"] < 0.02
     evidence.tolerance = lambda id: 0.01
@@ -308,5 +356,7 @@ def test_energy_limits_the_slip_and_the_crossing_time_limits_the_sliding(evidenc
 
 def test_the_table_of_runs_has_one_row_for_each_part_and_level(study):
     rows = layer_runs(study("layer")).splitlines()[2:]
-    assert len(rows) == 9
-    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 3 + 3 + 4 + 1 + 2
+    assert len(rows) == 14
+    # Pulses, those that are followed and damped, and the other parts.
+    assert sum(int(row.split("|")[-2]) for row in rows) == 8 + 8 + 2 + 3 + 3 + 3 + 4 + 1 + 2
+    assert "| 10, 20, 40, 80 |" in rows[0] or "| 10, 20, 40, 80 |" in rows[1]

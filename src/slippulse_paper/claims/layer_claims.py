@@ -27,6 +27,9 @@ BRITTLE_ENERGY = 0.4
 # The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
 # top and back, 2 sqrt(2/gamma).
 CROSSINGS_OF_TRANSITION = np.pi / np.sqrt(8.0)
+# The zone in which the strength falls is resolved if at least this number of cells is in its length
+# gamma d_c.
+RESOLVED_CELLS = 2.0
 
 
 def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
@@ -98,11 +101,15 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     decided = steady_on_two_grids(evidence, "coupled", evidence.tolerance(id))
     coupled = finest_rows(rows_at_station(evidence), "coupled")
     steady = coupled[[answer is True for answer in decided]]
+    failed = coupled[[answer is False for answer in decided]]
     return Qualitative(
         decided=list(decided),
         template_values={
             "steady_right": float((steady.index.get_level_values("side") > 0).sum()),
             "steady_left": float((steady.index.get_level_values("side") < 0).sum()),
+            "steady_to": float(steady.index.get_level_values("coupling").max()),
+            "failed_from": float(failed.index.get_level_values("coupling").min()),
+            "failed_sides": float(failed.index.get_level_values("side").nunique()),
             "weakest": float(coupled.index.get_level_values("coupling").min()),
             "strongest": float(coupled.index.get_level_values("coupling").max()),
             "split_low": float(coupled["split_position"].min()),
@@ -114,9 +121,9 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
 def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     """Judge that pulses end after one crossing of the layer also if its top may rise."""
     rows = rows_at_station(evidence)
-    ratio = crossings(finest_rows(rows, "free"))
-    # Not every pulse has also been simulated with a held top.
-    held_most = float(crossings(finest_rows(rows, "pulse")).reindex(ratio.index).max())
+    free, held = finest_rows(rows, "free"), finest_rows(rows, "held")
+    ratio, held_ratio = crossings(free), crossings(held)
+    longer = times_longer_with_free_top(rows)
     deviations = (ratio - 1.0).abs()
     uncertainty = float((change(rows, "free", "pulse_width") * ratio).max())
     return Approximate(
@@ -127,9 +134,18 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
         further={
             "crossing times, top free to rise: least": float(ratio.min()),
             "crossing times, top free to rise: most": float(ratio.max()),
-            "crossing times of the same pulses, top held: most": held_most,
+            "crossing times of the same pulses, top held: least": float(held_ratio.min()),
+            "crossing times of the same pulses, top held: most": float(held_ratio.max()),
+            "sliding time, top free to rise, divided by top held: least": float(longer.min()),
+            "sliding time, top free to rise, divided by top held: most": float(longer.max()),
         },
     )
+
+
+def times_longer_with_free_top(rows: pd.DataFrame) -> pd.Series:
+    """Return the sliding time with a top that may rise, divided by the one with a held top."""
+    free, held = (finest_rows(rows, part) for part in ("free", "held"))
+    return (free["pulse_width"] / free["speed"]) / (held["pulse_width"] / held["speed"])
 
 
 def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
@@ -171,56 +187,85 @@ def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
 
 
 def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.Series:
-    """Return whether each pulse is steady on both grids, for the part far, damped or coupled.
+    """Return whether each pulse is steady on its two finest grids.
 
     A pulse is steady if speed and slip change by less than the tolerance between the last two
-    stations, and if no point slides again behind it. The answer is None if the pulse splits, since
-    it does so elsewhere on another grid, or if the grids disagree.
+    stations, and if no point slides again behind it. The answer is None if the pulse splits on any
+    grid, since it does so elsewhere on another grid, or if the two finest grids disagree.
+
+    part : far, damped or coupled
     """
     last, before = rows_at_station(evidence), rows_at_station(evidence, before_last=1)
     compared = ["speed", "pulse_slip"]
-    steady, split = [], []
+    steady = []
     for coarser in (0, 1):
         pulses, pulses_before = (finest_rows(rows, part, coarser) for rows in (last, before))
         drift = (pulses[compared] / pulses_before[compared] - 1.0).abs()
         steady.append((drift < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0))
-        split.append(pulses["split_position"].notna())
-    is_decided = (steady[0] == steady[1]) & ~(split[0] | split[1])
+    split_grids = last[last["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
+    is_whole = split_grids.reindex(steady[0].index) == 0
+    is_decided = (steady[0] == steady[1]) & is_whole
     return steady[0].astype(object).where(is_decided, None)
 
 
 def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses of the part far split, with which fracture energies, and where.
 
-    Positions are those on the finest grid and on the next coarser one. One more pulse was followed,
-    which belongs to the part step. With damping, all pulses that split are counted again.
+    Positions are those on the finest grid and on the next coarser one, in units of H at the largest
+    gamma, and in longer units at a smaller gamma. Names with wide_ belong to pulses that split at a
+    smaller gamma. One more pulse was followed, which belongs to the part step. With damping, all
+    pulses that split are counted again. Steady pulses are unresolved if less than RESOLVED_CELLS
+    cells of their finest grid are in the length gamma d_c.
 
     tolerance : see `steady_on_two_grids`
     """
     rows = rows_at_station(evidence)
     pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
+    is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", tolerance)]
+    distance = float(followed["sample_position"].min())
+    unit = followed["sample_position"] / distance
+    coarser = finest_rows(rows, "far", coarser=1)["split_position"]
+    gammas, weakenings = (followed.index.get_level_values(name) for name in ("gamma", "weakening"))
+    followed = followed.assign(
+        split_at=followed["split_position"] / unit,
+        coarse_split_at=coarser.reindex(followed.index) / unit,
+        cells_in_weakening=gammas * weakenings * followed["cells"],
+        is_narrow=gammas == gammas.max(),
+        is_steady=is_steady,
+    )
     is_counted = followed.index.isin(pulses.index)
     counted, step = followed[is_counted], followed[~is_counted]
-    split = counted[counted["split_position"].notna()]
-    coarser = finest_rows(rows, "far", coarser=1).loc[split.index, "split_position"]
+    split = counted[counted["split_at"].notna()]
+    narrow, wide = split[split["is_narrow"]], split[~split["is_narrow"]]
+    steady = counted[counted["is_steady"]]
+    unresolved = steady[steady["cells_in_weakening"] < RESOLVED_CELLS]
     damped = steady_on_two_grids(evidence, "damped", tolerance)
     return {
         "pulses": float(len(pulses)),
         "followed": float(len(counted)),
         "split": float(len(split)),
-        "split_gamma": float(split.index.get_level_values("gamma").min()),
-        "split_energy": float(split["fracture_energy"].max()),
-        "split_low": float(split["split_position"].min()),
-        "split_high": float(split["split_position"].max()),
-        "coarse_split_low": float(coarser.min()),
-        "coarse_split_high": float(coarser.max()),
+        "narrow_gamma": float(narrow.index.get_level_values("gamma").max()),
+        "narrow_energy": float(narrow["fracture_energy"].max()),
+        "split_low": float(narrow["split_at"].min()),
+        "split_high": float(narrow["split_at"].max()),
+        "coarse_split_low": float(narrow["coarse_split_at"].min()),
+        "coarse_split_high": float(narrow["coarse_split_at"].max()),
+        "wide_gamma": float(wide.index.get_level_values("gamma").max()),
+        "wide_energy": float(wide["fracture_energy"].max()),
+        "wide_split_low": float(wide["split_at"].min()),
+        "wide_split_high": float(wide["split_at"].max()),
+        "wide_coarse_splits": float(wide["coarse_split_at"].count()),
         "step_energy": float(step["fracture_energy"].min()),
-        "step_split": float(step["split_position"].min()),
-        # Positions are in units of H at the largest gamma, and in longer units at smaller gamma.
-        "distance": float(followed["sample_position"].min()),
+        "step_split": float(step["split_at"].min()),
+        "distance": distance,
         "damped": float(len(damped)),
         "damped_steady": float(sum(answer is True for answer in damped)),
         "near_distance": float(pulses["sample_position"].min()),
+        "resolved_cells": RESOLVED_CELLS,
+        "unresolved": float(len(unresolved)),
+        "unresolved_gamma": float(unresolved.index.get_level_values("gamma").max()),
+        "unresolved_energy": float(unresolved["fracture_energy"].max()),
+        "unresolved_cells": float(unresolved["cells_in_weakening"].min()),
     }
 
 
@@ -291,7 +336,7 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     Fracture energies are divided by the largest energy that the layer can release, so the limit is
     1. Above the limit no pulse can exist. An outcome counts if two grids agree on it. The claim has
     a caveat if a pulse that enters a very different pre-stress has not become steady at the last
-    station.
+    station, or if pulses of a point split farther away (see `map_numbers`).
     """
     points = evidence.tables["layer_map"]
     agrees = points["outcome"] == points["coarse_outcome"]
@@ -308,11 +353,13 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)
+    on_map = map_numbers(evidence)
     return Qualitative(
         decided=decided,
-        condition=not has_settled,
+        condition=not has_settled or on_map["splitting_points"] > 0.0,
         further=further,
         template_values=step
+        | on_map
         | {
             "elasticity_ratios": float(brittle["gamma"].nunique()),
             "has_settled": has_settled,
@@ -320,12 +367,40 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     )
 
 
+def map_numbers(evidence: Evidence) -> dict[str, float]:
+    """Return the conditions of the runs of `layer_map`, and how many of its pulses split.
+
+    Positions are in units of H at the largest gamma, and in longer units at a smaller gamma. Little
+    fracture energy makes pulses split. So a point of the map counts (splitting_points) if, at its
+    gamma and level, a pulse of the part far splits on any grid and needs no less fracture energy.
+    The first split of any of these pulses is at the distance splitting_from.
+    """
+    points = evidence.tables["layer_map"]
+    narrowest = points.loc[points["gamma"].idxmax()]
+    conditions = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
+    numbers = {name: float(narrowest[name]) for name in (*conditions, "cells")}
+    far = rows_at_station(evidence).query("part == 'far'").dropna(subset=["split_position"])
+    positions = []
+    for point in points[points["fracture_energy"] < 1.0].itertuples():
+        is_near = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
+        split = far[is_near & (far["fracture_energy"] >= point.fracture_energy)]
+        if len(split):
+            stretch = point.step_position / numbers["step_position"]
+            positions.append(float(split["split_position"].min()) / stretch)
+    return numbers | {
+        "level": float(narrowest["tau0"]),
+        "splitting_points": float(len(positions)),
+        "splitting_from": min(positions, default=np.nan),
+    }
+
+
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Return the numbers for the section on the layer in two dimensions.
 
     Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high),
     which are defined in `pulse_quantities`. Others are changes from the second finest to the finest
-    grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers` and `across_a_step`.
+    grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers`, `across_a_step` and
+    `map_numbers` (map_NAME).
     """
     rows = rows_at_station(evidence)
     pulses = finest_rows(rows, "pulse")
@@ -344,10 +419,12 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     quantities = pulse_quantities(pulses)
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
     quantities["free"] = crossings(finest_rows(rows, "free"))
+    quantities["longer"] = times_longer_with_free_top(rows)
     for name, values in quantities.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in CONVERGED_QUANTITIES:
         numbers[f"{quantity}_change"] = float(change(rows, "pulse", quantity).max())
+    numbers |= {f"map_{name}": value for name, value in map_numbers(evidence).items()}
     return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
 
 
@@ -413,8 +490,12 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
 
 
 def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
-    """Return the largest speed of a pulse, on a coarse and on the finest grid of its run."""
-    rows = rows_at_station(evidence).query("part == 'pulse'")
+    """Return the largest speed of a pulse, on a coarse and on the finest grid of its run.
+
+    The speed damped_speed is the largest one with damping, on the finest grids.
+    """
+    at_station = rows_at_station(evidence)
+    rows = at_station.query("part == 'pulse'")
     fastest = rows.loc[rows["speed"].idxmax()]
     runs = rows[(rows[RUN_COLUMNS] == fastest[RUN_COLUMNS]).all(axis=1)].sort_values("cells")
     coarsest, finest = runs.iloc[0], runs.iloc[-1]
@@ -423,6 +504,7 @@ def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
         "coarse_speed": float(coarsest["speed"]),
         "fine_cells": float(finest["cells"]),
         "fine_speed": float(finest["speed"]),
+        "damped_speed": float(finest_rows(at_station, "damped")["speed"].max()),
     }
 
 
@@ -433,6 +515,7 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
     stations (far_speed, far_slip), and of the slip from the first station on (from_near_slip).
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
+    numbers["drawn_split"] = split_of_drawn_pulse(evidence)
     is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", np.inf)]
     for name, quantity, before_last in (
         ("far_speed", "speed", 1),
@@ -442,6 +525,16 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
         changes = change_with_distance(evidence, quantity, before_last)
         numbers[name] = float(changes[is_steady].max())
     return numbers
+
+
+def split_of_drawn_pulse(evidence: Evidence) -> float:
+    """Return where the pulse of the part field splits on its finest grid, in units of H."""
+    drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
+    far = rows_at_station(evidence).query("part == 'far'").sort_values("cells")
+    case = ["gamma", "tau0", "weakening"]
+    is_drawn = np.isclose(far[case].to_numpy(float), drawn[case].to_numpy(float)).all(axis=1)
+    positions = far["split_position"][is_drawn].dropna()
+    return float(positions.iloc[-1]) if len(positions) else np.nan
 
 
 def spread_with_level(pulses: pd.DataFrame) -> float:

@@ -34,8 +34,11 @@ STUDIED_QUANTITIES = (
 # Parts of the study of the two-dimensional layer, by their name in the table of its runs.
 LAYER_PARTS = {
     "pulse": "displacement held",
+    "far": "the same, followed farther",
+    "damped": "followed farther, with damping",
     "coupled": "displacement held, strength follows pressure",
     "free": "top free to rise",
+    "held": "top held, for comparison",
     "step": "displacement held, step of pre-stress",
     "crack": "stress held",
     "barrier": "stress held, barrier on the left",
@@ -320,7 +323,8 @@ def layer_runs(study: pd.DataFrame) -> str:
 
     The strength falls by Delta tau over the slip d_c. The zone behind the tip in which it falls has
     a length of the order of G d_c/Delta tau, which is gamma d_c in units of the height H. The table
-    has this length in cells of the finest grid of each run.
+    has this length in cells of the finest grid of each run. It also lists the numbers of cells over
+    the height H of all grids.
 
     study : the table of the study layer
     """
@@ -331,7 +335,6 @@ def layer_runs(study: pd.DataFrame) -> str:
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )
         for tau0, group in finest.groupby("tau0"):
-            # The column cells has the number of cells over the height of the layer.
             lengths = group["gamma"] * group["weakening"] * group["cells"]
             shortest, longest = number(lengths.min(), 2), number(lengths.max(), 2)
             row = (
@@ -340,7 +343,7 @@ def layer_runs(study: pd.DataFrame) -> str:
                 _listed_numbers(group["gamma"]),
                 _listed_numbers(group["fracture_energy"].dropna()) or DASH,
                 shortest if shortest == longest else f"{shortest} to {longest}",
-                _listed_numbers(group["cells"]),
+                _listed_numbers(runs["cells"][runs["tau0"] == tau0]),
                 len(group),
             )
             rows.append(row)

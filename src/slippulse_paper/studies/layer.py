@@ -39,8 +39,8 @@ NUCLEATION_HALF_LENGTH = 2.0
 DURATION = 48.0
 # Stations of the part pulse at GAMMA. A pulse is steady if it is the same at the last two.
 STATION_POSITIONS = (6.0, 13.0, 16.0)
-# Stations at which the same pulses are followed farther, on two grids. A pulse has split where a
-# point slides for less than this fraction of the time at the first of these stations.
+# Stations at which the same pulses are followed farther, on two or more grids. A pulse has split
+# where a point slides for less than this fraction of the time at the first of these stations.
 FAR_STATIONS = (16.0, 28.0, 40.0)
 SPLIT_FRACTION = 0.5
 # The front may become slower beyond the last of STATION_POSITIONS, by this fraction.
@@ -50,9 +50,12 @@ FRACTIONS_OF_PATH = (0.3, 0.6, 0.85)
 # Numbers of cells over the height. Pulses are brittle, and have finer grids, if the length
 # gamma d_c, over which the strength falls, is smaller than BRITTLE_LENGTH. If gamma < SMALL_GAMMA,
 # grids are coarser. Runs in which the product of the duration and the length of the solved part is
-# larger than LONG_RUN have the two coarsest grids only, and are not followed farther.
+# larger than LONG_RUN have the two coarsest grids only, and are not followed farther. If gamma d_c
+# is smaller than VERY_BRITTLE_LENGTH and gamma is not small, pulses have the finest grid, too,
+# because some of them split on no coarser one.
 CELLS = (10, 20, 40, 80)
 BRITTLE_LENGTH = 0.19
+VERY_BRITTLE_LENGTH = 0.06
 SMALL_GAMMA = 0.2
 LONG_RUN = 5000.0
 # On a finer grid the last stick may be later, by at most this fraction of its time plus this time.
@@ -102,6 +105,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     patch : short runs, until the region in which the rupture starts has stuck
     step : pulses that enter another pre-stress
     free : pulses in a layer whose top is free to rise
+    held : the same pulses in a layer whose top is held
     coupled : pulses with a strength that depends on the normal stress
 
     Under a stress boundary:
@@ -116,7 +120,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
         rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
-    rows += free_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
+    rows += free_top_rows() + held_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
     drawn = uniform("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
     field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
     return pd.concat([pd.DataFrame(rows), field])
@@ -143,7 +147,7 @@ def pulse_rows(gamma: float) -> Rows:
 
 
 def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
-    """Return the rows of one pulse at STATION_POSITIONS and, on two grids, at FAR_STATIONS.
+    """Return the rows of one pulse at STATION_POSITIONS and, on finer grids, at FAR_STATIONS.
 
     A pulse that splits is followed on all finer grids, too, and on two grids with damping.
     """
@@ -167,7 +171,7 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
         if is_followed:
             far_rows += followed("far", scene, run, 1)
     if any(math.isfinite(row["split_position"]) for row in far_rows):
-        far_rows += damped_rows(long_scene, followed_grids)
+        far_rows += damped_rows(long_scene, followed_grids[:2])
     return near_rows, far_rows
 
 
@@ -185,6 +189,12 @@ def is_brittle(scene: LayerScene) -> bool:
     return scene.gamma * scene.weakening < BRITTLE_LENGTH
 
 
+def is_very_brittle(scene: LayerScene) -> bool:
+    """Return whether gamma d_c is so short that a pulse may split on the finest grid only."""
+    is_short = scene.gamma * scene.weakening < VERY_BRITTLE_LENGTH
+    return is_short and scene.gamma > SMALL_GAMMA
+
+
 def is_long(scene: LayerScene) -> bool:
     """Return whether the run of a scene takes long, given its duration and its trail."""
     return scene.duration * scene.trail > LONG_RUN
@@ -199,17 +209,20 @@ def finer_grids(scene: LayerScene) -> Sequence[int]:
     """
     if scene.gamma < SMALL_GAMMA:
         return CELLS[1:3] if is_brittle(scene) and not is_long(scene) else CELLS[1:2]
-    return CELLS[1:] if is_brittle(scene) and scene.gamma == GAMMA else CELLS[1:3]
+    needs_finest = is_very_brittle(scene) or (is_brittle(scene) and scene.gamma == GAMMA)
+    return CELLS[1:] if needs_finest else CELLS[1:3]
 
 
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
-    """Return the numbers of cells of the two grids on which a pulse is followed farther.
+    """Return the numbers of cells of the grids on which a pulse is followed farther.
 
-    Brittle pulses that are narrow, and those at GAMMA, need the finer ones. There is none for long
-    runs.
+    These are two grids, and three for very brittle pulses. Brittle pulses that are narrow, and
+    those at GAMMA, need the finer ones. There is none for long runs.
     """
     if is_long(scene):
         return ()
+    if is_very_brittle(scene):
+        return CELLS[1:]
     needs_fine_grids = is_brittle(scene) and scene.gamma > SMALL_GAMMA
     return CELLS[1:3] if needs_fine_grids or scene.gamma == GAMMA else CELLS[:2]
 
@@ -273,6 +286,15 @@ def free_top_rows() -> Rows:
     for tau0, energy in FREE_TOP_PULSES:
         scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
         rows += along_path("free", replace(scene, top="free"), CELLS[:3])
+    return rows
+
+
+def held_top_rows() -> Rows:
+    """Return the rows of FREE_TOP_PULSES with a held top, on the same grids."""
+    rows: Rows = []
+    for tau0, energy in FREE_TOP_PULSES:
+        scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
+        rows += at_stations("held", scene, CELLS[:3], STATION_POSITIONS)
     return rows
 
 

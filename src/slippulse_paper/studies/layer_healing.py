@@ -111,6 +111,7 @@ def slips_on_both_grids(layer: Layer, pulse: Pulse) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "thickness": layer.thickness,
+            "gamma": GAMMA,
             **vars(pulse),
             "rate": RATE,
             "weakening": WEAKENING,
@@ -128,12 +129,16 @@ def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
     first_slip : slip at the first position, on the fine grid
     change, coarse_change : relative change of slip from the first to the last position, on the fine
         and on the coarse grid
+    grid_change : relative difference between the last slips on both grids
+    cells_in_weakening : cells of the fine grid in the length over which the strength falls
     """
     first, last = rows.iloc[0], rows.iloc[-1]
     changes = {
         "first_slip": first["pulse_slip"],
         "change": last["pulse_slip"] / first["pulse_slip"] - 1.0,
         "coarse_change": last["coarse_slip"] / first["coarse_slip"] - 1.0,
+        "grid_change": abs(last["pulse_slip"] / last["coarse_slip"] - 1.0),
+        "cells_in_weakening": GAMMA * WEAKENING * last["cells"],
     }
     return pd.concat([last, pd.Series(changes)])
 

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from ..configuration.chunks import runs_of
-from .layer import LEVEL, across_a_step, weakening_of
+from .layer import LEVEL, STEP_POSITION, across_a_step, stretch, weakening_of
 
 NEEDS = {"settings": ["figures.study_layer"]}
 
@@ -30,7 +30,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each point of the map, with the slips of its three runs and the outcome.
 
     Slips are those on the finer of two grids. The column coarse_outcome has the outcome on the
-    other one.
+    other one. The pre-stress changes at step_position from level_below or level_above to tau0.
 
     The settings may have a chunk, such as [3, 8] for the third of eight chunks. The table then has
     only the rows of this chunk.
@@ -53,7 +53,17 @@ def row_of_point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
         many
     """
     coarse, fine = slips_on_grids(gamma, energy, (cells // 2, cells))
-    row = {"gamma": gamma, "tau0": LEVEL, "fracture_energy": energy, "cells": cells}
+    row = {
+        "gamma": gamma,
+        "tau0": LEVEL,
+        "fracture_energy": energy,
+        "cells": cells,
+        "coarse_cells": cells // 2,
+        "level_below": RELATIVE_LEVELS_BEFORE["from_below"] * LEVEL,
+        "level_above": RELATIVE_LEVELS_BEFORE["from_above"] * LEVEL,
+        "step_position": STEP_POSITION * stretch(gamma),
+        "last_position": STATION_POSITIONS[-1] * stretch(gamma),
+    }
     return row | fine | {"outcome": outcome(fine), "coarse_outcome": outcome(coarse)}
 
 
