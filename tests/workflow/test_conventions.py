@@ -145,7 +145,11 @@ def test_jobs_run_without_the_profile_in_processes_of_snakemake(small):
 @pytest.mark.slow
 def test_an_archive_has_each_file_once_and_no_compiled_module(small):
     author = "-c user.name=a -c user.email=b"
-    for command in ("init -q", "add -A -- . :!results :!*.pyc", f"{author} commit -qm a"):
+    for command in (
+        "init -q",
+        "add -A -- . :!results :!.snakemake :!*.pyc",
+        f"{author} commit -qm a",
+    ):
         subprocess.run(["git", *command.split()], cwd=small, check=True)
     made(small, "--archive", "archive.tar.gz", "--", FIGURE, **OVERLAY)
     with tarfile.open(small / "archive.tar.gz") as archive:
