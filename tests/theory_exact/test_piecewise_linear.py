@@ -192,14 +192,22 @@ def test_each_stretch_of_a_table_that_reaches_1_nucleates():
     assert rupture.release_time(at) == pytest.approx(released, abs=0.02)
 
 
+def seconds_of_solution(profile):
+    """Return the least processor time of several solutions, since other work only adds to it."""
+    seconds = []
+    for _ in range(3):
+        start = time.process_time()
+        rupture = Rupture(profile, 0.65, 0.1, duration=8.0)
+        rupture.final_slip(np.linspace(-4.0, 4.0, 41))
+        seconds.append(time.process_time() - start)
+    return min(seconds)
+
+
 def test_the_cost_grows_in_proportion_to_the_pieces_at_most():
     rng, seconds = np.random.default_rng(3), []
     for count in (50, 1000):
         x = np.sort(np.append(rng.uniform(-25.0, 25.0, count - 1), 0.0))
         rough = rng.standard_normal(count).cumsum() / np.sqrt(count)
         tau = np.where(x == 0.0, 1.0, 0.5 + 0.2 * np.tanh(rough - rough.mean()))
-        profile, start = sp.Prestress.through(x, tau), time.process_time()
-        rupture = Rupture(profile, 0.65, 0.1, duration=8.0)
-        rupture.final_slip(np.linspace(-4.0, 4.0, 41))
-        seconds.append(time.process_time() - start)
+        seconds.append(seconds_of_solution(sp.Prestress.through(x, tau)))
     assert seconds[1] < 20.0 * seconds[0]
