@@ -41,8 +41,9 @@ onstart:
     # Without the profile of this folder, Snakemake starts a separate process for each job.
     if workflow.execution_settings.use_threads:
         WORKERS.start(workflow.cores)
-        # With a limit of the rate of jobs, Snakemake considers all waiting jobs many times per
-        # second. This takes a twentieth of the processor time, and local jobs need no limit.
+        # With its limit of the rate of jobs, Snakemake considers all waiting jobs many times per
+        # second. Local jobs need no limit. Without it a draft of all results takes 48 s instead of
+        # 51 s, and this process 3 s of processor time instead of 7 s.
         workflow.scheduler.job_rate_limiter = None
 
 

@@ -187,3 +187,13 @@ def test_a_copy_runs_its_own_sources_whatever_is_installed(project, tmp_path):
     made(folder, "--", "results/studies/damage_zone.csv", environment=foreign)
     assert (folder / "imported").read_text() == str(path)
     os.unlink(folder / "imported")
+
+
+@pytest.mark.slow
+def test_waiting_jobs_are_considered_only_when_a_job_has_ended(small):
+    """With its limit of the rate of jobs, Snakemake would consider them at least every second."""
+    rule = 'rule {0}:\n    output: "{0}.txt"\n    shell: "sleep 4; touch {{output}}"\n'
+    with (small / "Snakefile").open("a") as file:
+        file.write(rule.format("first") + rule.format("second"))
+    result = made(small, "--verbose", "--", "first.txt", "second.txt", **OVERLAY)
+    assert (result.stdout + result.stderr).count("Ready jobs: ") <= 4
