@@ -135,7 +135,7 @@ UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
 ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
-LAWS = "friction law of sliding blocks, explained below; by default that of `model`"
+LAWS = "friction law of sliding blocks, explained below; default: its value in `model`"
 IN_SI = (
     "properties of a layer in SI units; lengths, stresses and times of the scene"
     " are then in SI units too"
@@ -342,15 +342,15 @@ class Physics(Block):
     boundary: Boundary = key(
         "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
-    scheme: Scheme | None = key("numerical scheme; by default that of `model`", None)
+    scheme: Scheme | None = key("numerical scheme; default: its value in `model`", None)
     resolved_blocks: int | None = key(
-        "smallest pulse width; a run with a narrower pulse is flagged; by default that"
-        " of `model` [dx]",
+        "smallest pulse width; a run with a narrower pulse is flagged; default: its"
+        " value in `model` [dx]",
         None,
         ge=1,
     )
     max_step: Positive | None = key(
-        "largest time step; by default that of the preset, or the largest stable step"
+        "largest time step; default: the step of the preset, or the largest stable step"
         " if this is smaller [dx]",
         None,
     )
@@ -427,7 +427,7 @@ class Simulation(PhysicsOfSweep):
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key(
-        "damping ratio beta/dx; by default that of `model`", None
+        "damping ratio beta/dx; default: its value in `model`", None
     )
     beta: Distinct[NonNegative] | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
@@ -436,10 +436,10 @@ class Simulation(PhysicsOfSweep):
     spacing: SpacingRule = key("rule for the block spacing", SpacingRule(), RULE)
     dx: Distinct[Spacing] | None = key("instead of `spacing`: block spacings [H]", None)
     release: Release | Distinct[Release] | None = key(
-        "release rule; by default that of `model`", None, RELEASED
+        "release rule; default: its value in `model`", None, RELEASED
     )
     friction_ratio: NonNegative | None = key(
-        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; by default that of `model`", None
+        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; default: its value in `model`", None
     )
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
@@ -499,7 +499,7 @@ class LayerKeys(Block):
     normal_stress: Positive = key("normal stress on the interface [Pa]")
     top: Top | None = key(
         "what is held on top: `held` means the displacement, `stress` means the stress;"
-        " by default that of `boundary`",
+        " default: as `boundary` says",
         None,
     )
 
@@ -521,13 +521,15 @@ class NamedScene(Profile, PhysicsOfScene):
     title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
     damping_ratio: NonNegative | None = key(
-        "damping ratio beta/dx; by default that of `model`", None
+        "damping ratio beta/dx; default: its value in `model`", None
     )
     beta: NonNegative | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
-    dx: Positive | None = key("block spacing, at most 1; by default that of the preset [H]", None)
-    release: Release | None = key("release rule; by default that of `model`", None)
+    dx: Positive | None = key(
+        "block spacing, at most 1; default: the spacing of the preset [H]", None
+    )
+    release: Release | None = key("release rule; default: its value in `model`", None)
     duration: Positive = key("duration of the run [H/c]")
     layer: LayerKeys | None = key(IN_SI, None)
 
@@ -800,7 +802,7 @@ class Configuration(Block):
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
         "largest relative numerical error that measured numbers may have; the program chooses"
-        " the spacing and the time step for this error, and ignores those of the preset",
+        " the spacing and the time step for this error, and ignores the values in the preset",
         None,
     )
     # Make and the command line may say yes, on or 1.
