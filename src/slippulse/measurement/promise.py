@@ -49,7 +49,7 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     """
     if run["run_flags"]:
         return set()
-    # Some numbers are covered only if the front is fast on the left, on the right, or on both sides.
+    # Some numbers are covered only if the front is fast on one side, or on both sides.
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}

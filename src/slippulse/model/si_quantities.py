@@ -96,7 +96,10 @@ def converted_run(run: Any, convert: Converter) -> Any:
 
 
 def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[str, Any]:
-    """Return all numbers by name; those that have a unit are converted."""
+    """Return all numbers by name; those that have a unit are converted.
+
+    The parts of the pre-stress, which are recorded as a JSON text, are converted, too.
+    """
     converted = dict(numbers)
     for name in QUANTITIES.keys() & converted.keys():
         if converted[name] is not None:

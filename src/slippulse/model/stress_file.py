@@ -92,6 +92,7 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
     units = {"x": table.x_unit, "prestress": table.prestress_unit}
     for name, unit in units.items():
         if unit not in DIMENSIONLESS_UNITS[name]:
+            # The empty unit, which is allowed, is not listed.
             allowed = ", ".join(filter(None, DIMENSIONLESS_UNITS[name]))
             raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {allowed}")
     for end, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
@@ -206,7 +207,7 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
 def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
     """Raise StressFileError if there are fewer than two rows, or if positions are not in order.
 
-    Positions increase from row to row. Two rows, but not three, may have the same position, at
+    Positions must increase from row to row. Two rows, but not three, may have the same position, at
     which the pre-stress jumps.
 
     rows : numbers of the rows in the file, for the message

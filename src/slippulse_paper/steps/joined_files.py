@@ -1,7 +1,7 @@
 """Joining of the files of the chunks of a sweep.
 
-A joined file is equal, byte by byte, to the file of the same sweep without chunks. Neighbouring runs
-are in different chunks. A run has two numbers: one in its chunk, and one in the sweep.
+A joined file is equal, byte by byte, to the file of the same sweep without chunks. Neighbouring
+runs are in different chunks. A run has two numbers: one in its chunk, and one in the sweep.
 """
 
 from collections.abc import Sequence
