@@ -61,15 +61,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
-    # The level into which the right front runs: that beyond the last step, if there are steps.
-    row["beyond"] = row["right"]
-    profile = prestress_from(run.attrs)
-    if profile.steps:
-        _, row["beyond"] = profile.steps[-1]
-    row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
-    if profile.points:
-        row["steps_and_bumps"] = shortened_table(run.attrs["steps_and_bumps"])
-        row |= crossed_prestress(run, settings["front_window"])
+    row |= profile_columns(run, settings["front_window"])
     # Fronts, transition and trailing edge.
     for side in ("right", "left"):
         line = fit_front(run, settings["front_window"], side)
@@ -102,6 +94,25 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
         if run.attrs["boundary"] == "stress":
             row |= far_field(run)
     return row, pulse
+
+
+def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
+    """Return the columns of a run that describe its pre-stress, in addition to PARAMETERS.
+
+    beyond : level into which the right front runs: that of the last step, if there are steps
+    profile, seed : labels of the profile, if the run has them
+    steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
+    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`
+    """
+    profile = prestress_from(run.attrs)
+    row = {"beyond": run.attrs["right"]}
+    if profile.steps:
+        _, row["beyond"] = profile.steps[-1]
+    row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
+    if profile.points:
+        row["steps_and_bumps"] = shortened_table(run.attrs["steps_and_bumps"])
+        row |= crossed_prestress(run, window)
+    return row
 
 
 def shortened_table(profile_as_json: str) -> str:
