@@ -80,13 +80,14 @@ def full_target(target: str) -> str:
     """
     name, _, ending = target.removeprefix("results/figures/").partition(".")
     modules = PROJECT / "src/slippulse_paper/figures"
-    # A figure of the paper may be given by its number alone.
+    # A figure of the paper may be given by its number alone. Its module has the full name.
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
         number = int(numbered[1])
         for path in modules.glob(f"fig{number:02d}_*.py"):
             name = path.stem
     has_module = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
+    # The figures of user-defined sweeps have no modules of their own.
     is_figure = has_module or name.startswith("sweep_")
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
 
@@ -144,18 +145,18 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
 
     Prints how many results these are, with the first one and its reason.
     """
-    problems = changed_results()
-    if not problems:
+    reasons = changed_results()
+    if not reasons:
         return []
     # If Snakemake refuses the targets, the run itself prints the reason later.
     listing = list_required_files(options, targets, stderr=subprocess.DEVNULL)
     required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
-    names = [name for name in problems if name in required_outputs]
+    names = [name for name in reasons if name in required_outputs]
     if not names:
         return []
     first = names[0]
     results_are = "1 result is" if len(names) == 1 else f"{len(names)} results are"
-    print(f"{results_are} made again: {first}: {problems[first]}", file=sys.stderr)
+    print(f"{results_are} made again: {first}: {reasons[first]}", file=sys.stderr)
     return ["--forcerun", *names]
 
 

@@ -227,7 +227,8 @@ def sliding_at_once(run: AnyRun) -> float:
     release, stick = release[has_slipped], stick[has_slipped]
     # The number is largest right after a release, or at the start of the second half.
     times = np.append(start, release[release > start])
-    # The times are nearly in order, for which a stable sort is fast. NaN is sorted last.
+    # Count the releases and the sticks up to each time. The times are nearly in order, for which a
+    # stable sort is fast. NaN is sorted last, so that it is not counted.
     released_count = np.searchsorted(np.sort(release, kind="stable"), times, side="right")
     stuck_count = np.searchsorted(np.sort(stick, kind="stable"), times, side="right")
     return float(np.max(released_count - stuck_count))

@@ -91,5 +91,6 @@ def grid_tables(
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
     studies = pd.DataFrame([grid_study(three_values, factors) for three_values in values])
     runs = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
+    # Each run is repeated once for each quantity.
     rows = runs.loc[runs.index.repeat(len(names))].reset_index(drop=True)
     return rows.assign(quantity=names * len(finest)).join(studies)

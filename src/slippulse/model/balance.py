@@ -213,8 +213,8 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
     for interval in reversed(prestress.intervals):
         left, right, left_value, right_value = interval
         if left_value * right_value < 0.0:
-            zero = left - left_value * (right - left) / (right_value - left_value)
-            ranges = [(zero, right), (left, zero)]
+            sign_change = left - left_value * (right - left) / (right_value - left_value)
+            ranges = [(sign_change, right), (left, sign_change)]
         else:
             ranges = [(left, right)]
         for part_left, part_right in ranges:

@@ -122,9 +122,9 @@ class Prestress(ExplainsRemovedNames):
         are_distinct = 0.0 not in positions and len({*positions}) == len(positions)
         allowed = "different positions, none of them 0 (see left, right)"
         check_that(are_distinct, "prestress.steps", positions, allowed)
-        has_peak = self.width is not None or self.peak == 1.0
+        is_peak_allowed = self.width is not None or self.peak == 1.0
         allowed = "1 without a width, since there is then no Gaussian"
-        check_that(has_peak, "prestress.peak", self.peak, allowed)
+        check_that(is_peak_allowed, "prestress.peak", self.peak, allowed)
         if self.points:
             self._check_points()
 
@@ -471,13 +471,14 @@ def prestress_from(attributes: Mapping) -> Prestress:
 def _make_prestress(parts_as_json: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
     """Make a pre-stress from its four numbers, and from its steps, bumps and points as JSON."""
     try:
+        # A profile that is not a table has no points.
         recorded = {"points": ()} | json.loads(parts_as_json)
         parts = {name: recorded[name] for name in (*PART_RANGES, "points")}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps, and points of a table"
         text = short_repr(parts_as_json)
         raise ValueError(f"steps_and_bumps: {text}; allowed: {allowed}") from None
-    # A measured table replaces the points of a long table by a digest, which is text.
+    # In a row of measured numbers, a digest (text) may take the place of many points.
     is_digest = isinstance(parts["points"], str)
     allowed = "the points themselves, which are in the data file of the run"
     check_that(not is_digest, "steps_and_bumps points", parts["points"], allowed)

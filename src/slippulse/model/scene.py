@@ -224,7 +224,7 @@ class Scene:
         is_resolved = peak_width is None or peak_width >= self.dx
         allowed = f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(is_resolved, "prestress.width", peak_width, allowed)
-        # The lattice begins with all blocks at which the rupture may nucleate.
+        # The lattice has all bumps and all points that reach 1 from the start, which needs memory.
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)

@@ -90,6 +90,7 @@ def choose_step(scheme: str, order: int, *ratios: float) -> float:
     ratios : beta/dx, gamma dx^2 and, optionally, alpha dx (see `largest_step`)
     """
     stable = STABILITY_MARGIN * largest_step(scheme, order, *ratios)
+    # Only this scheme takes Taylor steps.
     if scheme != "localised":
         return stable
     return min(stable, accurate_step(MAX_STEP_ERROR, order, *ratios))

@@ -26,7 +26,8 @@ MAX_FILE_BYTES = 20_000_000
 NUMBER_PATTERN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 # Characters that may separate the cells of a row. If the first row has none of them, spaces do.
 DELIMITERS = ",;\t"
-NETCDF_BEGINNINGS = (b"CDF", b"\x89HDF")
+HDF_BEGINNING = b"\x89HDF"
+NETCDF_BEGINNINGS = (b"CDF", HDF_BEGINNING)
 NETCDF_SUFFIXES = (".nc", ".nc4", ".cdf", ".h5")
 
 
@@ -232,7 +233,8 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
 
     import xarray as xr
 
-    engine = "h5netcdf" if content.startswith(NETCDF_BEGINNINGS[1]) else "scipy"
+    # A netCDF-4 file is an HDF5 file.
+    engine = "h5netcdf" if content.startswith(HDF_BEGINNING) else "scipy"
     try:
         data = xr.load_dataset(BytesIO(content), engine=engine, decode_times=False)
     except Exception as error:

@@ -53,13 +53,13 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     """
     chunks = _read_as_text(paths)
     has_factor = "factor" in chunks[0]
-    lattices = chunks[0]["factor"].nunique() if has_factor else 1
-    run_numbers = _run_numbers(paths, [len(chunk) // lattices for chunk in chunks])
+    lattice_count = chunks[0]["factor"].nunique() if has_factor else 1
+    run_numbers = _run_numbers(paths, [len(chunk) // lattice_count for chunk in chunks])
     for path, chunk, numbers in zip(paths, chunks, run_numbers, strict=True):
-        if len(chunk) != lattices * len(numbers):
+        if len(chunk) != lattice_count * len(numbers):
             raise UnreadableFile(path, NOT_ONE_SWEEP)
         # Each row gets the number of its lattice, and the number of its run in the sweep.
-        chunk.index = pd.MultiIndex.from_product([range(lattices), numbers])
+        chunk.index = pd.MultiIndex.from_product([range(lattice_count), numbers])
     # The columns of the joined table have the order of the first chunk in this list. It must be the
     # chunk with the first run of the sweep.
     chunks.sort(key=lambda chunk: chunk.index[0])

@@ -34,6 +34,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     measured = _load_measured(files["finest"], is_chunk="chunk" in any_sweep)
     tables = (measured, *coarser_tables.values())
     uncertainties = grid_tables(tables, tuple(coarser_tables), run_columns(measured.columns))
+    # The relative accuracy that the user requires, if there is one.
     promise = any_sweep["accuracy"].get("promise")
     if promise is not None:
         fraction = settings["measure"]["fraction"]

@@ -46,6 +46,7 @@ class WorkerPool:
         """
         try:
             self._submit(workers, run_job, job).result()
+        # An executor whose process has failed cannot be used again. The next job makes a new one.
         except BrokenProcessPool:
             self._executor = None
             raise JobFailed("its process was killed") from None
