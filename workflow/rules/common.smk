@@ -240,7 +240,7 @@ def note_of(needs, *keys):
 
 @cache
 def sweep_of(name):
-    """Return the resolved simulation with a name: all its values, including defaults."""
+    """Return a simulation by its name, with all values that its results depend on (resolved)."""
     return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY)
 
 
