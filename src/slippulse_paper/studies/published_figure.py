@@ -1,10 +1,10 @@
 """Fit tau_0 and gamma to the published space-time figure, for each damping ratio and release rule.
 
 A reading is a number that was read off the figure, such as the position of the trailing edge at a
-time. A trial is a pair (tau_0, gamma), and has a value for each reading. This is the value of the
-exact solution plus a correction, because the figure was drawn from a lattice with a finite spacing.
-The correction comes from a lattice run. It is most important for the largest velocity, which is
-still growing when the figure ends.
+time. A trial is a pair (tau_0, gamma), and has a value for each reading. This value is taken from a
+lattice run, because the figure was drawn from a lattice with a finite spacing. The table also has
+the value of the exact solution, and the correction, which is the lattice value minus the exact one.
+It is largest for the largest velocity, which is still growing when the figure ends.
 """
 
 from itertools import product
@@ -73,14 +73,13 @@ ARROW_STEPS = 1
 class Optimum(NamedTuple):
     """The trial that fits some readings best.
 
-    exact, correction : values of the exact solution, and corrections, for each reading
+    values : the lattice value for each reading
     slopes : derivatives of the independent pulls (see `LeftPanel.independent_pulls`) with respect
         to tau_0 (column 0) and gamma (column 1), before the last step of the fit
     """
 
     trial: np.ndarray
-    exact: np.ndarray
-    correction: np.ndarray
+    values: np.ndarray
     slopes: np.ndarray
 
 
@@ -287,22 +286,22 @@ class LeftPanel:
         return self.combinations @ (values - self.drawn)
 
     def slopes(
-        self, trial: np.ndarray, exact: np.ndarray, damping_ratio: float, release: str
+        self, trial: np.ndarray, values: np.ndarray, damping_ratio: float, release: str, dx: float
     ) -> np.ndarray:
         """Return the derivatives of the independent pulls at a trial.
 
         Column 0 has the derivatives with respect to tau_0, and column 1 those with respect to
         gamma.
 
-        exact : the exact values at the trial
+        values : the lattice values at the trial
         """
         # One row for each parameter and one column for each reading.
         derivatives = []
         for parameter in range(len(trial)):
             change = np.zeros_like(trial)
             change[parameter] = RELATIVE_DIFFERENCE * trial[parameter]
-            changed = self.exact_values(trial + change, damping_ratio, release)
-            derivatives.append((changed - exact) / change[parameter])
+            changed = self.lattice_values(trial + change, damping_ratio, release, dx)
+            derivatives.append((changed - values) / change[parameter])
         return self.combinations @ np.array(derivatives).T
 
     def fit(
@@ -319,17 +318,18 @@ class LeftPanel:
         everything = np.ones_like(without_arrows)
         best = self.optimum(damping_ratio, release, dx, guess, steps, without_arrows)
         # The second fit begins with a step from the first optimum, with the slopes known there.
-        pulls = self.independent_pulls(best.exact + best.correction)
+        pulls = self.independent_pulls(best.values)
         guess_with_arrows = best.trial - least_squares(best.slopes, pulls)
         best_with_arrows = self.optimum(
             damping_ratio, release, dx, guess_with_arrows, ARROW_STEPS, everything
         )
-        labels = {"release": release, "damping_ratio": damping_ratio, "dx": dx}
         rows = [
-            self.rows_of(best, without_arrows).assign(part="profile", **labels),
-            self.rows_of(best_with_arrows, everything).assign(part="arrows", **labels),
+            self.rows_of(best, without_arrows, damping_ratio, release).assign(part="profile"),
+            self.rows_of(best_with_arrows, everything, damping_ratio, release).assign(
+                part="arrows"
+            ),
         ]
-        return Fit(best.trial, pd.concat(rows))
+        return Fit(best.trial, pd.concat(rows).assign(dx=dx))
 
     def optimum(
         self,
@@ -349,20 +349,22 @@ class LeftPanel:
         """
         trial = guess
         for step in range(steps + 1):
-            exact = self.exact_values(trial, damping_ratio, release)
-            correction = self.lattice_values(trial, damping_ratio, release, dx) - exact
-            pulls = self.independent_pulls(exact + correction)
+            values = self.lattice_values(trial, damping_ratio, release, dx)
             if step < steps:
-                slopes = self.slopes(trial, exact, damping_ratio, release)
+                slopes = self.slopes(trial, values, damping_ratio, release, dx)
+                pulls = self.independent_pulls(values)
                 trial = trial - least_squares(slopes[is_fitted], pulls[is_fitted])
-        return Optimum(trial, exact, correction, slopes)
+        return Optimum(trial, values, slopes)
 
-    def rows_of(self, best: Optimum, is_fitted: np.ndarray) -> pd.DataFrame:
+    def rows_of(
+        self, best: Optimum, is_fitted: np.ndarray, damping_ratio: float, release: str
+    ) -> pd.DataFrame:
         """Return one row for each reading, with its values and pulls at an optimum.
 
         Each row also has the optimum and the errors of tau_0 and gamma.
         """
-        slopes, values = best.slopes[is_fitted], best.exact + best.correction
+        slopes = best.slopes[is_fitted]
+        exact = self.exact_values(best.trial, damping_ratio, release)
         # The inverse of this matrix has the variances of tau_0 and gamma on its diagonal.
         tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
         return self.readings.drop(columns=["arrow", "shared_error"]).assign(
@@ -370,10 +372,12 @@ class LeftPanel:
             gamma=best.trial[1],
             tau0_error=tau0_error,
             gamma_error=gamma_error,
-            exact=best.exact,
-            correction=best.correction,
-            pull=self.pulls(values),
-            independent_pull=self.independent_pulls(values),
+            release=release,
+            damping_ratio=damping_ratio,
+            exact=exact,
+            correction=best.values - exact,
+            pull=self.pulls(best.values),
+            independent_pull=self.independent_pulls(best.values),
             weight=is_fitted.astype(float),
         )
 
