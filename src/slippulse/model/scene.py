@@ -405,10 +405,10 @@ def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
 
     values : parameters of a scene by name
     """
-    dx = values["dx"]
+    dx, stiffness = values["dx"], values["gamma"]
     return StabilityRatios(
         damping_ratio=values["beta"] / dx,
-        stiffness=values["gamma"] * dx**2,
+        stiffness=stiffness * dx**2,
         friction_slope=friction.traits.max_rate_slope * dx,
     )
 
