@@ -25,10 +25,10 @@ class LeadingPulse(NamedTuple):
 
     front: float  # distance from x = 0; it can lie between two blocks
     speed: float  # front speed
-    width: float  # distance from the front to the trailing edge; NaN if no block has stuck
-    peak_velocity: float  # largest slip velocity, from a parabola through three blocks
-    peak_distance: float  # distance of the peak from x = 0
-    slip: float  # mean final slip over half a pulse width behind the trailing edge; NaN without one
+    width: float = np.nan  # from the front to the trailing edge; NaN if no block has stuck
+    peak_velocity: float = np.nan  # largest slip velocity, from a parabola through three blocks
+    peak_distance: float = np.nan  # distance of the peak from x = 0
+    slip: float = np.nan  # mean final slip over half a width behind the trailing edge, if any
     pulses: int = 1  # number of pulses on the right; 0 if the front has stopped
 
 
@@ -45,14 +45,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     front, has_stopped = front_at_end(run, distance, velocity, speed)
     # An exact solution may not know all slip velocities.
     if np.isnan(velocity).any():
-        return LeadingPulse(
-            front=front,
-            speed=speed,
-            width=np.nan,
-            peak_velocity=np.nan,
-            peak_distance=np.nan,
-            slip=np.nan,
-        )
+        return LeadingPulse(front, speed)
     # The slices of the blocks in each pulse.
     pulses = [] if has_stopped else sliding_stretches(velocity)
     # Slip velocity of the leading pulse alone, 0 everywhere if there is no pulse.

@@ -94,11 +94,11 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
-    # The columns that identify a run are taken from the table of measured numbers.
+    # The columns that identify a run are added again below, from the table of measured numbers.
     keys = run_columns(measured.columns)
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=keys)
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets
-    # all rows that a table of the undivided sweep has.
+    # all rows that a table of the undivided sweep has; the added ones are empty.
     quantities = studied_columns(measured, keys)
     rows = pd.MultiIndex.from_product([range(len(measured)), quantities], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
