@@ -356,7 +356,7 @@ def report_changed_results():
     reason = problems[names[0]]
     example = reason if len(names) == 1 else f"{names[0]}: {reason}"
     shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({example})"
-    remedy = "To undo this, run make replicate, or snakemake --forcerun and their names"
+    remedy = "To undo this, run make replicate, or snakemake --forcerun with these names"
     print(f"{results_are} changed: {shown}. {remedy}", file=sys.stderr)
 
 
