@@ -362,6 +362,7 @@ def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> Layer
         weakening=weakening,
         duration=OTHER_DURATION * stretch(gamma),
         nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
+        precision="single",
     )
 
 

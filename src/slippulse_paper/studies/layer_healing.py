@@ -188,4 +188,5 @@ def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
         nucleation=pulse.patch_half_length / thickness,
         rate=RATE,
         trail=layer.trail / thickness,
+        precision="single",
     )
