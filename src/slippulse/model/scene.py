@@ -168,7 +168,7 @@ class Scene:
     scheme: str = "localised"
     max_step: float = number("largest time step divided by dx", r"\Delta t/\Delta x", 0.2)
     order: int = number(
-        "order of the Taylor step, or observed order of convergence of a number",
+        "order of the Taylor step, or the observed order of a number as the spacing falls",
         "n",
         4,
         integer=True,
