@@ -151,7 +151,7 @@ def transition_functions(level: float, levels: Sequence[float]) -> NumberFunctio
     transition_peak_... : the rupture begins at a Gaussian of width W = 1
 
     The pre-stress is ``level``, or the lowest or the highest of ``levels``, which are in ascending
-    order. The argument 1 or SOFT_GAMMA below is gamma.
+    order. For a Gaussian, gamma is 1 or SOFT_GAMMA.
     """
     lowest, highest = levels[0], levels[-1]
     return {

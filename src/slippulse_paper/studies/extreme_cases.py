@@ -204,7 +204,7 @@ def small_gammas() -> Iterator[Case]:
 
 
 def large_gammas() -> Iterator[Case]:
-    """Yield cases of front speeds from a small to a large gamma dx^2, which should be flagged.
+    """Yield cases of front speeds at increasing gamma dx^2. Large values should be flagged.
 
     In the last case, no front on the lattice is faster than the waves.
     """

@@ -145,7 +145,7 @@ simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 def measured(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
-    A few quantities need other runs than the rest, so they are treated first.
+    The first three quantities below are not measured like all others, and come first.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
