@@ -95,7 +95,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def left_panel_rows(panel: "LeftPanel", release: str, part: str) -> pd.DataFrame:
-    """Return the rows of one release rule, with a fit for each of its damping ratios."""
+    """Return the rows of one release rule, with a fit for each of its damping ratios.
+
+    part : "profile" to fit all readings except the arrows, or "arrows" to fit all readings
+    """
     rows: list[pd.DataFrame] = []
     trials = [FIRST_GUESS]
     for damping_ratio in DAMPING_RATIOS[release]:
@@ -272,7 +275,7 @@ class LeftPanel:
         """Fit tau_0 and gamma by least squares, and return one row for each reading.
 
         Each row has the best tau_0 and gamma, their errors, and the values and pulls of the
-        reading at this optimum.
+        reading at this optimum. A pull is a deviation from the reading, divided by its error.
 
         guess : tau_0 and gamma at which the fit begins
         with_arrows : whether the lengths of arrows are fitted, too
