@@ -210,7 +210,7 @@ class Curve:
 
     @cached_property
     def end_values(self) -> np.ndarray:
-        """Values of x, T, T + x and T - x at the left ends (row 0) and right ends (row 1) of panels.
+        """Values of x, T, T + x and T - x at the left ends (row 0) and right ends of the panels.
 
         The columns are the numbers of `polynomial_numbers`: first x on all panels, then T, and so
         on.

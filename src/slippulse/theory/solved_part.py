@@ -42,7 +42,7 @@ class SolvedPart(PartWithEdge):
         """
         if not np.array_equal(x, self._last_positions):
             times, is_covered = np.full(x.shape, np.nan), self.curve.covers(x)
-            times[is_covered] = self._stick_time(x[is_covered])
+            times[is_covered] = self._exact_stick_time(x[is_covered])
             self._last_positions, self._last_stick_times = x, times
         return self._last_stick_times
 
