@@ -576,7 +576,7 @@ class PartWithEdge(Part):
             left_ends += [left, *inner]
             right_ends += [*inner, right]
         x = np.array([left_ends, right_ends])
-        return stuck_between(self, x=x, time=first.time, first=first.x)
+        return stuck_between(self, x=x, time=first.time, first_x=first.x)
 
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
         """Return the minimum of the trailing edge between two positions.
