@@ -392,8 +392,9 @@ def _solve_by_newton(
         next_s = (s + step).clip(-1.0, 1.0)
         parameters[unsolved] = next_s
         still_changes = np.abs(next_s - s) >= 1e-9
-        unsolved, s, level = unsolved[still_changes], next_s[still_changes], level[still_changes]
-        sign, min_slope = sign[still_changes], min_slope[still_changes]
+        unsolved, s = unsolved[still_changes], next_s[still_changes]
+        level, sign = level[still_changes], sign[still_changes]
+        min_slope = min_slope[still_changes]
         coefficients = coefficients.compress(still_changes, axis=-1)
     return parameters
 
