@@ -87,10 +87,7 @@ class _VelocityMinimum(NamedTuple):
 
 
 class _LinearSlip:
-    """Slip U(xi), xi <= 0, a sum of three exponentials and the static slip.
-
-    It solves damping U''' + inertia U'' + stiffness U = load. start has U, U' and U'' at xi = 0.
-    """
+    """Slip U(xi), xi <= 0, that solves a linear equation: a sum of exponentials."""
 
     def __init__(
         self, damping: float, inertia: float, stiffness: float, load: float, start: np.ndarray
@@ -291,13 +288,14 @@ def rate_pulse(
     """
     check_domains(tau0=tau0, gamma=gamma)
     if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
-        allowed = "laws that depend on slip rate alone"
+        allowed = "laws that are 0 at rest and depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
     path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
-        allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
+        limit = f"{MAX_HALF_PERIODS:g} half-periods of the leaf springs"
+        allowed = f"laws for which slip velocity has a peak within {limit}"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
     # The status is 1 if the integration ended at a terminal event.
