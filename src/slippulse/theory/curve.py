@@ -231,6 +231,7 @@ class Curve:
             return self.all_coefficients.take(numbers, axis=-1)
         node_values = []
         for number in numbers.tolist():
+            # This is the inverse of `polynomial_numbers`.
             field, panel = divmod(number, panel_count)
             node_values.append(getattr(self, PANEL_FIELDS[field])[panel])
         return NODES_TO_POWERS @ np.reshape(node_values, (-1, NODE_COUNT)).T

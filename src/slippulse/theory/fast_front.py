@@ -66,6 +66,7 @@ class FastFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check all fields, and set the attributes that depend on them."""
         prestress = self.prestress
         check_kind("prestress", prestress, Prestress)
         check_number("gamma", self.gamma, at_least=0.0)
@@ -160,11 +161,11 @@ class FastFront:
         """
         x, time = start
         panels: list[Panel] = []
-        # Beyond all Gaussians.
+        # Beyond this position all Gaussians are 0.
         last_feature = float(np.max(self.features, initial=-np.inf))
         while x < stop and time < until:
             piece = self.piece_right_of(x)
-            # In negative pre-stress the front is not fast.
+            # In negative pre-stress the front is slower than the waves.
             if not piece.is_above:
                 break
             end = min(stop, piece.right)

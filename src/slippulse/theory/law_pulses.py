@@ -292,6 +292,7 @@ def rate_pulse(
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
     path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
+    # The first event is the stick, and the second one a peak of slip velocity.
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
         limit = f"{MAX_HALF_PERIODS:g} half-periods of the leaf springs"

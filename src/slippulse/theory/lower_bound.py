@@ -132,7 +132,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
     half_exponential = 0.5 * np.exp(exponent)
-    # The gains of F from c to a and to b by positive pre-stress, or the losses by negative one.
+    # F loses by negative pre-stress and gains by positive one. These are densities along the curve.
     loss_density = half_exponential * np.maximum(-curve.source, 0.0)
     if k > 0.0:
         gain_density = half_exponential * np.maximum(curve.source, 0.0)

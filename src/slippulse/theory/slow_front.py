@@ -366,6 +366,7 @@ class SlowFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
+        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture."""
         self.stiffness = self.gamma - 0.25 * self.alpha**2
         edges = self.curve.edges
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
@@ -405,9 +406,9 @@ class SlowFront:
     def advance_from(self, entry: Entry, mark: float, next_length: float) -> Advance:
         """Continue the front by one panel, by the waves from a chunk of entries.
 
-        The first entry of the chunk is given. A chunk of the length next_length is tried first. It
-        is halved until its solution can be used. If the front stops or reaches the mark on it, the
-        end of the chunk is moved to this event.
+        A chunk is a range of entries on one panel of the curve. The first entry is given. A chunk
+        of the length next_length is tried first. It is halved until its solution can be used. If
+        the front stops or reaches the mark on it, the end of the chunk is moved to this event.
         """
         last_s = max(entry.s - next_length, -1.0)
         chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
@@ -586,18 +587,22 @@ class SlowFront:
         )
 
     def is_slow_to_right(self, panel: int) -> bool:
-        """Return True if a panel belongs to a front that runs right, slower than the waves."""
-        start_time, end_time = self.curve.edge_times[panel : panel + 2]
+        """Return True if a panel belongs to a front that runs right, slower than the waves.
+
+        Such a front arrives later at the right end than at the left one, and the pre-stress is
+        negative.
+        """
+        left_time, right_time = self.curve.edge_times[panel : panel + 2]
         # The source, tau dx/ds, is negative where the pre-stress is.
-        return bool(end_time > start_time and np.sum(self.curve.source[panel]) < 0.0)
+        return bool(right_time > left_time and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Return the next entry if the last one is at a slow part of the front.
+        """Return the next entry if the last one is on a panel of the slow front itself.
 
-        It is found from its value of T - x: the wave that arrives at the front now, and one that
-        arrives slightly later, are traced back to the curve. The later one enters on the panel of
-        the next entries. The other one may still enter on the panel before it. The result is None
-        if the later one comes from beyond the end of the curve.
+        The wave that arrives at the front now, and one that arrives slightly later, are traced back
+        to the curve. The later one enters on the panel of the next entries. The other one may still
+        enter on the panel before it. The result is None if the later one comes from beyond the end
+        of the curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))

@@ -98,7 +98,8 @@ class SolvedPart(PartWithEdge):
         x = self._positions_for_peaks()
         velocity = peak_velocity(x)
         largest = float(velocity.max())
-        # Since the grid is coarse, the highest sample need not be at the highest peak.
+        # Since the grid is coarse, the highest sample need not be at the highest peak. A peak is
+        # higher than its neighbours; beyond the grid there is a 0.
         padded = np.pad(velocity, 1)
         is_peak = (velocity > padded[:-2]) & (velocity >= padded[2:])
         peaks = np.flatnonzero(is_peak & (velocity >= PEAK_FRACTION * largest))
@@ -130,8 +131,8 @@ class SolvedPart(PartWithEdge):
     def _peak_velocity(self, x: np.ndarray, last_time: np.ndarray) -> np.ndarray:
         """Return the largest slip velocity of each position until its stick, or until a last time.
 
-        The velocity is sampled at GRID_SIZE times. On both sides of the largest sample, the time of
-        the peak is searched, where the acceleration is 0.
+        The velocity is sampled at GRID_SIZE times. Between the samples before and after the largest
+        one, the peak is at the time at which the acceleration is 0.
         """
         release = self.curve.arrival(x)
         end = np.minimum(self.approximate_stick_time(x), last_time)

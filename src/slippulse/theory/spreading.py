@@ -122,16 +122,17 @@ class Stretch:
 
 
 def spread(fast_front: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
-    """Let all fronts run until a time, and return the connected parts of the rupture.
+    """Let all fronts run until a time, and return the connected parts of the rupture in order.
 
-    fast_front has the pre-stress and the law of motion. The parts come from left to right. Also
-    return the points in whose future the rupture is unknown, each with its reason.
+    fast_front has the pre-stress and the law of motion of fast fronts. Also return the points in
+    whose future the rupture is unknown, each with its reason.
     """
     fast_fronts = {RIGHT: fast_front, LEFT: fast_front.mirrored()}
     stretches = _nucleate(fast_front)
     for stretch, side in product(stretches, SIDES):
         _advance_fast_front(fast_fronts[side], stretch=stretch, side=side, until=until)
     stretches = _join_met_stretches(stretches)
+    # From here on, the fronts that still move are slow.
     while (front := _earliest_moving_front(stretches)) is not None:
         stretch, side = front
         _advance_slow_front(fast_fronts[side], stretch=stretch, side=side, until=until)

@@ -106,12 +106,14 @@ class PartWithEdge(Part):
         is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
         left_ends = x[:-1]
         unresolved = left_ends[~np.repeat(is_predicted, 2)]
-        # The edge has kinks where waves from the marks meet it, and ends at the final time.
+        # The edge has kinks where waves meet it that change du/dt at once. At the final time it
+        # ends.
         x = np.union1d(self._positions_near_waves(knots), self._positions_near_end(knots))
         knots = self._with_more_knots(
             knots, x=x, stick=self.find_stick_times(x), unresolved=unresolved
         )
-        # Positions that stick between two sliding knots become knots, until none is left.
+        # Two neighbouring knots may still slide at the final time, although a position between them
+        # has stuck. Such positions become knots, until none is left.
         while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
             knots = self._with_more_knots(knots, x, self.find_stick_times(x))
         # An edge that may become slower than the waves between two knots is checked once more.
@@ -252,6 +254,7 @@ class PartWithEdge(Part):
 
     def _positions_near_end(self, knots: Knots) -> np.ndarray:
         """Return positions on both sides of where the trailing edge reaches the final time."""
+        # Only one of the two ends of these intervals sticks before the final time.
         k = np.arange(knots.x.size - 1)
         k = k[knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)]
         at_left = self._velocity_at_end(knots.x[k])
@@ -347,11 +350,12 @@ class PartWithEdge(Part):
         return k[is_kept]
 
     def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
-        """Set the kind SLOWER_THAN_WAVES in intervals that were cut at a jump which is none.
+        """Set the kind SLOWER_THAN_WAVES in intervals where a slow edge looked like a jump.
 
-        A jump of the edge lies in only one piece of its interval. If the edge takes longer than a
-        wave in every piece, it does not jump. It is slower than the waves, although its slopes at
-        the knots are just below 1. The kinds of all knots of such an interval are changed in place.
+        Intervals with a jump were cut into pieces, and only one of them has the jump. If the edge
+        takes longer than a wave in every piece, it does not jump. It is slower than the waves,
+        although its slopes at the knots are just below 1. The kinds of all knots of such an
+        interval are changed in place.
 
         piece_starts has the left ends of the pieces of each interval, [piece, interval].
         """
@@ -380,8 +384,9 @@ class PartWithEdge(Part):
     def _exact_stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
         """Return the exact stick times of positions; NaN if a block does not stick.
 
-        They start from the stick times of the knots (by default those of this part), where these
-        allow it. Elsewhere they are searched from the release on, which takes longer.
+        Between knots (by default those of this part) where the edge is faster than the waves, they
+        are found from the interpolated times. Elsewhere they are searched from the release on,
+        which takes longer.
         """
         knots = knots or self.knots
         if knots.x.size < 2:
@@ -470,13 +475,14 @@ class PartWithEdge(Part):
         if not not_brief.size:
             return []
         stops = []
-        first, last = 0, -1
-        for side in (first, last):
-            outermost, nearest = range(knots.x.size)[side], not_brief[side]
+        left_time, right_time = self.curve.edge_times[[0, -1]]
+        left_side = (0, not_brief[0], left_time)
+        right_side = (knots.x.size - 1, not_brief[-1], right_time)
+        for outermost, nearest, time_of_front in (left_side, right_side):
             distance = abs(knots.x[nearest] - knots.x[outermost])
             delay = abs(knots.stick[nearest] - knots.stick[outermost])
             # A front that still moves at the final time has not stopped.
-            still_moves = self.curve.edge_times[side] >= self.until
+            still_moves = time_of_front >= self.until
             has_stopped = knots.kind[outermost] == BRIEF_SLIP and not still_moves
             if has_stopped and delay > distance * (1.0 + EQUALITY_TOLERANCE):
                 stops.append(outermost)
