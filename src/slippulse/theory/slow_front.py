@@ -282,9 +282,9 @@ class FreeBoundary:
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
         """Return the step of Newton's method, which is to be subtracted from the positions x.
 
-        x has the position of the front for each node of the chunk. Newton's method makes the
-        integral of tau times the kernel, from the entry at this node to the front, 0. The result is
-        None if a front at x would be unstable: an integral would grow if its front moved farther.
+        x has the position of the front for each node of the chunk, which is an entry. The integrals
+        of tau times the kernel, from each entry to the front, must become 0. The result is None if
+        a front at x would be unstable: one of the integrals would grow if the front moved farther.
         """
         # The integrals of tau from the end of the known curve, x0, to the positions.
         prestress_integral, tau = self.crossed_by_front(x)

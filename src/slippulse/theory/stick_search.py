@@ -86,12 +86,12 @@ class StickSearch:
             # such sample. The two kept samples, in columns 0 and 1, are not searched.
             is_stuck = batch.velocity <= 0.0
             has_stuck = is_stuck.any(axis=1)
-            first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
+            stuck_column = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
             # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
             # that ends at the first sample at or below 0.
-            zeros = self._zeros_next_to_minima(samples, first_stuck)
+            zeros = self._zeros_next_to_minima(samples, stuck_column)
             rows = np.flatnonzero(has_stuck & ~np.isfinite(zeros))
-            zeros[rows] = self._zeros_in_steps(samples, rows, first_stuck[rows])
+            zeros[rows] = self._zeros_in_steps(samples, rows, stuck_column[rows])
             stick_times[sliding] = zeros
             kept_times[sliding], kept_velocities[sliding] = time[:, -2:], velocity[:, -2:]
             sliding = sliding[~np.isfinite(zeros) & (time[:, -1] < self.until)]
@@ -131,13 +131,13 @@ class StickSearch:
         return VelocitySamples(x, time, velocity.reshape(time.shape))
 
     def _zeros_next_to_minima(
-        self, samples: VelocitySamples, first_stuck: np.ndarray
+        self, samples: VelocitySamples, stuck_column: np.ndarray
     ) -> np.ndarray:
         """Return the first zero of du/dt in a dip between samples, for each row; NaN if none.
 
         A sample is a minimum if it is lower than the sample before it, and not higher than the one
         after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
-        are positive, this is repeated around the lowest of them. first_stuck has the column of the
+        are positive, this is repeated around the lowest of them. stuck_column has the column of the
         first sample at or below 0 in each row; later minima are ignored.
         """
         first_zeros = np.full(samples.x.shape, np.nan)
@@ -146,7 +146,7 @@ class StickSearch:
         is_minimum = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
         # Samples at the end of a row may repeat the final time.
         is_minimum &= samples.time[:, 2:] > samples.time[:, 1:-1]
-        is_before_stick = np.arange(1, change.shape[1]) < first_stuck[:, None]
+        is_before_stick = np.arange(1, change.shape[1]) < stuck_column[:, None]
         # A row may have several minima. From here on, arrays have one element for each minimum:
         # its row, and the times of the samples before and after it.
         row, column_before = np.nonzero(is_minimum & is_before_stick)

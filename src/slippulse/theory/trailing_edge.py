@@ -331,22 +331,19 @@ class PartWithEdge(Part):
         A knot is in the future of a jump of the edge if a wave from the jump arrives there before
         the knot sticks. Nothing is known about the edge there.
         """
+        is_kept = np.full(k.size, True)
         jumps = k[knots.has_jump(k)]
-        before_jumps = knots.ends_before_jumps(jumps)
-        # A wave that starts at the knot before a jump must start before this time to arrive at an
-        # end of an interval before this end sticks. The axes are [left or right end, interval,
-        # jump].
-        ends = np.array([k, k + 1])[..., None]
-        travel_time = np.abs(knots.x[ends] - knots.x[before_jumps])
-        latest_start = knots.stick[ends] - travel_time
-        # From that knot the edge runs to the jump in less time than a wave, which takes at most the
-        # length of the interval. A wave from the jump may have to run back by the same distance. So
-        # an end is certainly in the future of the jump if its latest start is two lengths later
-        # than the stick of that knot.
-        lengths = knots.x[jumps + 1] - knots.x[jumps]
-        is_outside = latest_start < knots.stick[before_jumps] + 2.0 * lengths
-        has_end_outside = is_outside.any(axis=0)
-        is_kept = has_end_outside.all(axis=1)
+        for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
+            # To arrive at a knot before it sticks, a wave must leave the knot before the jump no
+            # later than this. From there the edge runs to the jump in less time than a wave, which
+            # takes at most the length of the interval. A wave from the jump may have to run back by
+            # the same distance. So a knot is certainly in the future of the jump if this time is
+            # two lengths later than the stick before the jump.
+            travel_time = np.abs(knots.x - knots.x[before_jump])
+            latest_start = knots.stick - travel_time
+            length = knots.x[jump + 1] - knots.x[jump]
+            is_outside = latest_start < knots.stick[before_jump] + 2.0 * length
+            is_kept &= is_outside[k] | is_outside[k + 1]
         return k[is_kept]
 
     def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
