@@ -141,6 +141,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
         lower_bound = w_at_a + w_at_b - w_at_c - gain - by_springs
     else:
         lower_bound = w_at_c - _integral_outside_past_of_c(loss_density, past)
+    is_bound_positive = c_slides & (lower_bound > 0.0)
     # If c has not slipped, all pre-stress in the past must be positive, and the largest argument of
     # J0 before its first zero. This condition is sufficient also if c has slipped.
     to_a_begins, to_b_ends = _integrals_from_left_end(loss_density, [a_begins, b_ends])
@@ -148,7 +149,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
     d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
     is_kernel_positive = k * d_xi * d_eta < SQUARED_FIRST_ZERO
-    return (c_slides & (lower_bound > 0.0)) | (is_past_positive & is_kernel_positive)
+    return is_bound_positive | (is_past_positive & is_kernel_positive)
 
 
 def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
