@@ -58,7 +58,7 @@ MIN_FAINT_INTERVAL = 1e-2
 
 
 class PastOnCurve(NamedTuple):
-    """Where the past of two positions a and b, and of the point c, begins and ends on the curve.
+    """Points of the curve where the past of the positions a and b, and of c, begins and ends.
 
     The four points are in this order along the curve. Each has one element for each pair.
     """
