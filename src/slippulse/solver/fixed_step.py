@@ -76,8 +76,8 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
     sliding : mask of the blocks that slide
     t : time at the start of the step
     """
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    force, tau = motion.w[ACCELERATION], motion.tau
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    force, tau = motion.derivatives[ACCELERATION], motion.tau
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
     sliding_count, lowest_stress = 0, tally.min_stuck_stress
@@ -114,14 +114,15 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 
     A block whose velocity would be negative sticks.
 
-    Returns the largest velocity (inf if one is not finite), and the work against friction. Work
-    against friction alpha v is left out, because it is a part of `viscous_loss`.
+    Returns the largest velocity (inf if one is not finite), and the work against friction of a law
+    with a number. The forces already contain friction that is linear in velocity, and its work is a
+    part of `viscous_loss`.
 
     dt : length of the step
     end : time at its end
     """
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    force, tally = motion.w[ACCELERATION], history.tally
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    force, tally = motion.derivatives[ACCELERATION], history.tally
     fastest = 0.0
     # The sum of friction times mean velocity, which is multiplied by dt and dx at the end.
     friction, work = 0.0, 0.0
@@ -131,7 +132,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
         before = velocity[i]
         if medium.law_number > 0:
             slip_since_release = slip[i] - motion.slip_at_release[i]
-            full_friction = friction_by_law_number(
+            law_friction = friction_by_law_number(
                 medium.law_number,
                 slip_since_release,
                 before,
@@ -139,7 +140,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
                 medium.law_parameter_2,
             )
             # The factor is 0 in the zone without friction, and otherwise 1.
-            friction = motion.law_factor[i] * full_friction
+            friction = motion.law_factor[i] * law_friction
             force[i] -= friction
         after = before + dt * force[i]
         # A block that has a mirror image counts twice.
@@ -150,6 +151,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
             tally.min_velocity = min(tally.min_velocity, after)
             after = 0.0
             sliding[i] = False
+            # Until its next release, the block does not slip.
             motion.slip_at_release[i] = slip[i]
             record_stick(history, i, end)
         else:
@@ -201,8 +203,10 @@ def take_samples(recorder, motion, tally, end):
             # Positions outside the lattice have no block.
             if i < 0:
                 continue
-            recorder.slip[n, p] = motion.w[SLIP, i] - time_to_end * motion.w[VELOCITY, i]
-            recorder.velocity[n, p] = motion.w[VELOCITY, i]
+            recorder.slip[n, p] = (
+                motion.derivatives[SLIP, i] - time_to_end * motion.derivatives[VELOCITY, i]
+            )
+            recorder.velocity[n, p] = motion.derivatives[VELOCITY, i]
         tally.samples_taken += 1
 
 
@@ -210,12 +214,14 @@ def take_samples(recorder, motion, tally, end):
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
     """Advance a lattice by the textbook scheme until a limit, and return the reason for stopping.
 
-    The rows of ``motion.w`` are slip, velocity and force. ``sliding`` is a mask of the blocks.
+    The rows of ``motion.derivatives`` are slip, velocity and force. ``sliding`` is a mask of the
+    blocks.
     """
     size, tally = motion.tau.shape[0], history.tally
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    # The stress of a block at rest changes only next to blocks that moved in the last step. The
-    # first step of a call visits all blocks, since the lattice may have been extended.
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    # A step visits only the blocks first..last-1: those that moved in the last step, and their
+    # neighbours at rest, whose stress has changed. The first step of a call visits all blocks,
+    # since the lattice may have been extended.
     first, last = 1, size - 1
     for _ in range(limits.max_steps):
         start = tally.time
@@ -229,6 +235,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         sliding_count = compute_forces(medium, motion, sliding, history, start, first, last)
         if sliding_count == 0:
             return ALL_STUCK
+        # From here on, only the range of the sliding blocks.
         first, last = find_sliding_range(sliding, first, last)
         fastest, work = advance_blocks(medium, motion, sliding, history, dt, end, first, last)
         if fastest == math.inf:
@@ -237,6 +244,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         if medium.is_mirrored:
             velocity[0] = velocity[2]
         tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
+        # The range that the next step visits.
         first, last = max(first - 1, 1), min(last + 1, size - 1)
         tally.steps += 1
         tally.block_updates += sliding_count

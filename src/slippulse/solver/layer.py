@@ -173,10 +173,13 @@ class Columns(NamedTuple):
 
 @kernel_function()
 def update_stresses(elastic, fields, first, last):
-    """Advance the stresses of columns first..last-1 by one step.
+    """Advance the stresses of columns first..last-1 by one step, from the velocities.
 
-    The equations are the three on the right in the module docstring. Derivatives are replaced by
-    differences between neighbours, and ``ratio`` is the time step divided by their distance.
+        ds_xx/dt = direct dv_x/dx + lateral dv_y/dy     ds_xy/dt = shear (dv_x/dy + dv_y/dx)
+        ds_yy/dt = lateral dv_x/dx + normal dv_y/dy
+
+    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
+    divided by their distance.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
@@ -208,8 +211,10 @@ def update_stresses(elastic, fields, first, last):
 def update_velocities(elastic, fields, first, last):
     """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom.
 
-    The equations are the two on the left in the module docstring. Derivatives are replaced by
-    differences between neighbours, and ``ratio`` is the time step divided by their distance.
+        dv_x/dt = ds_xx/dx + ds_xy/dy     dv_y/dt = ds_xy/dx + ds_yy/dy
+
+    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
+    divided by their distance. Rows from ``moving_rows`` on have a v_x that is held.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
@@ -232,7 +237,11 @@ def update_velocities(elastic, fields, first, last):
 
 @kernel_function()
 def compute_strength(elastic, fields, fault, i):
-    """Return the strength of node i, from its motion since the release and its normal stress."""
+    """Return the strength of node i, from its motion since the release and its normal stress.
+
+    It weakens linearly with the slip since the release. If ``rate`` is not 0, `advance_node` lets
+    the strength depend on slip velocity instead, and keeps it in ``fault.strength``.
+    """
     if fault.nucleus[i]:
         return 0.0
     # Decrease of the strength since the release of the node.
@@ -252,7 +261,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
     """Advance v_x and the slip of node i at the bottom by one step, and add the work done.
 
     A node at rest is released when its load, the shear stress, reaches its strength. It sticks when
-    its velocity falls to 0.
+    its velocity falls to 0. The times of its first release and first stick are recorded.
 
     time : time of the stresses, in the middle of the step of the velocities
     """
@@ -303,7 +312,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
 
 @kernel_function()
 def add_damping(elastic, earlier, fields, total, first, last):
-    """Set the total stresses, which are those of ``fields`` plus their rates times beta.
+    """Set the total stresses, those of ``fields`` plus beta times their rates of change.
 
     earlier : stresses one step before, which are replaced by those of ``fields``
     """
@@ -321,7 +330,11 @@ def add_damping(elastic, earlier, fields, total, first, last):
 
 @kernel_entry
 def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
-    """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach."""
+    """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach.
+
+    damped_fields : the fields, those of the step before, and those with damping in the stresses
+    columns : position of x = 0, and numbers of columns on each side that are advanced
+    """
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
@@ -340,7 +353,10 @@ def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
 
 
 def simulate_layer(scene: LayerScene) -> LayerRun:
-    """Simulate a rupture on a grid that is so long that no wave reaches its ends."""
+    """Simulate a rupture on a grid that is so long that no wave reaches its ends.
+
+    The slip and v_x are returned in units of ``slip_scale``, without the outermost columns.
+    """
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
@@ -375,7 +391,10 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return the fields that a layer needs for its damping; without damping they are the same."""
+    """Return the fields that a layer needs for its damping: elastic, earlier and total stresses.
+
+    Without damping these stresses are the same, so that the same arrays serve for all three.
+    """
     if elastic.damping == 0.0:
         return DampedFields(fields, fields, fields)
     return DampedFields(fields, with_own_stresses(fields), with_own_stresses(fields))
@@ -410,7 +429,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
 
     ratio : time step divided by the side of a cell
     """
-    # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
+    # Stiffness of s_yy: 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
     # The bottom row has only a value above it, and the top row only one below it. This value counts
@@ -418,6 +437,8 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0
+    # Stiffness of a normal stress against strain in the other direction. On a free row, s_yy = 0
+    # makes ``direct``, the stiffness of s_xx, smaller than 1.
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
@@ -487,8 +508,8 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes = columns.copy()
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
-    # The strain energy of normal stresses in plane strain, with 1 - gamma as `lateral`, and that of
-    # shear stress.
+    # The strain energy of normal stresses in plane strain, with 1 - gamma as ``lateral``, and that
+    # of shear stress. The square of a stress is its earlier value times its later value.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx

@@ -185,6 +185,7 @@ class RecordedFiles:
         """
         for path in self.unreadable:
             yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
+        # The recorded state of each file.
         states = self.states()
         yield from _changed_files(states)
         for job in self._jobs():
@@ -264,13 +265,14 @@ def _files_recorded_by_snakemake() -> dict[str, Path]:
 def made_without_step(paths: Iterable[str]) -> set[str]:
     """Return those files that Snakemake made by a rule of the user.
 
-    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`.
+    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`. The code
+    of the rule is in Snakemake's own record of the file.
     """
     records, user_files = _files_recorded_by_snakemake(), set()
     for name in {*paths} & {*records}:
         with suppress(OSError, ValueError, TypeError, AttributeError):
-            code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
-            if code and STEP_CALL not in code:
+            rule_code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
+            if rule_code and STEP_CALL not in rule_code:
                 user_files.add(name)
     return user_files
 
@@ -313,11 +315,11 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
     folder = Path(path).parent / FOLDER
-    records = _records_in(str(folder), _time_of(folder))
+    records = _records_in(str(folder), _modification_time(folder))
     return records.get(Path(path).name)
 
 
-def _time_of(folder: Path) -> int:
+def _modification_time(folder: Path) -> int:
     """Return the time at which a folder was modified, in ns, or 0 if there is no folder."""
     try:
         return folder.stat().st_mtime_ns

@@ -54,10 +54,10 @@ def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Return HTML with MathML for each text, by the text. A text is one paragraph of Markdown.
+    """Return a mapping from each text, one paragraph of Markdown, to its HTML with MathML.
 
     HTML in a text is shown as text. A link is kept only if it leads to the web. A picture is
-    replaced by its alternative text.
+    replaced by its alternative text. An empty text has empty HTML.
     """
     texts = sorted({text for text in texts if text.strip()})
     if not texts:

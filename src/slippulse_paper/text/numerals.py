@@ -36,6 +36,7 @@ def setting(value: float | None) -> str:
     """Write a number of the configuration with at most six digits, without zeros at its end."""
     if value is None or math.isnan(value):
         return MISSING
+    # The format g has at most six digits, and an exponent if the number is very small or large.
     return _power_of_ten(f"{value:g}")
 
 
