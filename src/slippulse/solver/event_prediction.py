@@ -134,7 +134,8 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     elastic = elastic_force(medium, motion, block)
     coefficients[0] = elastic - medium.leaf_stiffness * slip + motion.tau[block] - 1.0
     # The block is at rest, so that only the motion of its two neighbours changes its stress. The
-    # coefficient of power k is derivative k of the stress, divided by k!.
+    # coefficient of power k is derivative k of the stress, divided by k!. In the loop,
+    # ``inverse_factorial`` is 1/(k - 1)! and then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
@@ -200,8 +201,9 @@ def find_next_event(segments, prediction):
 @kernel_function(inline=True)
 def interacts_with_mirror_image(medium, block):
     """Return True if an event of a block interacts with that of the block's mirror image."""
-    # Block 1 on the axis is its own mirror image, and does not interact with itself. The slopes of
-    # friction of the mirror images, however, are not stored, so with a kink of the law it counts.
+    # Block 1 on the axis is its own mirror image, so that it has no second event. If the law has a
+    # kink, however, its event counts as well: it would change mirror images, whose slopes of
+    # friction are not stored.
     nearest = 2 if medium.law_kink is None else 1
     return medium.is_mirrored and nearest <= block <= 1 + EVENT_REACH
 

@@ -156,8 +156,8 @@ def spread_difference(difference, medium, motion, event, left, right, top):
     """Compute the change that an event makes in the motion of all blocks within its reach.
 
     The change of the block of the event itself, ``difference.block_change``, spreads to its
-    neighbours by the equation of motion. The result are the time derivatives of the change of slip
-    at the time of the event, in ``difference.derivatives``.
+    neighbours by the equation of motion. ``difference.derivatives`` receives the time derivatives
+    of the change of slip, at the time of the event.
 
     left, right : numbers of adjacent sliding blocks on each side, which limit the reach
     top : order of the highest time derivative
@@ -180,9 +180,10 @@ def spread_difference(difference, medium, motion, event, left, right, top):
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, block_of_column_0, motion, medium.law_kink)
         # After a stick the block is held, so the change of its neighbours does not move it.
-        rows[k, CENTRE_COLUMN] = block_change[k] + (
-            0.0 if event.is_stick else rows[k, CENTRE_COLUMN]
-        )
+        if event.is_stick:
+            rows[k, CENTRE_COLUMN] = block_change[k]
+        else:
+            rows[k, CENTRE_COLUMN] += block_change[k]
     if event.is_stick:
         # The motion of the block itself was changed when the block was stopped (`hold_block`).
         for k in range(2, top + 1):
@@ -321,7 +322,7 @@ def apply_event(medium, motion, segments, prediction, difference, event, step_en
     # where the acceleration does not change, `change_weakening` has returned the change.
     work_slope_change += friction * acceleration_change
 
-    # Stage 2: all blocks that the change reaches within the order of the step.
+    # Stage 2: all blocks that the change reaches in the derivatives up to ``top``.
     spread_difference(difference, medium, motion, event, left, right, top)
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1

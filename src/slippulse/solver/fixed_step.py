@@ -71,7 +71,8 @@ friction_by_law_number = combine_laws(LAWS)
 def compute_forces(medium, motion, sliding, history, t, first, last):
     """Compute the forces on blocks first..last-1, and release those that reach the threshold.
 
-    The forces are written into the row ACCELERATION of w. Returns the number of sliding blocks.
+    The forces are written into the row ACCELERATION of ``motion.derivatives``. Returns the number
+    of sliding blocks.
 
     sliding : mask of the blocks that slide
     t : time at the start of the step
@@ -194,6 +195,7 @@ def take_samples(recorder, motion, tally, end):
     end : time at the end of the step
     """
     times, blocks = recorder.times, recorder.blocks
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         # Within a step, slip changes at the constant velocity that belongs to its end.
@@ -203,10 +205,8 @@ def take_samples(recorder, motion, tally, end):
             # Positions outside the lattice have no block.
             if i < 0:
                 continue
-            recorder.slip[n, p] = (
-                motion.derivatives[SLIP, i] - time_to_end * motion.derivatives[VELOCITY, i]
-            )
-            recorder.velocity[n, p] = motion.derivatives[VELOCITY, i]
+            recorder.slip[n, p] = slip[i] - time_to_end * velocity[i]
+            recorder.velocity[n, p] = velocity[i]
         tally.samples_taken += 1
 
 
@@ -282,7 +282,10 @@ def solve_by_scheme(
 
 
 def has_locked_front(solution: Solution) -> bool:
-    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt."""
+    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt.
+
+    In this case the numbers of steps between its releases repeat in a short cycle.
+    """
     step = solution.numbers["end_time"] / max(solution.numbers["steps"], 1)
     for side in (-1.0, 1.0):
         is_released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)

@@ -67,7 +67,7 @@ def begin_weakening(motion, law_kink, block):
             # The slip at the start of the step, plus the slip by earlier events of the step.
             slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
             motion.slip_at_release[block] = slip
-        # Whether the law depends on slip since the release or on slip rate, it is 0 now.
+        # The argument of the law, the slip since the release or the slip rate, is 0 now.
         return law_kink.friction_beyond + weakening_slope * law_kink.argument_at_kink
     return 0.0
 
@@ -141,11 +141,9 @@ def friction_power(medium, motion, segments, law_kink):
             for i in block_range(segments.edges[2 * r], segments.edges[2 * r + 1]):
                 # A block that has a mirror image counts twice.
                 weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
-                # Friction depends on slip or on slip rate, its argument.
-                argument, argument_rate = (
-                    w[law_kink.argument_row, i],
-                    w[law_kink.argument_row + 1, i],
-                )
+                # The argument of friction is slip or slip rate, and the next row its derivative.
+                argument = w[law_kink.argument_row, i]
+                argument_rate = w[law_kink.argument_row + 1, i]
                 friction = friction_of_block(motion, law_kink, i, argument)
                 friction_decrease_rate = weakening_slope[i] * argument_rate
                 power += weight * friction * w[VELOCITY, i]

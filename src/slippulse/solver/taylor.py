@@ -455,8 +455,8 @@ def advance(  # noqa: C901, PLR0912
     """Advance until a limit, and return the reason why it stopped.
 
     Each step goes through the numbered stages of the module docstring. The energy losses of a step
-    are completed at the start of the next one, where the accelerations are computed, too. The
-    function returns only after that, so that both are those at the final time.
+    are completed at the start of the next one, where the accelerations are computed, too. The end
+    of the run is noticed only after that, so that both are those at the final time.
 
     limits : step size, end of the scene, and largest number of steps of one call
     """
@@ -467,7 +467,7 @@ def advance(  # noqa: C901, PLR0912
     tally, prediction = history.tally, scratch.prediction
     moved, step_events = scratch.moved, scratch.step_events
     for _ in range(limits.max_steps):
-        # Stage 1: the derivatives at the start of the step.
+        # Stage 1: the derivatives at the start of the step, and the end of the run.
         start = tally.time
         if medium.alpha == 0.0:
             fill_derivatives(medium, motion, segments, 0.0, top)
