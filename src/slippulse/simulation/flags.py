@@ -44,7 +44,8 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
     They are the number of blocks across the narrowest pulse, and the flags separated by commas.
     """
-    blocks, numbers = narrowest_pulse(scene, solution), solution.numbers
+    blocks = blocks_across_narrowest_pulse(scene, solution)
+    numbers = solution.numbers
     if numbers["releases"] == 0:
         return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
     flags = {
@@ -153,7 +154,7 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
     return scene.duration - last_stick > 2.0 * math.pi / math.sqrt(scene.gamma)
 
 
-def narrowest_pulse(scene: Scene, solution: Solution) -> int:
+def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
     """Return the number of blocks across the narrowest pulse at the end.
 
     Under a stress boundary, return the number of blocks across the nucleation. The number is 0

@@ -82,6 +82,7 @@ def simulate(
         progress = make_bar() if progress else None
     with announced_compilation():
         solution = _solve(scene, samples, progress)
+    # The Dataset also contains the flags of the run, and the units and names of its variables.
     run = described(recorded(scene, samples, solution).dataset())
     if strict and run.attrs["run_flags"]:
         details = _flag_details(scene, run.attrs)

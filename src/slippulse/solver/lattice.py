@@ -160,7 +160,7 @@ class Lattice:
         old_blocks : array positions of the present blocks in the new arrays
         """
         old_motion = self.motion
-        derivative_count = old_motion.w.shape[0]
+        derivative_count = old_motion.derivatives.shape[0]
         self.motion = arrays.make_motion(derivative_count, size)
         for new_array, old_array in zip(self.motion, old_motion, strict=True):
             new_array[..., old_blocks] = old_array

@@ -183,6 +183,7 @@ def update_stresses(elastic, fields, first, last):
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
+    # s_xx and s_yy on the rows.
     for j in range(rows + 1):
         direct, lateral = ratio * elastic.direct[j], ratio * elastic.lateral[j]
         normal = ratio * elastic.normal[j]
@@ -198,6 +199,7 @@ def update_stresses(elastic, fields, first, last):
             s_yy[i] += lateral * dvx_dx + normal * dvy_dy
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
+    # s_xy, which lies half a cell above row j.
     factor = ratio * elastic.shear
     for j in range(rows):
         low, high = vx[j, first:last], vx[j + 1, first:last]
@@ -218,6 +220,7 @@ def update_velocities(elastic, fields, first, last):
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
+    # v_y, which lies half a cell above row j.
     for j in range(rows):
         left, right = sxy[j, first:last], sxy[j, first + 1 : last + 1]
         low, high = syy[j, first:last], syy[j + 1, first:last]
@@ -226,6 +229,7 @@ def update_velocities(elastic, fields, first, last):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
+    # v_x on the rows above the bottom. A free top row has only the s_xy half a cell below it.
     for j in range(1, elastic.moving_rows):
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]
@@ -368,7 +372,8 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     centre = 1 if scene.symmetric else columns_on_right
     x = (np.arange(centre + columns_on_right) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
-    # Without a trail, all columns behind the wave are advanced, including those at x < 0.
+    # Columns farther behind the wave than the trail are no longer advanced. If the trail is
+    # infinite, all columns are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
     damped = damped_fields(elastic, fields)
