@@ -229,7 +229,7 @@ def update_velocities(elastic, fields, first, last):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
-    # v_x on the rows above the bottom. A free top row has only the s_xy half a cell below it.
+    # v_x on the rows above the bottom. A top row that moves has only the s_xy below it.
     for j in range(1, elastic.moving_rows):
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]

@@ -339,6 +339,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     top = motion.derivatives.shape[0] - 1
     step_events, tally = scratch.step_events, history.tally
     block, is_stick = event.block, event.is_stick
+    # The lists of the blocks that slide, and the history.
     if is_stick:
         toggle_block(segments, block)
         record_stick(history, block, instant)
@@ -348,6 +349,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
         if not contains_block(scratch.moved, block):
             toggle_block(scratch.moved, block)
         record_release(history, block, instant)
+    # The motion, and then the energy losses and the counters.
     effect = apply_event(
         medium, motion, segments, scratch.prediction, scratch.difference, event, h, top
     )
