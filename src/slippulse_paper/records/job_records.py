@@ -192,7 +192,7 @@ class RecordedFiles:
             replaced_inputs = job.replaced_inputs(states)
             if replaced_inputs:
                 for output in job.outputs:
-                    yield output, f"made from another {replaced_inputs[0]}"
+                    yield output, f"made from an earlier version of {replaced_inputs[0]}"
 
     def older_than_inputs(self) -> set[str]:
         """Return the files that were made from an older version of one of their inputs.
@@ -237,7 +237,7 @@ def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]
         unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
     for name, is_unchanged_file in zip(states, unchanged, strict=True):
         if not is_unchanged_file:
-            yield name, "not what its job wrote"
+            yield name, "changed since its job wrote it"
         elif name not in snakemake_files and Path(name).is_file():
             yield name, "Snakemake's own record of it (in .snakemake) is lost"
 
@@ -301,7 +301,7 @@ def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, 
         records[path] = record
         if record.outputs[Path(path).name].sha256 != states[path].sha256:
             remedy = "delete it and run again, or run `make replicate`, which makes it again"
-            raise ChangedFile(f"{path}: not what its job wrote; {remedy}")
+            raise ChangedFile(f"{path}: changed since its job wrote it; {remedy}")
     return states, records
 
 

@@ -71,6 +71,7 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MAX_DIGITS) + unknown
     from uncertainties import ufloat
 
+    # The formats give the short form with parentheses (S) and powers of ten in Unicode (P).
     if value:
         magnitude = math.floor(math.log10(abs(value)))
         last_digit = 10.0 ** (magnitude + 1 - MAX_DIGITS_WITH_UNCERTAINTY)
