@@ -115,9 +115,9 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 
     A block whose velocity would be negative sticks.
 
-    Returns the largest velocity (inf if one is not finite), and the work against friction of a law
-    with a number. The forces already contain friction that is linear in velocity, and its work is a
-    part of `viscous_loss`.
+    Returns the largest velocity (inf if one is not finite), and the work against friction. It is
+    friction by a law that is not linear (law_number > 0): the forces already contain linear
+    friction alpha v, whose work is a part of `viscous_loss`.
 
     dt : length of the step
     end : time at its end

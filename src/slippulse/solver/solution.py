@@ -65,9 +65,9 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     weights = _block_weights(lattice)
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
-        # A law with a number is solved by symplectic Euler, which is a leapfrog scheme: velocities
-        # belong to the time half a step before that of the slip. The energies are computed at the
-        # time of the velocities.
+        # A law that is not linear has a number, and is solved by symplectic Euler. This is a
+        # leapfrog scheme: velocities belong to the time half a step before that of the slip. The
+        # energies are computed at the time of the velocities.
         step = lattice.scene.max_step * dx
         slip = slip - 0.5 * step * velocity
         strain = _gradient(slip, dx)

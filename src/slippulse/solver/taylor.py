@@ -155,7 +155,7 @@ def compute_dissipation(medium, motion, segments):
 
 @kernel_function()
 def clear_slope_changes(slope_changes):
-    """Reset the sums over the events of a step of k, k s and k s^2 (see `add_slope_change`)."""
+    """Forget how the events of the previous step changed the slope of a dissipation."""
     slope_changes.moment_0 = 0.0
     slope_changes.moment_1 = 0.0
     slope_changes.moment_2 = 0.0
