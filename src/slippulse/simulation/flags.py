@@ -54,6 +54,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         "first_stick_undone": first_stick_undone(scene, solution),
     }
     if scene.scheme == "localised":
+        # The error of a step depends on its order, and on ratios such as the damping ratio.
         longest_step = accurate_step(MAX_STEP_ERROR, scene.order, *scene.ratios)
         flags["long_step"] = scene.max_step > longest_step
     if scene.scheme != "continuum":

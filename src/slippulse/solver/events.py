@@ -322,7 +322,8 @@ def apply_event(medium, motion, segments, prediction, difference, event, step_en
     # where the acceleration does not change, `change_weakening` has returned the change.
     work_slope_change += friction * acceleration_change
 
-    # Stage 2: all blocks that the change reaches in the derivatives up to ``top``.
+    # Stage 2: all blocks that the change reaches in the derivatives up to ``top``. With damping
+    # each derivative after the second one reaches one block further, otherwise every other one.
     spread_difference(difference, medium, motion, event, left, right, top)
     reach = top - 2 if medium.damping != 0.0 else (top - 2) // 2
     first, last = max(block - min(left, reach), 1), block + min(right, reach) + 1

@@ -32,7 +32,7 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
     localised : True for the Taylor step, False for the textbook scheme
     """
     traits = friction.traits
-    # The exact solution covers exactly those laws that are linear in slip velocity, or 0.
+    # The laws that are linear in slip velocity, or 0, are those that the exact solution covers.
     is_linear = "continuum" in friction.schemes
     # These laws have constants of their own in the kernels. The Taylor step solves no other laws.
     if localised or is_linear:
@@ -106,7 +106,7 @@ def switch_weakening(motion, law_kink, block):
 
 @kernel_function(inline=True)
 def add_weakening(w, k, first, last, block_of_column_0, motion, law_kink):
-    """Add what the decrease of piecewise linear friction contributes to time derivative k of slip.
+    """Add the contribution of piecewise linear friction to time derivative k of slip.
 
     Friction falls by the slope times its argument, the slip or the slip rate. It is a part of the
     acceleration, so that derivative k of slip contains the slope times derivative k - 2 of the
