@@ -65,8 +65,9 @@ class LayerScene:
     trail: float = math.inf
     # Damping: beta times its rate is added to each stress, as to the elastic force in `Scene`.
     beta: float = 0.0
-    # "single" takes less than half the time of "double". Times and slips differ by some 1e-6, which
-    # is less than a thousandth of the error of the grid.
+    # "single" takes less than half the time of "double". Times and slips of pulses then differ by
+    # some 1e-6, and slip at points that stick and slide many times by up to 1 %. Both differences
+    # are much smaller than the error of the grid.
     precision: str = "double"
 
     def __post_init__(self) -> None:
