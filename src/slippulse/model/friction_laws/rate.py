@@ -75,7 +75,12 @@ class RateWeakening(Friction):
             return Traits()
         kink_rate = self.limit / self.slope
         return Traits(
-            law_kink=LawKink(rate=1, fall=self.slope, end=kink_rate, lowest=-self.limit),
+            law_kink=LawKink(
+                argument_row=1,
+                weakening_slope=self.slope,
+                argument_at_kink=kink_rate,
+                friction_beyond=-self.limit,
+            ),
             max_drive=self.limit,
             longest_step=STEP_PER_GROWTH_TIME / self.slope,
         )
