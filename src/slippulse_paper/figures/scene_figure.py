@@ -100,7 +100,7 @@ def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the space-time map, slip velocity and slip at the end, and the numbers, in three rows."""
+    """Draw in three rows the space-time map, slip velocity and slip at the end, and the numbers."""
     roles = by_role(table)
     # A run may have neither numbers nor exact steady pulses.
     no_rows = table.iloc[:0]

@@ -44,10 +44,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     path, exact_path : for each damping ratio, the fraction of the path that the left front has not
         yet covered (to_go) as a function of time, on the finest lattice and exact
 
-    Times are divided by the balance distance |x_minus|, the length of the path. The wave speed is 1.
+    Times are divided by the balance distance |x_minus|, which is the length of the path.
     """
     runs = tables["arrest"]
-    # The paper estimates that the transition takes the time |x_minus|.
+    # The paper estimates that the transition takes the time |x_minus|, since the wave speed is 1.
     balance_distance = runs["paper_transition_time"]
     times = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",

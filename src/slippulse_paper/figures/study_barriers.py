@@ -71,7 +71,7 @@ def _interpolated(
     powers : columns of depths that are interpolated; a depth with the power p is proportional to
         gamma^(-p)
     """
-    # The logarithm of the depth is interpolated, as it is nearly linear in tau_0 and in log |tau_b|.
+    # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
     study_levels = np.sort(rows["tau0"].unique())
     study_log_barriers = np.sort(np.log(-rows["barrier"].unique()))
     log_barriers = np.linspace(study_log_barriers[0], study_log_barriers[-1], MAP_POINTS)

@@ -100,10 +100,10 @@ def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> Pu
     """Return the drawn range and the units of one pulse.
 
     Under a displacement boundary, the units are the pulse width, slip, peak velocity and
-    acceleration by the paper's formulas. Under a stress boundary, the unit of length is the width of the
-    Gaussian. The units of slip and velocity are the largest values of the exact pulse far from the
-    nucleation. The exact acceleration has no largest value, so its unit is that of velocity divided
-    by that of length.
+    acceleration by the paper's formulas. Under a stress boundary, the unit of length is the width
+    of the Gaussian. The units of slip and velocity are the largest values of the exact pulse far
+    from the nucleation. The exact acceleration has no largest value, so its unit is that of
+    velocity divided by that of length.
 
     numbers : measured and predicted numbers of the run
     exact : profile of the exact pulse
