@@ -8,7 +8,7 @@ from slippulse.plotting.style import PAGE_WIDTH, new_panels
 from .shared.pulse_panels import (
     draw_prestress,
     draw_pulses,
-    handles,
+    legend_entries,
     pulse_table,
     styled_runs,
     title,
@@ -44,5 +44,6 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_prestress(axes, inset_box, styled_runs(rows), half_length)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
         below_panel = (0.5, -0.17)
-        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below_panel, ncols=3)
+        entries = legend_entries(rows)
+        axes.legend(handles=entries, loc="upper center", bbox_to_anchor=below_panel, ncols=3)
     return figure

@@ -122,7 +122,8 @@ def draw(table: pd.DataFrame) -> Figure:
     elastic_axes.set_ylim(0.98, 1.45)
     _draw_strong_damping(elastic_axes)
     _draw_springs(spring_axes, rows_by_panel["springs"])
-    # The limit of the speed as dx -> 0 is the same at every fixed beta.
+    # As dx -> 0 at fixed beta, the speed tends to a limit that hardly depends on beta. The largest
+    # one is drawn.
     limit_at_fixed_beta = float(rows_by_panel["limit"]["speed"].max())
     _draw_refined(refined_axes, rows_by_panel["refined"], limit_at_fixed_beta)
     style.legend_above(figure, total_axes, title="damping ratio $b$")
@@ -185,7 +186,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit_at_fixed_beta: float) ->
     Along a line, either beta or b = beta/dx is fixed: its name is in the column held, and its value
     in the column fixed. One of the limits is the speed without damping.
 
-    limit_at_fixed_beta : the exact speed as dx -> 0 under the elastic release rule
+    limit_at_fixed_beta : the other limit, the exact speed as dx -> 0 under the elastic release rule
     """
     symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])

@@ -91,7 +91,7 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     by_pulse = at_last_station.sort_values("cells").groupby(PULSE_COLUMNS)
     # The grid with the most cells is the last one.
     finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS, drop=False)
-    # Both times are the widths divided by the speed of the tip.
+    # A width is a time multiplied by the speed of the tip, so that both ratios are equal.
     crossing_width = _crossing_width(finest["gamma"], finest["speed"])
     finest["crossings"] = finest["pulse_width"] / crossing_width
     drawn = finest[["part", *QUANTITIES, "cells", "crossings", *THEORY_COLUMNS]]

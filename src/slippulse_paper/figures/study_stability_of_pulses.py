@@ -32,19 +32,20 @@ MIN_DRAWN_VELOCITY = 0.03
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
-    exact, lattice : final slip by distance x from the step, under a displacement boundary
+    exact, lattice : final slip as a function of the distance x from the step, under a displacement
+        boundary
     velocity : largest slip velocity at each sampled time, under a stress boundary
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    across = data["pulses_across_a_step"]
-    for number in range(across.sizes["point"]):
-        parts.append(lattice_slip(point(across, number), exact).assign(role="lattice"))
-    under_stress = data["regimes_beyond"]
+    held_top = data["pulses_across_a_step"]
+    for number in range(held_top.sizes["point"]):
+        parts.append(lattice_slip(point(held_top, number), exact).assign(role="lattice"))
+    held_stress = data["regimes_beyond"]
     # The runs with the lowest level on the left have the narrowest pulse.
-    left_levels = under_stress["left"].values
-    for index in np.flatnonzero(left_levels == left_levels.min()):
-        velocities = largest_velocities(point(under_stress, int(index)))
+    left_levels = held_stress["left"].values
+    for number in np.flatnonzero(left_levels == left_levels.min()):
+        velocities = largest_velocities(point(held_stress, int(number)))
         parts.append(velocities.assign(role="velocity"))
     return pd.concat(parts, ignore_index=True)
 

@@ -68,11 +68,9 @@ def _smallest_error_of_cheaper(rows: pd.DataFrame) -> pd.Series:
 
     rows : settings in the order of their cost
     """
-    order_columns = ["scheme", "order"]
-    # The smallest error up to and including a row.
-    smallest_so_far = rows.groupby(order_columns)["error"].transform("cummin")
-    by_order = smallest_so_far.groupby([rows[name] for name in order_columns])
-    return by_order.shift(fill_value=np.inf)
+    errors_by_order = rows.groupby(["scheme", "order"])["error"]
+    # The cumulative minimum includes the row itself. The shift moves it to the next row.
+    return errors_by_order.transform(lambda errors: errors.cummin().shift(fill_value=np.inf))
 
 
 def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_label: str) -> None:

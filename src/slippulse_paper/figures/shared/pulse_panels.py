@@ -197,11 +197,11 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         draw_prestress(velocity_axes, box, styled_runs(table), half_length_in_widths=5.0)
         # The exact acceleration has no bound at the front.
         acceleration_axes.set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    style.legend_below(figure, handles(table), 6)
+    style.legend_below(figure, legend_entries(table), 6)
     return figure
 
 
-def handles(table: pd.DataFrame) -> list[Line2D]:
+def legend_entries(table: pd.DataFrame) -> list[Line2D]:
     """Return the legend entries of one boundary condition: colours, line styles, simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
     level_symbol = SYMBOLS[LEVEL_COLUMNS[boundary]]
