@@ -141,13 +141,13 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     # These arrays have one row for each sampled time and one column for each position.
     slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
     is_outside_view = (x <= first_in_view) | (x >= last_in_view)
-    has_left_view = (slip[:, is_outside_view] > 0.0).any(axis=1)
-    last = int(np.flatnonzero(~has_left_view)[-1])
+    has_slip_outside = (slip[:, is_outside_view] > 0.0).any(axis=1)
+    last = int(np.flatnonzero(~has_slip_outside)[-1])
     is_stuck = (slip > 0.0) & (velocity <= 0.0)
     samples_with_stuck_blocks = np.flatnonzero(is_stuck[: last + 1].any(axis=1))
     # If no block sticks, the run remains a crack until the last instant.
     first_stick = int(samples_with_stuck_blocks[0]) if samples_with_stuck_blocks.size else last
-    # If two instants fall on the same sample, the last name in this list is kept.
+    # If two instants fall on the same sample, the name of the later one replaces the other.
     name_of_sample = {
         0: "start",
         first_stick // 2: "crack",

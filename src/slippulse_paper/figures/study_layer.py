@@ -64,7 +64,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     map : what a pulse does (column outcome) for each gamma and fracture energy
     """
     study = tables["layer"]
-    # The columns of the other parts are empty in this one.
+    # Columns that only other parts use are left out.
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
     pulses = drawn_pulses(study[study["part"] == "pulse"])
     free_pulses = drawn_pulses(study[study["part"] == "free"])
@@ -142,8 +142,9 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     gamma = first["gamma"]
     title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
     axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
-    # The fault moves fastest at the tip, which runs almost at the speed of the longitudinal wave.
-    tip = grid.columns[np.argmax(grid.to_numpy()[0])]
+    # The first row is the fault. It moves fastest at the tip, which runs almost at the speed of the
+    # longitudinal wave.
+    tip = float(grid.iloc[0].idxmax())
     shear_front = [tip, tip - _crossing_width(gamma)]
     axes.plot(shear_front, [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
 
@@ -160,29 +161,14 @@ def _gamma_looks(pulses: pd.DataFrame) -> dict[float, Look]:
 def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     """Draw speed, width and slip of pulses as functions of the fracture energy.
 
-    Markers are pulses on their finest grids, with the range over all grids as error bars. Dotted
-    lines are the pulse in one dimension with the same friction, and dashed lines the paper's
-    formulas.
+    Each quantity is divided by its own unit. There is one colour for each gamma.
     """
     speed_axes, width_axes, slip_axes = panels
     for gamma, look in _gamma_looks(pulses).items():
         rows = pulses[pulses["gamma"] == gamma].sort_values("fracture_energy")
-        # Each quantity is divided by its own unit.
-        units = {
-            "speed": 1.0,
-            "pulse_width": _crossing_width(gamma),
-            "pulse_slip": rows["paper_pulse_slip"],
-        }
-        for axes, (quantity, unit) in zip(panels, units.items(), strict=True):
-            value = rows[quantity] / unit
-            least, largest = rows[f"least_{quantity}"] / unit, rows[f"largest_{quantity}"] / unit
-            error = [value - least, largest - value]
-            line = look | {"linewidth": 0.8, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
-            axes.errorbar(rows["fracture_energy"], value, error, **line)
-            in_one_dimension = rows[f"damped_{quantity}"] / unit
-            axes.plot(rows["fracture_energy"], in_one_dimension, ":", color=look["color"])
-            formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
-            axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
+        _draw_quantity(speed_axes, rows, "speed", 1.0, look)
+        _draw_quantity(width_axes, rows, "pulse_width", _crossing_width(gamma), look)
+        _draw_quantity(slip_axes, rows, "pulse_slip", rows["paper_pulse_slip"], look)
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
@@ -198,6 +184,25 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
         entry("1D, same friction", color=BLACK, linestyle=":"),
     ]
     slip_axes.legend(handles=lines, loc="lower left", fontsize=SMALL_TEXT)
+
+
+def _draw_quantity(
+    axes: Axes, rows: pd.DataFrame, quantity: str, unit: float | pd.Series, look: Look
+) -> None:
+    """Draw a quantity of the pulses at one gamma, divided by a unit, by fracture energy.
+
+    Markers are pulses on their finest grids, with the range over all grids as error bars. The
+    dotted line is the pulse in one dimension with the same friction (prefix damped_), and the
+    dashed line is the paper's formula.
+    """
+    energy, value = rows["fracture_energy"], rows[quantity] / unit
+    least, largest = rows[f"least_{quantity}"] / unit, rows[f"largest_{quantity}"] / unit
+    label = rf"$\gamma = {rows['gamma'].iloc[0]:.2g}$"
+    line = look | {"linewidth": 0.8, "capsize": 1.5, "label": label}
+    axes.errorbar(energy, value, [value - least, largest - value], **line)
+    axes.plot(energy, rows[f"damped_{quantity}"] / unit, ":", color=look["color"])
+    formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
+    axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
 
 
 def _draw_sliding_times(

@@ -133,11 +133,11 @@ def _draw_deviation(
     remembers the old level. The exact slip is drawn as a line, and the lattice as markers.
     """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    # Beyond the memory the exact deviation is 0. The line ends at the first point beyond it, which
-    # is the only one beyond it whose predecessor is not.
-    is_drawn = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
+    # Beyond the memory the exact deviation is 0. The line ends at the first point beyond it.
+    count_within_memory = int((exact["x"] <= memory).sum())
+    drawn_exact = exact.iloc[: count_within_memory + 1]
     look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
-    for rows, line in ((exact[is_drawn], "-"), (marked, "o")):
+    for rows, line in ((drawn_exact, "-"), (marked, "o")):
         beyond_step = rows[rows["x"] > 0.0]
         deviation = np.abs(beyond_step["slip"] / steady - 1.0)
         # A deviation of exactly 0 is drawn at the rounding error.

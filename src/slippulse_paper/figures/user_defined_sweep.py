@@ -97,7 +97,7 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     # If two columns are equal in every run, only the first one is kept. In the transposed table,
     # each column is a row.
-    different = runs[[*columns]].T.drop_duplicates().index
+    different = runs[list(columns)].T.drop_duplicates().index
     counts = runs[different].nunique()
     varying = counts[counts > 1].sort_values(ascending=False, kind="stable").index
     numbers = [column for column in varying if runs[column].dtype.kind == "f"]

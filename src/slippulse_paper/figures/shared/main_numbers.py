@@ -68,7 +68,8 @@ def at_constant_levels(run: pd.Series) -> pd.Series:
     """
     run = run.copy()
     for side, prefixes in PREDICTION_PREFIXES.items():
-        # Only runs with a table of pre-stress have this number. It is NaN if the pre-stress varies.
+        # Only runs with a table of pre-stress have this number. It is NaN if the pre-stress varies
+        # ahead of the front.
         column = f"level_ahead_{side}"
         if column in run and np.isnan(run[column]):
             is_prediction = run.index.astype(str).str.startswith(prefixes)
@@ -79,9 +80,9 @@ def at_constant_levels(run: pd.Series) -> pd.Series:
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     """Return `main_numbers` of a scene, with the uncertainty of each number.
 
-    Theory is NaN and a number is left out where they do not apply to the scene. If the scene has a
-    promised accuracy, the result also has the columns promised and kept of
-    `slippulse.measurement.promise`.
+    Theory that does not apply to the scene is NaN. A transition that is not defined and a time that
+    would be repeated are left out. If the scene has a promised accuracy, the result also has the
+    columns promised and kept of `slippulse.measurement.promise`.
 
     run : measured and predicted numbers
     study : the grid study of the scene, with one row for each quantity
@@ -99,7 +100,7 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
     if has_bumps and run["boundary"] == "stress":
         left_out += ["transition_time", "transition_length"]
-    # If the displacement is held, the transition is at the first stick, which is not named twice.
+    # If the displacement is held, the transition is at the first stick, so both times are equal.
     if (quantity == "transition_time").any():
         left_out.append("first_stick_time")
     numbers = numbers[~quantity.isin(left_out)]

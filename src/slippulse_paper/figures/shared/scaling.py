@@ -162,8 +162,8 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     a few levels of the pre-stress.
     """
     boundary = table["boundary"].iloc[0]
-    # The level is called tau_0 if it is the same on both sides. The second varying parameter is
-    # gamma or width.
+    # The level is called tau_0 if it is the same on both sides, and left otherwise. The second
+    # varying parameter is gamma or width.
     level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
     table = table.assign(**{level_column: table["left"]}).sort_values("damping_ratio")
     # The insets show a few levels, at a middle value of the second parameter.
