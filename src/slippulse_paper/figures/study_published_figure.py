@@ -169,9 +169,10 @@ def _draw_region(
     best_fits: Mapping[str, pd.DataFrame],
     parameter: str,
 ) -> None:
-    """Draw confidence regions of the damping ratio and a parameter, with one best fit per rule.
+    """Draw the confidence regions of the damping ratio and a parameter, and the best fits.
 
-    At every point of a region, the other parameter has its best value.
+    A region is a band around the best value of the parameter as a function of the damping ratio. At
+    every point of it, the other parameter has its best value.
 
     curves, best_fits : interpolated fits, and the best fit, by release rule
     parameter : "tau0" or "gamma"
@@ -180,11 +181,12 @@ def _draw_region(
         curve, best_fit = curves[release], best_fits[release].iloc[0]
         rise_along_curve = curve["chi2"] - curve["chi2"].min()
         for level, alpha in zip(CONFIDENCE_LEVELS[::-1], (0.22, 0.45), strict=True):
-            # In the region, chi-square lies above its minimum by at most this amount. Away from the
-            # curve, it rises by the square of the distance in units of the parameter's error.
+            # In the region, chi-square lies above its minimum by at most this amount.
             largest_rise = chi_square_rise(level, 2)
             is_inside = rise_along_curve <= largest_rise
             region = curve[is_inside]
+            # Away from the best value of the parameter, chi-square rises by the square of the
+            # distance in units of the parameter's error.
             distance_in_errors = np.sqrt(largest_rise - rise_along_curve[is_inside])
             half_width = distance_in_errors * region[f"{parameter}_error"]
             low, high = region[parameter] - half_width, region[parameter] + half_width

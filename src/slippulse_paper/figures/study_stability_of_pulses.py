@@ -44,8 +44,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     held_stress = data["regimes_beyond"]
     # The runs with the lowest level on the left have the narrowest pulse.
     left_levels = held_stress["left"].values
-    for number in np.flatnonzero(left_levels == left_levels.min()):
-        velocities = largest_velocities(point(held_stress, int(number)))
+    for index in np.flatnonzero(left_levels == left_levels.min()):
+        velocities = largest_velocities(point(held_stress, int(index)))
         parts.append(velocities.assign(role="velocity"))
     return pd.concat(parts, ignore_index=True)
 
