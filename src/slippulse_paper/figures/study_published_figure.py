@@ -2,7 +2,8 @@
 
 A reading is a number that was read off the published figure. For each damping ratio b and release
 rule, tau_0 and gamma are fitted to the readings. The pull of a reading is its residual (fitted
-minus read value) divided by its reading error, and chi-square is the sum of the squared pulls.
+minus read value) divided by its reading error. Some readings share a part of their errors, so
+chi-square is the sum of the squares of independent combinations of the pulls.
 """
 
 from collections.abc import Mapping
@@ -132,7 +133,7 @@ def _draw_chi2(
     of the damping ratio.
 
     curves, best_fits : interpolated fits, and pulls of the best fit, by release rule
-    notebook : pulls with the settings of the authors' public notebook
+    notebook : the fit with the settings of the authors' public notebook, with one row per reading
     """
     # Three parameters are fitted: tau_0, gamma and the damping ratio.
     dof = best_fits["total"]["reading"].nunique() - 3
@@ -152,7 +153,7 @@ def _draw_chi2(
     top = 1.9 * largest_accepted
     # The notebook fits much worse. Its chi-square is far above the top of the axes, where a marker
     # points to it.
-    notebook_chi2 = (notebook["pull"] ** 2).sum()
+    notebook_chi2 = (notebook["independent_pull"] ** 2).sum()
     label = rf"notebook, total force: $\chi^2 = {notebook_chi2:.0f}$"
     colour_of_total, _, _ = RULE_LOOKS["total"]
     ratio = notebook["damping_ratio"].iloc[0]
