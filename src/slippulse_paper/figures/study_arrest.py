@@ -111,7 +111,7 @@ def draw_path(
 ) -> None:
     """Draw the distance that one left front has still to go, as a function of time.
 
-    A wide pale line is a lattice, and a thin line is exact.
+    The wide pale line is from a lattice, and the thin line is exact.
 
     end : time up to which the exact distance is drawn
     """
