@@ -68,7 +68,7 @@ def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
     crack_seconds = [shortest_seconds(setting.run_crack) for setting in settings]
     pulse_seconds = [_mean_pulse_seconds(setting) for setting in settings]
     with_seconds = errors_by_setting.assign(crack=crack_seconds, pulse=pulse_seconds)
-    return error_rows(with_seconds, "seconds", column_of=_simulation_with_quantity)
+    return error_rows(with_seconds, "seconds", cost_column_of=_simulation_with_quantity)
 
 
 def _mean_pulse_seconds(setting: Setting) -> float:
