@@ -337,10 +337,10 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     exponent that is farther from 1 decides.
     """
     if boundary == "displacement":
-        runs, varied_columns = transitions(evidence), ("left", "gamma")
+        runs, varied_columns = transitions(evidence), ["left", "gamma"]
     else:
         # Without leaf springs gamma has no influence.
-        runs, varied_columns = arrests(evidence), ("left",)
+        runs, varied_columns = arrests(evidence), ["left"]
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
         """Fit both exponents to the runs of one combination, and judge the one farther from 1."""
