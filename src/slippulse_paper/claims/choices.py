@@ -70,10 +70,10 @@ class Change(NamedTuple):
 
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
-    """Return all ordered pairs of combinations that differ in one of CHOICE_WORDS only.
+    """Return all ordered pairs of combinations that differ in one choice only.
 
-    Combinations without a deviation are left out. So are those at the last release, because this is
-    a property of the lattice and not a choice that the paper leaves open.
+    This must be a choice that the paper leaves open (CHOICE_WORDS). Combinations without a
+    deviation are left out. So are those at the last release, which is a property of the lattice.
     """
     compared = []
     for combination in combinations:

@@ -130,6 +130,7 @@ class Evidence:
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
+        """Keep what is given, and prepare the tables of three lattices for each simulation."""
         self.tables = tables
         self.entries = entries
         self.steady = steady

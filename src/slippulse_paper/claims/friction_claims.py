@@ -92,6 +92,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
     words = "laws, by their strengthening, that leave a steady pulse"
+    # The condition is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
         condition=True,
@@ -102,8 +103,8 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether other laws change width and slip of pulses by more than the tolerance.
 
-    Pulses at STRONGEST_RATES are compared with those at constant friction and the same level of
-    pre-stress. The sentences of the claim also quote front speeds under slip weakening.
+    Pulses at STRONGEST_RATES of rate strengthening are compared with those at constant friction and
+    the same level of pre-stress. Sentences also quote front speeds under slip weakening.
     """
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
     # The column over_critical has the rate strengthening divided by the critical one.
@@ -131,6 +132,7 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         # The paper's formula at constant friction, without damping.
         "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
     }
+    # The condition is that only one friction law was tested.
     return Qualitative(
         decided=is_changed.to_numpy().ravel(),
         condition=True,

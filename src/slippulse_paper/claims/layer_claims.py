@@ -37,7 +37,7 @@ RESOLVED_CELLS = 2.0
 def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
     """Return the rows of all runs and grids at one station.
 
-    before_last : number of stations between the chosen one and the last one; 0 for the last one
+    before_last : 0 for the last station, 1 for the second last, and so on
     """
     rows = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
     return rows[rows["station"] == rows["station"].max() - before_last]
@@ -66,9 +66,11 @@ def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Ser
 
 
 def change_with_distance(evidence: Evidence, quantity: str, before_last: int = 1) -> pd.Series:
-    """Return the relative change of a quantity of each pulse of the part far between two stations.
+    """Return the relative change of a quantity from an earlier station to the last one.
 
-    before_last : number of stations from the first of the two to the other, which is the last one
+    There is one value for each pulse of the part far.
+
+    before_last : 1 if the earlier station is the second last, and so on
     """
     last = finest_rows(rows_at_station(evidence), "far")[quantity]
     earlier = finest_rows(rows_at_station(evidence, before_last), "far")[quantity]
@@ -254,6 +256,10 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses of the part far split, with which fracture energies, and where.
 
+    pulses, followed, split : number of pulses of the part pulse, of those that were followed in the
+        part far, and of those that split
+    distance, near_distance : position of the last station of the parts far and pulse, at the
+        largest gamma
     narrow_..., wide_... : of pulses that split at the largest gamma, and at a smaller gamma
     split_..., coarse_split_... : range of the positions in `followed_pulses`, at the largest gamma
     step_... : of the pulse of the part step, which was followed, too, but is not counted
@@ -342,6 +348,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(ratio.median()), uncertainty),
+        # The paper makes no claim about two dimensions.
         failing=rules.BEYOND,
         further={
             "median in the plane, divided by the formula: speed": float(speed_ratio.median()),
@@ -574,9 +581,8 @@ def split_of_drawn_pulse(evidence: Evidence) -> float:
     drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
     far = rows_at_station(evidence).query("part == 'far'").sort_values("cells")
     parameters = ["gamma", "tau0", "weakening"]
-    is_drawn = np.isclose(far[parameters].to_numpy(float), drawn[parameters].to_numpy(float)).all(
-        axis=1
-    )
+    drawn_parameters = drawn[parameters].to_numpy(float)
+    is_drawn = np.isclose(far[parameters].to_numpy(float), drawn_parameters).all(axis=1)
     # The finest grid comes last.
     positions = far["split_position"][is_drawn].dropna()
     return float(positions.iloc[-1]) if len(positions) else np.nan

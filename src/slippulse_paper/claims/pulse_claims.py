@@ -245,6 +245,7 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     Pulses in zero pre-stress keep their shape, so the strain that they leave must be 0. The
     additional requirement is that pulses that leave strain grow or decay.
     """
+    # In this simulation pulses enter the pre-stress level in the column beyond.
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
     has_changed = evidence.holds_in_runs(

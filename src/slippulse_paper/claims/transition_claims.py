@@ -323,7 +323,8 @@ def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge an estimate of the arrest, under a stress boundary.
 
-    The front counts as arrested at each fraction of its path, or at the last release.
+    It is judged for each fraction of the path at which the front may count as arrested, and at the
+    last release. The claim also shows the median ratio for each of these.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "stress", quantity)
     further = arrow | described_median_ratios(combinations)
@@ -395,12 +396,10 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge the runs of one combination, without a limit and at a given tolerance."""
+        """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
         return replace(
-            takes_longer(tables, limit=np.inf),
-            extra_verdict=lambda tolerance: takes_longer(
-                tables, limit=tolerance if tolerance > 0.0 else np.inf
-            ).verdict(),
+            takes_longer(tables),
+            extra_verdict=lambda tolerance: takes_longer(tables, limit=tolerance).verdict(),
         )
 
     runs = arrests(evidence)
@@ -413,16 +412,18 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     return over_choices(judge_each(runs, judge), further=further)
 
 
-def takes_longer(tables: list[pd.DataFrame], limit: float) -> Qualitative:
+def takes_longer(tables: list[pd.DataFrame], limit: float = 0.0) -> Qualitative:
     """Judge in each run whether the left front takes longer to its arrest than at speed 1.
 
-    limit : largest allowed additional time, as a fraction of the time at speed 1
+    limit : largest allowed additional time, as a fraction of the time at speed 1; no limit if it
+        is 0
     """
     holds = []
     for table in tables[:2]:
         # At speed 1 the time equals the distance.
         excess = table["time"] / table["covered"] - 1.0
-        holds.append((excess > 0.0) & (excess <= limit))
+        is_allowed = (excess <= limit) | (limit == 0.0)
+        holds.append((excess > 0.0) & is_allowed)
     # The two finest lattices must agree. An exact solution is one table, which agrees with itself.
     return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 

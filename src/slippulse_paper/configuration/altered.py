@@ -23,6 +23,7 @@ class Alterations:
     """
 
     def __init__(self, shipped: Configuration, altered: Configuration) -> None:
+        """Find the changes of each simulation, except those that have no influence of their own."""
         self.shipped, self.altered = shipped, altered
         self.changes_of = {}
         self._altered_simulations = all_simulations(altered)

@@ -118,6 +118,7 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
         return sum(math.prod(map(len, _lists_of(profile))) for profile in self._profiles)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield the profile of each run, with one value in place of each list."""
         for profile in self._profiles:
             for values in product(*_lists_of(profile)):
                 run_profile = dict(profile)

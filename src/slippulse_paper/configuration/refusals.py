@@ -51,25 +51,33 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     ``problem`` is the error, and ``config`` the configuration that is refused.
     """
     kind, path = problem["type"], problem["loc"]
-    entry = _last_known_entry(path, config)
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    # These kinds of error are about a mapping: it is not valid as a whole, or it has a wrong key,
-    # which is the last part of the path. If a value may also have another form than a mapping, the
-    # path leads beyond the known entries. Such a value is refused as a whole, at the end.
+    # If a value may have several forms, the path leads beyond the known entries, to one of the
+    # forms. Such a value is refused as a whole, without regard to its keys.
+    entry = _last_known_entry(path, config)
     mapping_path = path if kind == "value_error" else path[:-1]
-    is_in_known_mapping = len(mapping_path) <= len(entry.path)
-    if is_in_known_mapping:
-        if kind == "value_error":
-            reason = str(problem["ctx"]["error"])
-            return f"{dotted(path)}.{reason}" if path else reason
-        if kind == "missing" and isinstance(path[-1], str):
-            return _missing_line(path, config)
-        if kind == "extra_forbidden":
-            return _unknown_key_line(path, config)
+    if len(mapping_path) <= len(entry.path):
+        line = _mapping_line(problem, config)
+        if line is not None:
+            return line
     allowed = "a finite number" if kind == "finite_number" else words_for(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
     return f"{given}; allowed: {allowed}{_remedy(entry.value)}"
+
+
+def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
+    """Return the refusal of a mapping that is not valid as a whole, or has a wrong or missing key.
+
+    Returns None if the error is of another kind. The parameters are those of `problem_line`.
+    """
+    kind, path = problem["type"], problem["loc"]
+    if kind == "value_error":
+        reason = str(problem["ctx"]["error"])
+        return f"{dotted(path)}.{reason}" if path else reason
+    if kind == "missing" and isinstance(path[-1], str):
+        return _missing_line(path, config)
+    return _unknown_key_line(path, config) if kind == "extra_forbidden" else None
 
 
 def _name_line(path: Path) -> str:

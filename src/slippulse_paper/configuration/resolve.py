@@ -90,6 +90,7 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
+    # Turn the single values of the scene into the profiles and lists of a simulation.
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
     extent = _extent(scene, model, profile)
     given |= {key: [given[key]] for key in LISTED if key in given}
@@ -108,6 +109,8 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
 
 def _largest_front_speeds(scene: NamedScene, model: Model, levels: np.ndarray) -> np.ndarray:
     """Return an upper bound on the front speed in a scene, at each value of the pre-stress.
+
+    If the scene sets beta, the bound holds as long as beta/dx is at most 1.
 
     levels : values of the pre-stress
     """

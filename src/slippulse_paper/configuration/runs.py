@@ -114,6 +114,7 @@ def run_count(simulation: Mapping) -> int:
 
 def _axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
+    # A list that is not given has one entry: its default, or None if something else sets the value.
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
     return {
@@ -137,12 +138,12 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation that give its pre-stress, by name."""
     if "profiles" in simulation:
         return {"profile": ExpandedProfiles(simulation["profiles"])}
-    right, beyond = simulation["right"], simulation.get("beyond")
+    right, second_level = simulation["right"], simulation.get("beyond")
     # Each entry has the steps of one run. By default there are none.
     steps: list[tuple] = [()]
-    if beyond is not None:
-        # The pre-stress of each run has one step, to one of the levels beyond the position.
-        steps = [((beyond["position"], level),) for level in beyond["levels"]]
+    if second_level is not None:
+        # The pre-stress of each run has one step, to one of the levels.
+        steps = [((second_level["position"], level),) for level in second_level["levels"]]
     return {
         "left": simulation["left"],
         "right": [SAME] if right == SAME else right,

@@ -841,7 +841,7 @@ class Configuration(Block):
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:
-        """Raise ValueError if a name is unknown or used twice, or if a scheme has no accuracy."""
+        """Raise ValueError if a name is unknown or used twice, or if an accuracy is impossible."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme

@@ -197,6 +197,7 @@ def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
     It is NaN if the study does not have the number, or has another value for it.
 
     path : table of the grid study, which may not exist
+    numbers : table with one row for each run (point) and one column for each quantity
     """
     if not path.exists():
         return numbers * np.nan

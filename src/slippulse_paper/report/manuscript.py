@@ -131,7 +131,7 @@ class Gallery:
         return "\n\n".join(self.figure(name) for name in self.further_names)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """Return a reference to a figure in Markdown, such as " ([figure 3](#NAME))".
+        """Return a reference to a figure in Markdown, such as "[figure 3](#NAME)".
 
         The result is empty if the figure was not drawn.
 

@@ -6,6 +6,7 @@ the verdicts of the claims that a text names.
 """
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
@@ -251,8 +252,9 @@ def _opening(line: Line) -> str:
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
     start = "No" if verdict == "not reproduced" else "Not decided"
-    predicates = {words.verdict: words.singular for group in SENTENCES for words in group}
-    return f"**{start}**: that {line.named}, {predicates[verdict]}."
+    # Find the words for this verdict, such as "is not reproduced".
+    predicate = {words.verdict: words.singular for words in chain.from_iterable(SENTENCES)}
+    return f"**{start}**: that {line.named}, {predicate[verdict]}."
 
 
 def answer(lines: Sequence[Line]) -> str:
