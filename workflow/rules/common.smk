@@ -268,7 +268,9 @@ def settings_of(job):
     return {
         # If an accuracy is required, `with_promised_spacings` adds the spacing of each run.
         "sweep": with_promised_spacings(sweep),
-        "sweeps": {factor: with_promised_spacings(sweep | {"coarser": factor}) for factor in factors},
+        "sweeps": {
+            factor: with_promised_spacings(sweep | {"coarser": factor}) for factor in factors
+        },
         "measure": {**config["measure"], "fraction": fraction},
         "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
