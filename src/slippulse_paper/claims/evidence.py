@@ -257,8 +257,9 @@ class Evidence:
     ) -> list[bool | None]:
         """Return for each run whether a condition holds; None if that is undecided.
 
-        The two finest lattices decide if they agree. If they do not, or if the run is not
-        decidable, the regime of the exact solution decides, provided that ``ends`` is given.
+        The two finest lattices decide if they agree. If they do not, or if lattices cannot decide,
+        the regime of the exact solution decides, provided that ``ends`` is given and that this
+        regime is known.
 
         where : condition over columns that selects runs
         holds : the condition over columns that is judged

@@ -53,11 +53,12 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether ruptures under other friction laws become pulses, which means not cracks.
+    """Judge whether ruptures under other friction laws become pulses.
 
-    Runs in which blocks would slide back are left out, and so are ruptures that stop at once.
+    A rupture counts as a pulse unless its regime is "crack". Runs in which blocks would slide back
+    are left out, and so are ruptures that stop at once.
     """
-    # At 0 the column over_critical means constant friction, which is not another law.
+    # Where the column over_critical is 0, friction is constant, which is not another law.
     linear_in_rate = evidence.tables["rate_dependence"].query(
         "role == 'lattice' and over_critical != 0"
     )

@@ -610,7 +610,8 @@ def across_a_step(evidence: Evidence) -> dict[str, float]:
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
-    # The slip at the last station, by grid, level before the step and level beyond it.
+    # The slip at the last station, by grid, level before the step and level beyond it. In a uniform
+    # run both levels are equal.
     final_slip = rows.groupby(["cells", "before", "tau0"])["pulse_slip"].last()
     slips_on_grids = [final_slip[cells] for cells in sorted(rows["cells"].unique())]
     finest = slips_on_grids[-1]

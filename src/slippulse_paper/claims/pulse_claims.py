@@ -66,7 +66,9 @@ class Always(NamedTuple):
 
 
 def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
-    """Judge a claim whose rule is a condition that must hold in each run.
+    """Judge a claim whose rule is a condition that must hold in each run of some sweeps.
+
+    The rule may also ask for additional numbers: counts of regimes, and values of expressions.
 
     keys : fields of the rule, which are explained at `Always`
     """
@@ -75,6 +77,7 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     # relative change of velocity of a steady pulse.
     holds = rule.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
     if not holds:
+        # Without a condition, the rupture must end in one of these regimes.
         holds = f"regime in {rule.ends}"
     decided: list[bool | None] = []
     for sweep in rule.sweeps:

@@ -113,6 +113,7 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     The combination with which we drew figure 5 comes first, because claims show the numbers of the
     first one.
     """
+    # The choices that vary, and their values in figure 5.
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
@@ -124,12 +125,9 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     other_runs: list[Runs] = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
-        runs = Runs(choice | {"solution": "exact"}, [rows])
-        is_of_figure = all(choice[name] == value for name, value in choices_of_figure.items())
-        if is_of_figure:
-            runs_of_figure.append(runs)
-        else:
-            other_runs.append(runs)
+        is_of_figure = choices_of_figure.items() <= choice.items()
+        group = runs_of_figure if is_of_figure else other_runs
+        group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
 
 
@@ -289,6 +287,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
         "in all": float(len(ratio)),
         "of these within the tolerance": float(is_within_tolerance.sum()),
     }
+    # Values for the sentences of the claim.
     template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
     template_values |= {
         "of_runs": len(ratio),

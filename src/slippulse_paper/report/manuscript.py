@@ -233,6 +233,7 @@ def execute(source: Path, inputs: Inputs) -> str:
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)
     for cell in jupytext.read(source).cells:
+        # A cell with this tag is run only if the document is opened as a notebook.
         if BY_HAND in cell.metadata.get("tags", []):
             continue
         try:
