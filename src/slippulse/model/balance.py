@@ -40,6 +40,7 @@ def _integral_in_interval(
     (peak - background) exp(-x^2 / 2 width^2).
     """
     peak, width = prestress.peak, prestress.width
+    # The background is constant on an infinite interval, for which the formulas below would fail.
     if interval.left_value == interval.right_value:
         level = interval.left_value
         total = level * (end - start)
@@ -48,6 +49,7 @@ def _integral_in_interval(
         return total
     rise = interval.right_value - interval.left_value
     slope = rise / (interval.right - interval.left)
+    # The integral of the background is its value in the middle times the length.
     middle = 0.5 * (start + end)
     value_in_middle = interval.left_value + slope * (middle - interval.left)
     total = value_in_middle * (end - start)
@@ -109,7 +111,10 @@ def prestress_balance_position(prestress: Prestress) -> float:
 
 @lru_cache(maxsize=1024)
 def _balance_position(prestress: Prestress) -> float:
-    """Compute `prestress_balance_position`; results are cached."""
+    """Return the position x_minus < 0 from which the integral of the pre-stress to infinity is 0.
+
+    `prestress_balance_position` names the conditions and errors. Results are cached.
+    """
     # On the right the level is 0, so that integrals to infinity end at this distance.
     distance = _distance_of_levels(prestress)
     left, right = prestress.level(np.array([-distance, distance])).tolist()
@@ -119,6 +124,8 @@ def _balance_position(prestress: Prestress) -> float:
     check_that(left < 0.0, "prestress.left", left, allowed)
     if prestress.points:
         return _balance_of_table(prestress, distance)
+    # The balance lies between these positions. The lower one is moved to the left until the
+    # integral from there is not positive.
     lower, upper = -distance, 0.0
     while integral(prestress, lower, distance) > 0.0:
         lower *= 2.0
@@ -131,6 +138,7 @@ def _distance_of_levels(prestress: Prestress) -> float:
     """Return a distance from x = 0 beyond which the profile equals its level on either side.
 
     The values are equal to machine precision, because at 40 widths a Gaussian has no digits left.
+    Beyond a step or a point any margin is enough.
     """
     distances = [abs(centre) + 40.0 * width for centre, width in prestress.gaussians]
     distances += [abs(position) + (prestress.width or 1.0) for position, _ in prestress.steps]
@@ -149,18 +157,22 @@ def _balance_of_table(prestress: Prestress, distance: float) -> float:
     distance : distance from x = 0 beyond which the pre-stress equals its level on either side. On
         the right the level is 0, so that an integral to infinity ends there.
     """
-    x, tau = prestress.point_arrays
-    # A table without a Gaussian at x = 0 is released wherever it reaches 1.
-    released = x[tau >= min(1.0, float(tau.max()))]
-    nucleation = 0.0 if prestress.width is not None else float(released[0])
+    nucleation = 0.0
+    if prestress.width is None:
+        # Without a Gaussian at x = 0, the rupture starts at the points that reach 1 or, if none
+        # does, at the largest value. This is the leftmost of these points.
+        x, tau = prestress.point_arrays
+        nucleation = float(x[tau >= min(1.0, float(tau.max()))][0])
     integral_from_right_end = integral(prestress, nucleation, distance)
     if not integral_from_right_end >= 0.0:
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
     for part in _parts_leftwards(prestress, nucleation):
+        # A function of the position within this part.
         integral_from = partial(_integral_from, prestress, part, integral_from_right_end)
         left_end = part.left
         if left_end == -math.inf:
-            # The outermost part is infinite. Its length is doubled until the integral is negative.
+            # The last part is infinite. A finite length of it, which is doubled until the integral
+            # is negative, is enough.
             left_end = part.right - 1.0
             while integral_from(left_end) >= 0.0:
                 left_end = part.right - 2.0 * (part.right - left_end)
@@ -201,8 +213,8 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
     for interval in reversed(prestress.intervals):
         left, right, left_value, right_value = interval
         if left_value * right_value < 0.0:
-            zero = left - left_value * (right - left) / (right_value - left_value)
-            ranges = [(zero, right), (left, zero)]
+            sign_change = left - left_value * (right - left) / (right_value - left_value)
+            ranges = [(sign_change, right), (left, sign_change)]
         else:
             ranges = [(left, right)]
         for part_left, part_right in ranges:

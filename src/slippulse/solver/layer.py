@@ -22,7 +22,7 @@ scheme conserves a discrete energy, so the energy that friction dissipates is ex
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,6 +37,8 @@ MAX_DAMPING_RATIO = 0.11
 # On a grid, small precursors run ahead of the compressional wave. This number of cells is kept for
 # them.
 PRECURSOR_CELLS = 32
+# Number types of the velocities and stresses.
+PRECISIONS: dict[str, Any] = {"double": np.float64, "single": np.float32}
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,10 @@ class LayerScene:
     trail: float = math.inf
     # Damping: beta times its rate is added to each stress, as to the elastic force in `Scene`.
     beta: float = 0.0
+    # "single" takes less than half the time of "double". Times and slips of pulses then differ by
+    # some 1e-6, and slip at points that stick and slide many times by up to 1 %. Both differences
+    # are much smaller than the error of the grid.
+    precision: str = "double"
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, ("displacement", "stress"))
@@ -78,6 +84,7 @@ class LayerScene:
         allowed = "a symmetric scene, if the trail is finite"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
+        check_choice("precision", self.precision, tuple(PRECISIONS))
 
     @property
     def slip_scale(self) -> float:
@@ -88,6 +95,11 @@ class LayerScene:
     def symmetric(self) -> bool:
         """True if it is enough to solve the half x >= 0."""
         return self.prestress.symmetric and self.coupling == 0.0
+
+    @property
+    def number_type(self) -> Any:
+        """Number type of the velocities and stresses."""
+        return PRECISIONS[self.precision]
 
 
 @dataclass(frozen=True)
@@ -421,20 +433,22 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
+    # With these types, the kernel computes in the precision of the fields.
+    number_type = scene.number_type
     return Elastic(
-        ratio=ratio,
-        shear=0.5 * scene.gamma,
+        ratio=number_type(ratio),
+        shear=number_type(0.5 * scene.gamma),
         is_mirrored=scene.symmetric,
         moving_rows=moving_rows,
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
-        damping=scene.beta / (ratio / scene.cells),
-        above=above,
-        below=below,
-        direct=np.where(normal, 1.0, 1.0 - lateral**2),
-        lateral=lateral * normal,
-        normal=normal,
+        damping=number_type(scene.beta / (ratio / scene.cells)),
+        above=above.astype(number_type),
+        below=below.astype(number_type),
+        direct=np.where(normal, 1.0, 1.0 - lateral**2).astype(number_type),
+        lateral=(lateral * normal).astype(number_type),
+        normal=normal.astype(number_type),
     )
 
 
@@ -442,11 +456,11 @@ def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
     """Return velocities and stresses of 0, on rows of ``size`` nodes."""
     on_rows, between_rows = (scene.cells + 1, size), (scene.cells, size)
     return Fields(
-        vx=np.zeros(on_rows),
-        vy=np.zeros(between_rows),
-        sxx=np.zeros(on_rows),
-        syy=np.zeros(on_rows),
-        sxy=np.zeros(between_rows),
+        vx=np.zeros(on_rows, scene.number_type),
+        vy=np.zeros(between_rows, scene.number_type),
+        sxx=np.zeros(on_rows, scene.number_type),
+        syy=np.zeros(on_rows, scene.number_type),
+        sxy=np.zeros(between_rows, scene.number_type),
     )
 
 

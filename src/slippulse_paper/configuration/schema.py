@@ -796,7 +796,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number: a column of the tables in results/measurements")
-    statement: Statement = key("description of what was read off (figure)", min_length=1)
+    statement: Statement = key("description of the reading (figure)", min_length=1)
     value: float = key("the number that was read off (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
