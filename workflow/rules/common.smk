@@ -20,7 +20,7 @@ from slippulse_paper.configuration.altered import Alterations
 from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
 from slippulse_paper.configuration.problems import ConfigError
-from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.promised_spacings import with_promised_spacings
 from slippulse_paper.configuration.read import read_config, read_overlay
 from slippulse_paper.configuration.renamed_keys import rename_warnings
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
@@ -272,9 +272,11 @@ def settings_of(job):
     fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
-        # If an accuracy is required, `promised` adds the spacing of each run.
-        "sweep": promised(sweep),
-        "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
+        # If an accuracy is required, `with_promised_spacings` adds the spacing of each run.
+        "sweep": with_promised_spacings(sweep),
+        "sweeps": {
+            factor: with_promised_spacings(sweep | {"coarser": factor}) for factor in factors
+        },
         "measure": {**config["measure"], "fraction": fraction},
         "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
