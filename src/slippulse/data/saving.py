@@ -11,17 +11,17 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from .files import configuration, write_whole
+from .files import configuration_digest, write_whole
 
 
 def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a Dataset as netCDF-4; equal data give equal bytes.
 
-    Each coordinate must have the name of its dimension. In the workflow, the digest of the
-    configuration is added to the attributes.
+    Each coordinate must have the name of its dimension. In the workflow, the digest (checksum) of
+    the configuration is added to the attributes. The file is either complete or absent.
     """
-    if configuration():
-        dataset = dataset.assign_attrs(configuration=configuration())
+    if configuration_digest():
+        dataset = dataset.assign_attrs(configuration=configuration_digest())
     write_whole(path, lambda unfinished: _write(dataset, unfinished))
 
 

@@ -90,16 +90,16 @@ def _check_drawable(run: object) -> None:
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     """Draw the panels, in SI units if a layer is given."""
     table = _drawn_table(run)
+    # The rows of the table by their role: what they show, such as "map" or "front".
     roles = by_role(table if layer is None else table_in_si(table, layer))
-    has_map = "map" in roles
-    # A run in which no block was released has no front and no trailing edge.
-    no_rows = table.iloc[:0]
-    roles = {"front": no_rows, "trailing": no_rows} | roles
+    # A run in which no block was released has no rows of the front and of the trailing edge.
+    for role in ("front", "trailing"):
+        roles.setdefault(role, table.iloc[:0])
     figure = Picture(figsize=(PAGE_WIDTH, 2.8), layout="constrained")
     panels = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     prestress_axes, map_axes, slip_axes = panels
     space_time.draw_profile(prestress_axes, roles)
-    if has_map:
+    if "map" in roles:
         space_time.draw_map(map_axes, roles)
         if run.attrs.get("limit_reason"):
             _hatch_unknown(map_axes, run, roles)

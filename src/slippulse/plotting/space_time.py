@@ -60,16 +60,17 @@ def run_title(roles: dict[str, pd.DataFrame]) -> str:
     if "unit" in roles:
         return _append_remarks(_title_in_si(roles["parameter"]), roles)
     parameters = roles["parameter"].set_index("series")["value"]
-    parameters["tau_0"] = parameters["left"]
     held = parameters["gamma"] > 0.0
     names = ["gamma"] if held else []
     # The levels far away do not describe a table of pre-stress.
     if "table" not in roles:
         has_equal_levels = parameters["left"] == parameters["right"]
         names += ["tau_0"] if has_equal_levels else ["left", "right"]
+        parameters["tau_0"] = parameters["left"]
     names += ["width", "damping_ratio", "dx"]
-    named = [name for name in names if np.isfinite(parameters[name])]
-    return _append_remarks(conditions(held, **parameters[named]), roles)
+    # The width is NaN if the pre-stress has no Gaussian.
+    finite_names = [name for name in names if np.isfinite(parameters[name])]
+    return _append_remarks(conditions(held, **parameters[finite_names]), roles)
 
 
 def _title_in_si(parameters: pd.DataFrame) -> str:
@@ -86,7 +87,8 @@ def _title_in_si(parameters: pd.DataFrame) -> str:
 def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
     """Append the remarks of a run to a title: its table of pre-stress, friction law and flags.
 
-    Each remark is the text in the column series of its role. Most runs have none.
+    A remark is a row with the role table, friction or flag, whose column series has the text. Most
+    runs have none.
     """
     if "table" in roles:
         title += f", {roles['table']['series'].iloc[0]}"
@@ -100,20 +102,22 @@ def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the released blocks (all blocks if none was released) with a margin. On a side on
-    which released blocks lie beyond the sampled positions, the range ends at the outermost sample.
+    They enclose the released blocks (all blocks if none was released) with a margin. But on a side
+    on which the sampled positions do not reach beyond these blocks, the range ends with the
+    samples.
     """
     released = run["x"].values[np.isfinite(run["release_time"].values)]
     drawn = released if released.size else run["x"].values
-    margin = max(MARGIN_FRACTION * (drawn[-1] - drawn[0]), run.attrs["dx"])
+    lowest, highest = drawn[0], drawn[-1]
+    margin = max(MARGIN_FRACTION * (highest - lowest), run.attrs["dx"])
     sample_count = run.sizes.get("sample_position", 0)
     if sample_count < 2:
-        return float(drawn[0] - margin), float(drawn[-1] + margin)
-    first, last = run["sample_position"].values[[0, -1]]
+        return float(lowest - margin), float(highest + margin)
+    first_sample, last_sample = run["sample_position"].values[[0, -1]]
     # The margin is at least three intervals between samples wide.
-    margin = max(margin, 3.0 * (last - first) / (sample_count - 1))
-    lower = drawn[0] - margin if drawn[0] > first else first
-    upper = drawn[-1] + margin if drawn[-1] < last else last
+    margin = max(margin, 3.0 * (last_sample - first_sample) / (sample_count - 1))
+    lower = lowest - margin if first_sample < lowest else first_sample
+    upper = highest + margin if last_sample > highest else last_sample
     return float(lower), float(upper)
 
 

@@ -67,7 +67,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         self.slow_start = float(left_end_of_fast_fronts)
 
     def _entry_of(self, position: float) -> float:
-        """Return where a wave entered the rupture, given the position where it meets the left front.
+        """Return where a wave entered the rupture that meets the left front at a given position.
 
         The wave runs to the left. So it entered farther right, through a fast front. The integral
         of tau between the two positions is 0.

@@ -81,7 +81,7 @@ def draw(table: pd.DataFrame) -> Figure:
         path_axes.plot(path_end["time"], path_end["to_go"], marker, label=label, **look)
         draw_times(spacing_axes, roles["run"].sort_values("dx"), marker, look)
     fraction = table["fraction"].max()
-    style.legend_below(figure, [*style.labelled([path_axes]), *legend_entries(fraction)], 5)
+    style.legend_below(figure, [*style.legend_handles([path_axes]), *legend_entries(fraction)], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     levels = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
     scene = style.conditions(False, **levels)

@@ -5,7 +5,7 @@ from collections import Counter
 from pkgutil import resolve_name
 
 from slippulse.data.saving import save_dataset
-from slippulse.data.sweeps import labelled
+from slippulse.data.sweeps import with_run_labels
 from slippulse.data.variables import described
 from slippulse.simulation.sweep import solve_sweep
 
@@ -37,7 +37,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         threads=settings["threads"],
         progress=settings.get("progress"),
     )
-    data = labelled(data, profile_labels(sweep), sweep["record"])
+    data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     flags = [flag for flag in data["run_flags"].values if flag]
     for flag, count in sorted(Counter(flags).items()):
         flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
