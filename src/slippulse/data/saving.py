@@ -22,10 +22,10 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """
     if configuration_digest():
         dataset = dataset.assign_attrs(configuration=configuration_digest())
-    write_whole(path, lambda unfinished: _write(dataset, unfinished))
+    write_whole(path, lambda unfinished: _write_netcdf(dataset, unfinished))
 
 
-def _write(dataset: xr.Dataset, path: Path) -> None:
+def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
     """Write a Dataset to a new file."""
     with path.open("w+b") as target, h5py.File(target, "w", track_order=True) as file:
         file.attrs.update(dataset.attrs)

@@ -80,12 +80,12 @@ def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: L
     return unit.text
 
 
-def with_unit(label: str, roles: dict[str, pd.DataFrame], name: str) -> str:
+def with_unit(label: str, rows_by_role: dict[str, pd.DataFrame], name: str) -> str:
     """Append the unit of an axis to its label, if the table is in SI units.
 
     name : the column or quantity on the axis
     """
-    if "unit" not in roles:
+    if "unit" not in rows_by_role:
         return label
-    units = roles["unit"].set_index("series")["unit"]
+    units = rows_by_role["unit"].set_index("series")["unit"]
     return f"{label} ({units[name]})"

@@ -85,8 +85,9 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
-    if np.isfinite(pulse.front) and pulse.pulses != 1:
-        return "several" if pulse.pulses else "stopped"
+    number_of_pulses = pulse.pulses
+    if np.isfinite(pulse.front) and number_of_pulses != 1:
+        return "several" if number_of_pulses > 1 else "stopped"
     is_measured = np.isfinite([pulse.width, pulse.speed]).all()
     is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
     has_exact_pulse = is_coulomb and not used_extra_terms(run.attrs)

@@ -161,7 +161,7 @@ def slowness_nearly_one(
     """
     minus_log_tau = -np.log(tau)
     b = np.asarray(damping_ratio) if release == "total" else 0.0
-    # This form of the root of a quadratic equation loses no digits.
+    # This form of the root of a quadratic equation loses no digits. 1e-300 avoids 0/0 at tau = 1.
     return 2.0 * minus_log_tau / np.maximum(b + np.sqrt(b**2 + 2.0 * minus_log_tau), 1e-300)
 
 

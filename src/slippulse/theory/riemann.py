@@ -212,6 +212,7 @@ class DependenceDomains:
         h = eta) changes by dx/dh, K by k (xi - g) K', and E by the same amount as with xi.
         """
         decay_left, decay_right = self._decay_at_ends()
+        # E tau dx/dg at x_l, and E tau dx/dh at x_r.
         at_left_end = self._source_by_field("t_minus_x", self.left, decay_left)
         at_right_end = self._source_by_field("t_plus_x", self.right, decay_right)
         by_decay = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
@@ -387,7 +388,7 @@ class DependenceDomains:
         needed_panels = slice(start, stop)
         # From here on, panels are counted from `start`.
         first_panel, last_panel = first_panel - start, last_panel - start
-        # The integrand at the nodes of these panels, seen from each point: [point, node].
+        # Arrays with one row for each point and one column for each node of these panels.
         xi_minus_g = self.xi[points, None] - curve.t_minus_x[needed_panels].ravel()
         eta_minus_h = self.eta[points, None] - curve.t_plus_x[needed_panels].ravel()
         z = self.stiffness * xi_minus_g
@@ -409,12 +410,10 @@ class DependenceDomains:
         # first panel up to the left end x_l is outside of the domain, and is subtracted.
         weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
         weights_up_to_right, weights_up_to_left = weights.reshape(2, -1, NODE_COUNT)
-        on_last, on_first = (
-            values_by_panel[..., row, last_panel, :],
-            values_by_panel[..., row, first_panel, :],
-        )
-        up_to_right_end = np.add.reduce(on_last * weights_up_to_right, axis=-1)
-        up_to_left_end = np.add.reduce(on_first * weights_up_to_left, axis=-1)
+        on_last_panel = values_by_panel[..., row, last_panel, :]
+        on_first_panel = values_by_panel[..., row, first_panel, :]
+        up_to_right_end = np.add.reduce(on_last_panel * weights_up_to_right, axis=-1)
+        up_to_left_end = np.add.reduce(on_first_panel * weights_up_to_left, axis=-1)
         return over_whole_panels + up_to_right_end - up_to_left_end
 
     def _integrate_without_kernel(

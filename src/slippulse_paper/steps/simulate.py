@@ -6,7 +6,7 @@ from pkgutil import resolve_name
 
 from slippulse.data.saving import save_dataset
 from slippulse.data.sweeps import with_run_labels
-from slippulse.data.variables import described
+from slippulse.data.variables import with_descriptions
 from slippulse.simulation.sweep import solve_sweep
 
 from ..configuration.expand import expand
@@ -42,4 +42,4 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     for flag, count in sorted(Counter(flags).items()):
         flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
-    save_dataset(described(data), outputs["data"])
+    save_dataset(with_descriptions(data), outputs["data"])
