@@ -102,9 +102,8 @@ def _append_remarks(title: str, rows_by_role: dict[str, pd.DataFrame]) -> str:
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the released blocks (all blocks if none was released) with a margin. But on a side
-    on which the sampled positions do not reach beyond these blocks, the range ends with the
-    samples.
+    They enclose the released blocks (all blocks if none was released) with a margin. On a side
+    where the samples end before these blocks, the range ends at the outermost sample.
     """
     released = run["x"].values[np.isfinite(run["release_time"].values)]
     drawn = released if released.size else run["x"].values

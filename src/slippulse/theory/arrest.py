@@ -67,7 +67,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         self.slow_start = float(left_end_of_fast_fronts)
 
     def _entry_of(self, position: float) -> float:
-        """Return where a wave entered the rupture that meets the left front at a given position.
+        """Return where the wave that meets the left front at a position has entered the rupture.
 
         The wave runs to the left. So it entered farther right, through a fast front. The integral
         of tau between the two positions is 0.
@@ -150,7 +150,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         # front never reaches.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES_PER_SECTION)[1:]
         on_slow_front = self.slow_start + (self.balance_position - self.slow_start) * fraction
-        # The arrival time t = e + T(e) - x of the slow front is that of `time_at`, for all samples.
+        # The slow front arrives at t = e + T(e) - x, where e is the entry of the wave that meets it
+        # (see `time_at`).
         entries = np.array([self._entry_of(x) for x in on_slow_front])
         x_minus_t_of_slow = 2.0 * on_slow_front - entries - self.fronts.arrival(entries)
         # Along a wave, du/dt - du/dx grows by the integral of the pre-stress that it crosses. Far

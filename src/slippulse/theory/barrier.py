@@ -98,7 +98,7 @@ def _panels_before_barrier(tau0: float, speed: float) -> list[Panel]:
     proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     panel_count = max(4, math.ceil(length * proper_length / MAX_PANEL_LENGTH))
     edges = np.linspace(-length, 0.0, panel_count + 1)
-    # The arrival time is x/v, which is negative. In `straight_panels` it is slowness |x|.
+    # `straight_panels` takes the arrival time divided by |x|. The arrival time is x/v = -|x|/v.
     return straight_panels(edges, -1.0 / speed, tau0)
 
 

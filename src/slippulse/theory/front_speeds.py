@@ -200,23 +200,23 @@ def speeds_into(
 ) -> np.ndarray:
     """Return the speeds v of fronts into the pre-stresses tau.
 
-    The unknown is ln(v - 1), which is at least min_log_excess. The equation for it is
-    ln(tau/(1 - tau)) = given value, because the left side is nearly linear in the unknown.
+    The unknown is ln(v - 1), which is at least min_log_excess. It is found from the value of
+    ln(tau/(1 - tau)), which is nearly linear in the unknown.
     """
-    given_values = np.log(tau) - np.log1p(-tau)
+    required_values = np.log(tau) - np.log1p(-tau)
 
-    def excess_of_left_side(log_excess: np.ndarray, fronts: np.ndarray) -> np.ndarray:
-        """Return ln(tau/(1 - tau)) at ln(v - 1) = log_excess, minus the given value.
+    def excess_over_required(log_excess: np.ndarray, fronts: np.ndarray) -> np.ndarray:
+        """Return ln(tau/(1 - tau)) at ln(v - 1) = log_excess, minus the required value.
 
         fronts : numbers of the fronts to which the elements of log_excess belong
         """
         log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[fronts])
-        # 1 - tau may be rounded to 0. It is then replaced by a number that is smaller than 1 - tau
-        # of any given pre-stress.
+        # 1 - tau may be rounded to 0. It is then replaced by a number that is smaller than any
+        # required 1 - tau.
         log_one_minus_tau = np.log(np.maximum(-np.expm1(log_tau), 1e-17))
-        return log_tau - log_one_minus_tau - given_values[fronts]
+        return log_tau - log_one_minus_tau - required_values[fronts]
 
     low, high = np.full(tau.size, min_log_excess), np.full(tau.size, MAX_LOG_EXCESS)
     guess = first_guess(tau, front_law.damping_ratios, front_law.release)
     guess = np.clip(guess, low + 0.1, high - 1.0)
-    return 1.0 + np.exp(increasing_roots(excess_of_left_side, guess=guess, lower=low, upper=high))
+    return 1.0 + np.exp(increasing_roots(excess_over_required, guess=guess, lower=low, upper=high))

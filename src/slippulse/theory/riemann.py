@@ -84,6 +84,7 @@ class StaticSolution:
     """
 
     def __init__(self, curve: Curve, gamma: float) -> None:
+        """Compute p, dp/dx and the derivatives of the curve at the nodes of all panels."""
         if gamma == 0.0:
             # Then p'' = -tau. The solution with p = p' = 0 at the left end of the curve is used.
             # The source is tau dx/ds.
@@ -91,9 +92,9 @@ class StaticSolution:
             dp_dx = -_integrate_to_nodes(curve.source)
             p = _integrate_to_nodes(dp_dx * dx_ds)
         else:
-            # The convolution is the sum of an integral over tau on the left of each position, and
-            # an integral over tau on its right. The second one is computed on the curve mirrored at
-            # x = 0, on which the order of panels and nodes is reversed.
+            # p is tau convolved with exp(-rate |x|)/(2 rate). This is an integral over tau on the
+            # left of each position, and one over tau on its right. The second one is computed on
+            # the curve mirrored at x = 0, on which the order of panels and nodes is reversed.
             rate = float(np.sqrt(gamma))
             over_left = _integrate_over_left(
                 rate, x=curve.x, source=curve.source, edges=curve.edges
