@@ -40,8 +40,8 @@ rule figure:
         csv="results/figures/{figure}.csv",
     log:
         "results/logs/figure/{figure}.log",
-    # The report waits for the figures, and so they are drawn before the scenes and the explorer.
-    priority: 1
+    # A reader can look at each figure as soon as its data exist.
+    priority: 3
     params:
         settings=figure_settings,
         code=lambda wildcards: code_of(
@@ -63,6 +63,7 @@ rule measure_seconds:
         **SECONDS,
     log:
         "results/logs/measure_seconds.log",
+    priority: 2
     params:
         settings={},
         code=code_of("measure_seconds"),

@@ -133,7 +133,7 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame, fits: Mapping) -> None:
     top = 1.9 * largest_accepted
     # The settings of the authors' public notebook fit much worse.
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
-    notebook_chi2 = (notebook["pull"] ** 2).sum()
+    notebook_chi2 = (notebook["independent_pull"] ** 2).sum()
     label = rf"notebook, total force: $\chi^2 = {notebook_chi2:.0f}$"
     # This chi-square is far above the top of the axes, where a marker points to it.
     ratio = notebook["damping_ratio"].iloc[0]

@@ -1,18 +1,18 @@
 """Fit tau_0 and gamma to the published space-time figure, for each damping ratio and release rule.
 
 A reading is a number that was read off the figure, such as the position of the trailing edge at a
-time. A trial is a pair (tau_0, gamma), and has a value for each reading. This is the value of the
-exact solution plus a correction, because the figure was drawn from a lattice with a finite spacing.
-The correction comes from a lattice run. It is most important for the largest velocity, which is
-still growing when the figure ends.
+time. A trial is a pair (tau_0, gamma), and has a value for each reading. This value is taken from a
+lattice run, because the figure was drawn from a lattice with a finite spacing. The table also has
+the value of the exact solution, and the correction, which is the lattice value minus the exact one.
+It is largest for the largest velocity, which is still growing when the figure ends.
 """
 
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from scipy.optimize import least_squares
 
 from slippulse.measurement.inference import independent_combinations
 from slippulse.measurement.table import measure_run
@@ -32,7 +32,7 @@ NEEDS = {"settings": ["published"]}
 # The paper states this beta for the figure. The left panel ends at this time, which was read off.
 BETA = 1.0e-3
 PANEL_END = 10.8
-# The fit begins at this tau_0 and gamma.
+# The first fit of each release rule begins at this tau_0 and gamma.
 FIRST_GUESS = np.array([0.25, 0.55])
 # Damping ratios around the best fit of each release rule, in even steps of the logarithm. They
 # reach beyond the confidence region.
@@ -63,32 +63,8 @@ EDGE_POSITION_COUNT = 241
 TRAILING_EDGE_PREFIX = "trailing_edge_"
 # Derivatives are computed from this relative change of tau_0 and of gamma.
 RELATIVE_DIFFERENCE = 0.01
-# Number of Gauss-Newton steps of a fit from the first guess, and from an extrapolated guess.
-FIRST_GUESS_STEPS, EXTRAPOLATED_STEPS = 2, 1
-# Number of further steps of the fit with the arrows. Its first step is taken from the optimum of
-# the fit without them.
-ARROW_STEPS = 1
-
-
-class Optimum(NamedTuple):
-    """The trial that fits some readings best.
-
-    exact, correction : values of the exact solution, and corrections, for each reading
-    slopes : derivatives of the independent pulls (see `LeftPanel.independent_pulls`) with respect
-        to tau_0 (column 0) and gamma (column 1), before the last step of the fit
-    """
-
-    trial: np.ndarray
-    exact: np.ndarray
-    correction: np.ndarray
-    slopes: np.ndarray
-
-
-class Fit(NamedTuple):
-    """The best trial at one damping ratio without the arrows, and the rows of the table."""
-
-    trial: np.ndarray
-    rows: pd.DataFrame
+# A fit ends when a step changes chi-square, or tau_0 and gamma, by less than this fraction.
+FIT_TOLERANCE = 1e-2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -100,18 +76,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     published = settings["published"]
     panel = LeftPanel(readings_of(published, "space_time_displacement"))
-    parts = []
-    for release in RELEASES:
-        parts += left_panel_rows(panel, release)
-    notebook = panel.fit(
-        damping_ratio=NOTEBOOK_RATIO,
-        release=NOTEBOOK_RELEASE,
-        dx=NOTEBOOK_SPACING,
-        guess=FIRST_GUESS,
-        steps=FIRST_GUESS_STEPS,
-    )
-    is_without_arrows = notebook.rows["part"] == "profile"
-    parts.append(notebook.rows[is_without_arrows].assign(part="notebook"))
+    parts = [
+        left_panel_rows(panel, release, part)
+        for release, part in product(RELEASES, ("profile", "arrows"))
+    ]
+    # The fit of this rule with the largest damping ratio is the closest to that of the notebook.
+    profiles = pd.concat(parts).query("part == 'profile'")
+    closest = profiles[profiles["release"] == NOTEBOOK_RELEASE].iloc[-1]
+    guess = closest[["tau0", "gamma"]].to_numpy(float)
+    notebook = panel.fit(NOTEBOOK_RATIO, NOTEBOOK_RELEASE, NOTEBOOK_SPACING, guess)
+    parts.append(notebook.assign(part="notebook"))
     readings = readings_of(published, "space_time_stress")
     readings = readings.drop(columns=["arrow", "shared_error"])
     largest_velocity = readings[readings["quantity"] == "largest_velocity"]
@@ -120,23 +94,20 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def left_panel_rows(panel: "LeftPanel", release: str) -> list[pd.DataFrame]:
-    """Fit the left panel at each damping ratio of one release rule, and return the rows."""
-    damping_ratios = DAMPING_RATIOS[release]
-    fits: list[Fit] = []
-    for index, damping_ratio in enumerate(damping_ratios):
-        guess = fits[-1].trial if fits else FIRST_GUESS
-        steps = FIRST_GUESS_STEPS
-        if len(fits) >= 2:
-            # Extrapolate the last two fits linearly in the logarithm of the damping ratio.
-            previous, last = fits[-2].trial, fits[-1].trial
-            previous_ratio, last_ratio = damping_ratios[index - 2], damping_ratios[index - 1]
-            change = (last - previous) * np.log(damping_ratio / last_ratio)
-            guess = last + change / np.log(last_ratio / previous_ratio)
-            steps = EXTRAPOLATED_STEPS
+def left_panel_rows(panel: "LeftPanel", release: str, part: str) -> pd.DataFrame:
+    """Return the rows of one release rule, with a fit for each of its damping ratios."""
+    rows: list[pd.DataFrame] = []
+    trials = [FIRST_GUESS]
+    for damping_ratio in DAMPING_RATIOS[release]:
+        guess = trials[-1]
+        if len(rows) >= 2:
+            # The last two optima are extrapolated. The logarithms of the ratios are evenly spaced.
+            guess = 2.0 * trials[-1] - trials[-2]
         dx = BETA / damping_ratio
-        fits.append(panel.fit(damping_ratio, release, dx, guess=guess, steps=steps))
-    return [fit.rows for fit in fits]
+        fit = panel.fit(damping_ratio, release, dx, guess, with_arrows=part == "arrows")
+        rows.append(fit.assign(part=part))
+        trials.append(fit[["tau0", "gamma"]].to_numpy()[0])
+    return pd.concat(rows)
 
 
 def right_panel_rows(
@@ -286,98 +257,51 @@ class LeftPanel:
         """
         return self.combinations @ (values - self.drawn)
 
-    def slopes(
-        self, trial: np.ndarray, exact: np.ndarray, damping_ratio: float, release: str
-    ) -> np.ndarray:
-        """Return the derivatives of the independent pulls at a trial.
-
-        Column 0 has the derivatives with respect to tau_0, and column 1 those with respect to
-        gamma.
-
-        exact : the exact values at the trial
-        """
-        # One row for each parameter and one column for each reading.
-        derivatives = []
-        for parameter in range(len(trial)):
-            change = np.zeros_like(trial)
-            change[parameter] = RELATIVE_DIFFERENCE * trial[parameter]
-            changed = self.exact_values(trial + change, damping_ratio, release)
-            derivatives.append((changed - exact) / change[parameter])
-        return self.combinations @ np.array(derivatives).T
-
     def fit(
-        self, damping_ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
-    ) -> Fit:
-        """Fit tau_0 and gamma by least squares, to all readings except the arrows.
-
-        The returned rows contain this fit, and a second fit to all readings.
-
-        guess : trial at which the first fit begins
-        steps : number of steps of the first fit
-        """
-        without_arrows = ~self.readings["arrow"].to_numpy()
-        everything = np.ones_like(without_arrows)
-        best = self.optimum(damping_ratio, release, dx, guess, steps, without_arrows)
-        # The second fit begins with a step from the first optimum, with the slopes known there.
-        pulls = self.independent_pulls(best.exact + best.correction)
-        guess_with_arrows = best.trial - least_squares(best.slopes, pulls)
-        best_with_arrows = self.optimum(
-            damping_ratio, release, dx, guess_with_arrows, ARROW_STEPS, everything
-        )
-        labels = {"release": release, "damping_ratio": damping_ratio, "dx": dx}
-        rows = [
-            self.rows_of(best, without_arrows).assign(part="profile", **labels),
-            self.rows_of(best_with_arrows, everything).assign(part="arrows", **labels),
-        ]
-        return Fit(best.trial, pd.concat(rows))
-
-    def optimum(
         self,
         damping_ratio: float,
         release: str,
         dx: float,
         guess: np.ndarray,
-        steps: int,
-        is_fitted: np.ndarray,
-    ) -> Optimum:
-        """Fit tau_0 and gamma to some readings by steps of the Gauss-Newton method.
+        with_arrows: bool = False,
+    ) -> pd.DataFrame:
+        """Fit tau_0 and gamma by least squares, and return one row for each reading.
 
-        Each step solves a linear problem of least squares. The values are computed once more after
-        the last step.
+        Each row has the best tau_0 and gamma, their errors, and the values and pulls of the
+        reading at this optimum.
 
-        is_fitted : True for each reading that is fitted
+        guess : tau_0 and gamma at which the fit begins
+        with_arrows : whether the lengths of arrows are fitted, too
         """
-        trial = guess
-        for step in range(steps + 1):
-            exact = self.exact_values(trial, damping_ratio, release)
-            correction = self.lattice_values(trial, damping_ratio, release, dx) - exact
-            pulls = self.independent_pulls(exact + correction)
-            if step < steps:
-                slopes = self.slopes(trial, exact, damping_ratio, release)
-                trial = trial - least_squares(slopes[is_fitted], pulls[is_fitted])
-        return Optimum(trial, exact, correction, slopes)
+        is_fitted = with_arrows | ~self.readings["arrow"].to_numpy()
 
-    def rows_of(self, best: Optimum, is_fitted: np.ndarray) -> pd.DataFrame:
-        """Return one row for each reading, with its values and pulls at an optimum.
+        def fitted_pulls(trial: np.ndarray) -> np.ndarray:
+            values = self.lattice_values(trial, damping_ratio, release, dx)
+            return self.independent_pulls(values)[is_fitted]
 
-        Each row also has the optimum and the errors of tau_0 and gamma.
-        """
-        slopes, values = best.slopes[is_fitted], best.exact + best.correction
+        optimum = least_squares(
+            fitted_pulls,
+            guess,
+            diff_step=RELATIVE_DIFFERENCE,
+            ftol=FIT_TOLERANCE,
+            xtol=FIT_TOLERANCE,
+        )
         # The inverse of this matrix has the variances of tau_0 and gamma on its diagonal.
-        tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
+        variances = np.diag(np.linalg.inv(optimum.jac.T @ optimum.jac))
+        tau0_error, gamma_error = np.sqrt(variances)
+        values = self.lattice_values(optimum.x, damping_ratio, release, dx)
+        exact = self.exact_values(optimum.x, damping_ratio, release)
         return self.readings.drop(columns=["arrow", "shared_error"]).assign(
-            tau0=best.trial[0],
-            gamma=best.trial[1],
+            release=release,
+            damping_ratio=damping_ratio,
+            dx=dx,
+            tau0=optimum.x[0],
+            gamma=optimum.x[1],
             tau0_error=tau0_error,
             gamma_error=gamma_error,
-            exact=best.exact,
-            correction=best.correction,
+            exact=exact,
+            correction=values - exact,
             pull=self.pulls(values),
             independent_pull=self.independent_pulls(values),
             weight=is_fitted.astype(float),
         )
-
-
-def least_squares(matrix: np.ndarray, right_side: np.ndarray) -> np.ndarray:
-    """Return the vector for which matrix @ vector is as close as possible to ``right_side``."""
-    return np.linalg.lstsq(matrix, right_side, rcond=None)[0]
