@@ -378,9 +378,8 @@ class DependenceDomains:
     ) -> np.ndarray:
         """Return the integrals of `_integrate` for some of the points, given by their numbers.
 
-        The integrand is evaluated on all panels that one of the points needs. For each point, the
-        integrals over its own panels are then added up. The first and the last of these panels lie
-        only in part in the domain of the point.
+        The integrand is evaluated at the nodes of all panels that one of the points needs. Then the
+        integral of each point is added up over its own panels.
         """
         curve = self.curve
         last_panel = self.right.panel[points]
@@ -394,28 +393,20 @@ class DependenceDomains:
         eta_minus_h = self.eta[points, None] - curve.t_plus_x[needed_panels].ravel()
         z = self.stiffness * xi_minus_g
         z *= eta_minus_h
-        row = np.arange(points.size)
-        z_by_panel = z.reshape(points.size, -1, NODE_COUNT)
         # z on the first and last panel of each point.
-        z_at_ends = z_by_panel[row, np.array([last_panel, first_panel])]
+        z_by_panel = z.reshape(points.size, -1, NODE_COUNT)
+        z_at_ends = z_by_panel[np.arange(points.size), np.array([last_panel, first_panel])]
         kernel = kernel_function(self.stiffness, z, z_at_ends)
         values = integrand(PanelNodes(xi_minus_g, eta_minus_h, kernel, needed_panels))
         if self.alpha:
             values = values * decay(self.alpha, xi_minus_g, eta_minus_h)
-        values_by_panel = values.reshape(*component_shape, points.size, -1, NODE_COUNT)
-        # The sum over whole panels, from the first panel of a point to the one before its last.
-        panel = np.arange(stop - start)
-        is_added = (panel >= first_panel[:, None]) & (panel < last_panel[:, None])
-        over_whole_panels = np.add.reduce((values_by_panel @ WEIGHTS) * is_added, axis=-1)
-        # The part of the last panel up to the right end x_r of the domain is added. The part of the
-        # first panel up to the left end x_l is outside of the domain, and is subtracted.
-        weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-        weights_up_to_right, weights_up_to_left = weights.reshape(2, -1, NODE_COUNT)
-        on_last_panel = values_by_panel[..., row, last_panel, :]
-        on_first_panel = values_by_panel[..., row, first_panel, :]
-        up_to_right_end = np.add.reduce(on_last_panel * weights_up_to_right, axis=-1)
-        up_to_left_end = np.add.reduce(on_first_panel * weights_up_to_left, axis=-1)
-        return over_whole_panels + up_to_right_end - up_to_left_end
+        return _integrate_between(
+            values.reshape(*component_shape, points.size, -1, NODE_COUNT),
+            first_panel=first_panel,
+            first_s=self.left.s[points],
+            last_panel=last_panel,
+            last_s=self.right.s[points],
+        )
 
     def _integrate_without_kernel(
         self, integrand: Callable[[PanelNodes], np.ndarray]
@@ -433,7 +424,7 @@ class DependenceDomains:
         before_panel = np.concatenate([[0.0], np.cumsum(values_by_panel @ WEIGHTS)])
 
         def integral_up_to(panel: np.ndarray, s: np.ndarray) -> np.ndarray:
-            """Return the integral from the left end of the curve to the parameter s on a panel."""
+            """Return the integrals from the left end of the curve to parameters s on panels."""
             on_panel = np.add.reduce(partial_weights(s) * values_by_panel[panel], axis=-1)
             return before_panel[panel] + on_panel
 
@@ -442,6 +433,30 @@ class DependenceDomains:
         integrals = up_to_right_end - integral_up_to(first_panel, self.left.s)
         # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
+
+
+def _integrate_between(
+    values: np.ndarray,
+    first_panel: np.ndarray,
+    first_s: np.ndarray,
+    last_panel: np.ndarray,
+    last_s: np.ndarray,
+) -> np.ndarray:
+    """Return the integral over s for each point: from first_s on a panel to last_s on another one.
+
+    values : the integrand at the nodes of all panels, [..., point, panel, node]
+    """
+    # The sum over whole panels, from the first panel of a point to the one before its last.
+    point, panel = np.arange(values.shape[-3]), np.arange(values.shape[-2])
+    is_added = (panel >= first_panel[:, None]) & (panel < last_panel[:, None])
+    over_whole_panels = np.add.reduce((values @ WEIGHTS) * is_added, axis=-1)
+    # The part of the last panel up to last_s is added. The part of the first panel up to first_s is
+    # subtracted.
+    weights = partial_weights(np.concatenate([last_s, first_s]))
+    last_weights, first_weights = weights.reshape(2, -1, NODE_COUNT)
+    up_to_last_s = np.add.reduce(values[..., point, last_panel, :] * last_weights, axis=-1)
+    up_to_first_s = np.add.reduce(values[..., point, first_panel, :] * first_weights, axis=-1)
+    return over_whole_panels + up_to_last_s - up_to_first_s
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
