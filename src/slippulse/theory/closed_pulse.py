@@ -161,11 +161,11 @@ def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) 
     # The critical value is exact without damping. Since damping changes it, rate strengthening is
     # named from half of this value on.
     if abs(rate_strengthening) > 0.5 * critical:
-        arguments = f"gamma = {gamma:.6g}, speed = {speed:.6g}"
-        allowed = f"less than {critical:.6g} in size at {arguments} without beta"
-        refused = f"rate_strengthening: {rate_strengthening!r}"
-        return f"{refused}; allowed: {allowed}, or no pulse is steady"
-    return f"speed: {speed:.6g} at gamma = {gamma:.6g}; allowed: values whose pulse can be computed"
+        refused = f"rate_strengthening: {rate_strengthening!r} at {gamma = :.6g}, {speed = :.6g}"
+        allowed = f"absolute values below {critical:.6g} (if beta is 0)"
+        return f"{refused}; allowed: {allowed}, since no pulse is steady beyond"
+    allowed = "values at which no number of the pulse is 0 or infinite"
+    return f"speed: {speed:.6g} at {gamma = :.6g}; allowed: {allowed}"
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
